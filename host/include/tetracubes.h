@@ -1,0 +1,239 @@
+/*
+ * tetracubes.h - isosurfaces of sampled volumes by marching tetrahedra, on OpenCL devices
+ *
+ * Method: Carneiro, Silva, Kaufman, "Tetra-Cubes: an algorithm to generate 3D isosurfaces based upon tetrahedra"
+ * (SIBGRAPI 1996). Every cube of eight samples is split into five tetrahedra, mirrored on alternate cubes, so that
+ * neighbours share their face diagonals; a sample is inside when it is >= the isovalue; every crossed edge becomes one
+ * shared vertex. One kernel classifies and prefix-sums, a second emits. The result does not depend on the device, on
+ * its tuning or on the engine: the scalar reference engine, plain C without OpenCL, makes the same bytes.
+ *
+ *     tc_context *context = NULL; tc_grid *grid = NULL; tc_mesh *mesh = NULL; tc_mesh_data data;
+ *     tc_context_options device; tc_context_options_init(&device);
+ *     tc_grid_options volume;    tc_grid_options_init(&volume);
+ *     tc_extract_options how;    tc_extract_options_init(&how);
+ *     volume.dims[0] = nx; volume.dims[1] = ny; volume.dims[2] = nz; volume.type = TC_U8; volume.samples = samples;
+ *     how.isovalue = 127.5;
+ *     if (tc_context_create(&device, &context) || tc_grid_create(context, &volume, &grid) ||
+ *         tc_extract(grid, &how, &mesh) || tc_mesh_get(mesh, &data))
+ *         fprintf(stderr, "%s\n", tc_message());
+ *     else
+ *         use(data.positions, data.vertex_count, data.triangles, data.triangle_count);
+ *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
+ *
+ * Conventions. Every call that can fail returns a tc_status; tc_message() then says, for the calling thread, what was
+ * wrong and what to do. Outputs are zeroed on failure. Destroy functions accept NULL. The library never prints, exits
+ * or aborts on data. A context, with its grids and meshes, is used by one thread at a time; different contexts may be
+ * used at once by different threads.
+ */
+#ifndef TETRACUBES_H
+#define TETRACUBES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define TC_API __attribute__((visibility("default")))
+#else
+#define TC_API
+#endif
+
+/* ---------------------------------------------------------------------------------------------------------- status */
+
+typedef enum tc_status {
+    TC_OK = 0,
+    TC_ERROR_ARGUMENT,  /* an argument or option is not valid: the caller's mistake */
+    TC_ERROR_DATA,      /* the grid cannot be contoured: one sample along an axis, sizes that overflow */
+    TC_ERROR_DEVICE,    /* no OpenCL, no such device, or the device failed */
+    TC_ERROR_MEMORY,    /* host or device memory ran out */
+    TC_ERROR_LIMIT,     /* the mesh needs more than 2^32 - 1 vertices */
+    TC_ERROR_CANCELLED, /* the progress callback asked to stop */
+} tc_status;
+
+/* What the last failed call of this thread found wrong, in one or two sentences. Never NULL; valid until the thread's
+ * next failing call. */
+TC_API const char *tc_message(void);
+
+/* "major.minor.patch" of the library that runs. */
+TC_API const char *tc_version(void);
+
+/* --------------------------------------------------------------------------------------------------------- devices */
+
+/* What matters here about one OpenCL device. */
+typedef struct tc_device_info {
+    size_t struct_size;          /* set by the caller: sizeof(tc_device_info) */
+    int platform_index;          /* first number of the specification "platform:device" */
+    int device_index;            /* second number */
+    char platform[128];
+    char name[128];
+    char version[128];           /* CL_DEVICE_VERSION */
+    char driver[128];            /* CL_DRIVER_VERSION */
+    char type[16];               /* "cpu", "gpu", "accelerator" or "other" */
+    uint32_t compute_units;
+    uint64_t max_work_group_size;
+    uint64_t global_memory_bytes;
+    uint64_t max_buffer_bytes;   /* volumes with larger buffers are processed in slabs */
+    uint64_t local_memory_bytes;
+    int shares_host_memory;      /* aligned samples are used in place, not copied */
+    int has_fp64;                /* without it, vertices of u32, i32 and f64 samples are made on the host */
+    int rounds_division;         /* correctly rounded f32 division built in; else the kernels correct it */
+} tc_device_info;
+
+/* The number of devices of all platforms, in the order that indices of a specification count in. Fails with
+ * TC_ERROR_DEVICE, and says what to install, where there is no OpenCL, no platform or no device. */
+TC_API tc_status tc_device_count(int *count);
+
+/* Fills *info for device index (0 <= index < count). */
+TC_API tc_status tc_device_get(int index, tc_device_info *info);
+
+/* --------------------------------------------------------------------------------------------------------- context */
+
+typedef enum tc_engine {
+    TC_ENGINE_OPENCL = 0,
+    TC_ENGINE_REFERENCE = 1, /* scalar C on the calling thread; needs no OpenCL */
+} tc_engine;
+
+/* Called on the extracting thread now and then; fraction runs from 0 to 1 within one call of the library. Return
+ * nonzero to cancel: the call then returns TC_ERROR_CANCELLED, and everything can be used again. */
+typedef int (*tc_progress)(void *user, const char *stage, double fraction);
+
+struct _cl_context;
+struct _cl_command_queue;
+
+typedef struct tc_context_options {
+    size_t struct_size;          /* set by tc_context_options_init; a caller built against an older header still works */
+    tc_engine engine;
+    const char *device;          /* an index, "platform:device", "cpu", "gpu" or part of a name; NULL: the environment's
+                                    TETRACUBES_DEVICE, else the first CPU or other device found */
+    struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
+    struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
+    uint64_t max_memory_bytes;   /* bound on device buffers, mesh and samples included; 0: what the device allows.
+                                    Less memory means smaller slabs, never other results */
+    uint32_t work_items;         /* per work-group; 0: the device's default. Never changes results */
+    uint32_t work_groups;        /* launched at once; 0: the device's default. Never changes results */
+    uint32_t tile_bricks;        /* at least so many bricks per tile of the scan; 0: default. Never changes results */
+    uint32_t spin_limit;         /* polls of an unfinished tile before its sum is recomputed; 0: default */
+    int division;                /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
+    tc_progress progress;        /* NULL: none */
+    void *progress_user;
+} tc_context_options;
+
+typedef struct tc_context tc_context;
+
+/* Defaults: OpenCL engine, default device, no bound on memory, no progress. */
+TC_API void tc_context_options_init(tc_context_options *options);
+
+/* Picks the device; kernels are built when the first grid needs them. The context keeps device buffers between
+ * extractions. Destroy its grids and meshes before it. */
+TC_API tc_status tc_context_create(const tc_context_options *options, tc_context **context);
+TC_API void tc_context_destroy(tc_context *context);
+
+/* The device of an OpenCL context; TC_ERROR_ARGUMENT for the reference engine, which has none. */
+TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *info);
+
+/* The context's OpenCL objects, not retained; NULL for the reference engine. */
+TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);
+TC_API struct _cl_command_queue *tc_context_cl_queue(const tc_context *context);
+
+/* Bytes of device buffers held at this moment and at most so far, samples and mesh included; memory of the host that
+ * the device uses in place counts only with the mesh. */
+TC_API uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak);
+
+/* ------------------------------------------------------------------------------------------------------------ grid */
+
+typedef enum tc_type { TC_U8 = 0, TC_I8, TC_U16, TC_I16, TC_U32, TC_I32, TC_F32, TC_F64 } tc_type;
+
+/* Bytes of one sample; 0 for a value that is no type. */
+TC_API size_t tc_type_bytes(tc_type type);
+
+/* "u8", "i8", ..., "f64"; NULL for a value that is no type. */
+TC_API const char *tc_type_name(tc_type type);
+
+typedef struct tc_grid_options {
+    size_t struct_size;
+    int64_t dims[3];        /* samples along x, y, z; each at least 2 */
+    int64_t first[3];       /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
+                               and the index space of positions count from it. |first| + dims at most 2^24 */
+    tc_type type;           /* native byte order */
+    const void *samples;    /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
+                               tc_grid_destroy, not copied where the device shares the host's memory */
+    double matrix[3][4];    /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
+                               (triangles keep their outward side); default: identity. Used as float32 */
+    int has_nodata;         /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
+    double nodata;          /* missing corner is left out whole */
+} tc_grid_options;
+
+typedef struct tc_grid tc_grid;
+
+/* Defaults: no samples, identity matrix, first sample 0, 0, 0, no missing value. */
+TC_API void tc_grid_options_init(tc_grid_options *options);
+
+/* Checks the description and makes the samples available to the device. TC_ERROR_DATA for a grid of one sample along
+ * an axis and for sizes that overflow. */
+TC_API tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **grid);
+TC_API void tc_grid_destroy(tc_grid *grid);
+
+/* ------------------------------------------------------------------------------------------------------ extraction */
+
+typedef struct tc_extract_options {
+    size_t struct_size;
+    double isovalue;        /* finite; inside means sample >= isovalue, exactly */
+    int normals;            /* nonzero: a unit normal per vertex, the negated gradient (zero where that vanishes) */
+} tc_extract_options;
+
+/* What classification alone tells. */
+typedef struct tc_counts {
+    size_t struct_size;
+    uint64_t vertex_count;
+    uint64_t triangle_count;
+    uint64_t active_cell_count; /* cubes that the surface passes through */
+    uint64_t mesh_bytes;        /* of positions and triangles */
+    double classify_ms;
+} tc_counts;
+
+/* Milliseconds of the last extraction into a mesh, by the host's clock. */
+typedef struct tc_timings {
+    double classify_ms;     /* kernel 1 over all slabs, reading of totals included */
+    double emit_ms;         /* allocation of the mesh, kernel 2 over all slabs */
+    double readback_ms;     /* copy to the host; 0 where memory is shared */
+    double total_ms;        /* first launch to mesh complete where the device left it */
+} tc_timings;
+
+/* The mesh in host memory. Triangles wind counter-clockwise seen from outside (the lower values) in world space. The
+ * order of vertices and triangles is a function of grid and isovalue alone. */
+typedef struct tc_mesh_data {
+    size_t struct_size;
+    uint64_t vertex_count;
+    uint64_t triangle_count;
+    uint64_t active_cell_count;
+    const float *positions;     /* 3 per vertex, world space */
+    const float *normals;       /* 3 per vertex, or NULL */
+    const uint32_t *triangles;  /* 3 vertex indices per triangle */
+    uint32_t slab_count;        /* 1 where the grid was processed whole */
+    tc_timings timings;
+} tc_mesh_data;
+
+typedef struct tc_mesh tc_mesh;
+
+/* Defaults: isovalue 0, no normals. */
+TC_API void tc_extract_options_init(tc_extract_options *options);
+
+/* Classifies only: *counts (its struct_size set by the caller) receives the sizes of the mesh. */
+TC_API tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+
+/* Extracts a surface. *mesh NULL: a new mesh is made, owned by the caller. Else *mesh, of the same context, is
+ * overwritten and its memory used again. On failure a new mesh is not made, an old one is empty. */
+TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **mesh);
+
+/* Fills *data (its struct_size set by the caller). Pointers stay valid until the mesh is extracted into or destroyed. */
+TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
+TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

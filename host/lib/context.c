@@ -1,0 +1,209 @@
+#include "context.h"
+
+#include "device.h"
+#include "failure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define TEXT2(x) #x
+#define TEXT(x)  TEXT2(x)
+
+const char *tc_message(void) { return failure_text(); }
+
+const char *tc_version(void) { return TEXT(TC_VERSION); }
+
+double clock_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what) {
+    size_t bytes = 0;
+    if (from) memcpy(&bytes, from, sizeof bytes);
+    if (bytes < sizeof bytes || bytes > to_bytes)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: %s", what,
+                               !from              ? "no options given"
+                               : bytes > to_bytes ? "made for a newer library, or never initialised"
+                                                  : "never initialised: call its _init function first");
+    memcpy(to, from, bytes);
+    memcpy(to, &to_bytes, sizeof to_bytes);
+    return TC_OK;
+}
+
+tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
+    if (!context->options.progress || !context->options.progress(context->options.progress_user, stage, fraction))
+        return TC_OK;
+    return (tc_status)fail(TC_ERROR_CANCELLED, "cancelled");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- buffers */
+
+static void bytes_count(tc_context *context, uint64_t bytes) {
+    context->device_bytes += bytes;
+    if (context->device_bytes > context->device_bytes_peak) context->device_bytes_peak = context->device_bytes;
+}
+
+static tc_status buffer_create(tc_context *context, device_buffer *buffer, uint64_t bytes, cl_mem_flags flags,
+                               void *memory, const char *name) {
+    cl_int error = CL_INVALID_BUFFER_SIZE;
+    buffer_release(context, buffer);
+    if (bytes <= SIZE_MAX) buffer->memory = cl->CreateBuffer(context->context, flags, (size_t)bytes, memory, &error);
+    if (error) {
+        char what[128];
+        snprintf(what, sizeof what, "a device buffer of %llu bytes for %s", (unsigned long long)bytes, name);
+        buffer->memory = NULL;
+        return opencl_fail(what, error);
+    }
+    buffer->bytes = bytes;
+    bytes_count(context, bytes);
+    return TC_OK;
+}
+
+tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
+    if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
+    return buffer_create(context, buffer, bytes ? bytes : 1, CL_MEM_READ_WRITE, NULL, name);
+}
+
+tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
+                      const char *name) {
+    return buffer_create(context, buffer, bytes, access | CL_MEM_USE_HOST_PTR, memory, name);
+}
+
+void buffer_release(tc_context *context, device_buffer *buffer) {
+    if (!buffer->memory) return;
+    cl->ReleaseMemObject(buffer->memory);
+    context->device_bytes -= buffer->bytes;
+    *buffer = (device_buffer){0};
+}
+
+static void workspace_release(tc_context *context) {
+    device_buffer *buffers = (device_buffer *)&context->work;
+    for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- context */
+
+void tc_context_options_init(tc_context_options *options) {
+    *options = (tc_context_options){.struct_size = sizeof *options, .engine = TC_ENGINE_OPENCL};
+}
+
+bool type_is_wide(tc_type type) { return type == TC_U32 || type == TC_I32 || type == TC_F64; }
+
+bool device_makes_vertices(const tc_context *context, tc_type type) {
+    return context->info.has_fp64 || !type_is_wide(type);
+}
+
+static tc_status device_adopt(tc_context *context, cl_context theirs, cl_command_queue queue) {
+    if (!queue) return (tc_status)fail(TC_ERROR_ARGUMENT, "a cl_context needs a cl_queue with it");
+    cl_int error = cl->GetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof context->device, &context->device, NULL);
+    if (!error) error = cl->RetainContext(theirs);
+    if (error) return opencl_fail("asking the given queue for its device", error);
+    context->context = theirs;
+    error = cl->RetainCommandQueue(queue);
+    if (error) return opencl_fail("retaining the given queue", error);
+    context->queue = queue;
+    return TC_OK;
+}
+
+static tc_status device_open(tc_context *context, const char *specification) {
+    device_choice choice;
+    cl_int error;
+    tc_status status = device_choose(specification, &choice);
+    if (status) return status;
+    context->device = choice.device;
+    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)choice.platform, 0};
+    context->context = cl->CreateContext(properties, 1, &choice.device, NULL, NULL, &error);
+    if (error) return opencl_fail("making a context on the device", error);
+    context->queue = cl->CreateCommandQueue(context->context, choice.device, 0, &error);
+    if (error) return opencl_fail("making a command queue on the device", error);
+    status = device_describe(choice.device, &context->info);
+    context->info.platform_index = choice.platform_index;
+    context->info.device_index = choice.device_index;
+    return status;
+}
+
+/* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
+static tc_status tuning_default(tc_context *context) {
+    tc_context_options *o = &context->options;
+    bool cpu = !strcmp(context->info.type, "cpu");
+    if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
+    if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
+    if (!o->spin_limit) o->spin_limit = cpu ? 1u << 20 : 1u << 12;
+    if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
+    if ((o->work_items != 1 && o->work_items % 32) || o->work_items > context->info.max_work_group_size)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %llu on this device",
+                               o->work_items, (unsigned long long)context->info.max_work_group_size);
+    if (o->division < 1 || o->division > 3 || (o->division == 1 && !context->info.rounds_division) ||
+        (o->division == 2 && !context->info.has_fp64))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", o->division);
+    return TC_OK;
+}
+
+static tc_status opencl_begin(tc_context *context, const tc_context_options *o) {
+    tc_status status = opencl_load();
+    if (!status && o->cl_context) {
+        status = device_adopt(context, o->cl_context, o->cl_queue);
+        if (!status) status = device_describe(context->device, &context->info);
+    } else if (!status) {
+        status = device_open(context, o->device);
+    }
+    return status ? status : tuning_default(context);
+}
+
+tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
+    tc_context_options o;
+    if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
+    *out = NULL;
+    tc_context_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "context options");
+    if (status) return status;
+    if (o.engine != TC_ENGINE_OPENCL && o.engine != TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
+    tc_context *context = calloc(1, sizeof *context);
+    if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
+    context->options = o;
+    context->options.device = NULL;
+    context->options.cl_context = NULL;
+    context->options.cl_queue = NULL;
+    if (o.engine == TC_ENGINE_OPENCL) status = opencl_begin(context, &o);
+    if (status) {
+        tc_context_destroy(context);
+        return status;
+    }
+    *out = context;
+    return TC_OK;
+}
+
+void tc_context_destroy(tc_context *context) {
+    if (!context) return;
+    if (context->queue) cl->Finish(context->queue);
+    if (context->context) {
+        workspace_release(context);
+        programs_release(context);
+    }
+    if (context->queue) cl->ReleaseCommandQueue(context->queue);
+    if (context->context) cl->ReleaseContext(context->context);
+    free(context);
+}
+
+tc_status tc_context_device(const tc_context *context, tc_device_info *info) {
+    if (!context || !info || info->struct_size < sizeof *info)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_device needs a context, and info with its struct_size set");
+    if (context->options.engine == TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device");
+    *info = context->info;
+    return TC_OK;
+}
+
+struct _cl_context *tc_context_cl_context(const tc_context *context) { return context ? context->context : NULL; }
+
+struct _cl_command_queue *tc_context_cl_queue(const tc_context *context) { return context ? context->queue : NULL; }
+
+uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak) {
+    if (peak) *peak = context ? context->device_bytes_peak : 0;
+    return context ? context->device_bytes : 0;
+}

@@ -1,0 +1,75 @@
+/*
+ * context.h - a device with its queue, its built programs and the buffers it keeps between extractions
+ */
+#ifndef CONTEXT_H
+#define CONTEXT_H
+
+#include "opencl.h"
+#include "tetracubes.h"
+
+#include <stdbool.h>
+
+/* A buffer that grows when it has to and is kept. */
+typedef struct device_buffer {
+    cl_mem memory;
+    uint64_t bytes;
+} device_buffer;
+
+/* Kernels for one sample type, with or without missing samples and normals. */
+typedef struct program {
+    tc_type type;
+    bool missing, normals;
+    cl_program program;
+    cl_kernel classify, emit, cells;
+    struct program *next;
+} program;
+
+/* What kernel 1 leaves for kernel 2, and what both need besides samples and mesh. */
+typedef struct workspace {
+    device_buffer words, offsets, triangle_offsets, bases, masks, active; /* per word or brick of the word window */
+    device_buffer cells;                                                  /* grids with missing samples */
+    device_buffer state, scratch;
+    device_buffer cases[2];                                               /* cube table; [1] for mirrored grids */
+    device_buffer samples, positions, normals, triangles;                 /* windows, on devices with own memory */
+} workspace;
+
+struct tc_context {
+    tc_context_options options; /* strings and OpenCL objects cleared */
+    tc_device_info info;
+    cl_device_id device;
+    cl_context context;
+    cl_command_queue queue;
+    program *programs;
+    workspace work;
+    uint64_t device_bytes, device_bytes_peak;
+};
+
+/* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
+tc_status context_progress(const tc_context *context, const char *stage, double fraction);
+
+/* The program for a grid, built when first asked for (program.c). */
+tc_status program_get(tc_context *context, tc_type type, bool missing, bool normals, const program **out);
+void programs_release(tc_context *context);
+
+/* u32, i32 and f64 samples: vertices are made in double. */
+bool type_is_wide(tc_type type);
+
+/* False where vertices of a wide type have to be made on the host. */
+bool device_makes_vertices(const tc_context *context, tc_type type);
+
+/* Makes the buffer at least so large; its content is lost where it has to grow. name is for the error. */
+tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);
+void buffer_release(tc_context *context, device_buffer *buffer);
+
+/* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
+tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
+                      const char *name);
+
+/* Milliseconds of a clock that only runs forward. */
+double clock_ms(void);
+
+/* Copies an option struct of any older size over defaults already in *to; TC_ERROR_ARGUMENT, naming what, for NULL, for
+ * one that was never initialised and for one of a newer library. */
+tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what);
+
+#endif

@@ -1,0 +1,159 @@
+#include "device.h"
+
+#include "failure.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { DEVICES_MAX = 256, PLATFORMS_MAX = 32 };
+
+typedef struct device_list {
+    int count;
+    device_choice devices[DEVICES_MAX];
+} device_list;
+
+/* A platform without devices is passed over. */
+static tc_status device_list_make(device_list *list) {
+    cl_platform_id platforms[PLATFORMS_MAX];
+    cl_uint platform_count = 0;
+    list->count = 0;
+    tc_status status = opencl_load();
+    if (status) return status;
+    cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
+    if (error != CL_SUCCESS || platform_count == 0)
+        return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL platform is installed (for the CPU on Debian: apt install "
+                                                "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
+                                                "reference engine needs none");
+    if (platform_count > PLATFORMS_MAX) platform_count = PLATFORMS_MAX;
+    for (cl_uint p = 0; p < platform_count; p++) {
+        cl_device_id devices[DEVICES_MAX];
+        cl_uint device_count = 0;
+        cl_uint room = (cl_uint)(DEVICES_MAX - list->count);
+        if (room == 0 || cl->GetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count)) continue;
+        for (cl_uint d = 0; d < device_count && d < room; d++)
+            list->devices[list->count++] = (device_choice){platforms[p], devices[d], (int)p, (int)d};
+    }
+    if (list->count == 0)
+        return (tc_status)fail(TC_ERROR_DEVICE, "the %u OpenCL platform(s) installed have no device (for the CPU on "
+                                                "Debian: apt install pocl-opencl-icd); the reference engine needs none",
+                               platform_count);
+    return TC_OK;
+}
+
+static void text_get(cl_device_id device, cl_device_info what, char *out, size_t bytes) {
+    char text[512] = "";
+    if (cl->GetDeviceInfo(device, what, sizeof text - 1, text, NULL)) text[0] = 0;
+    snprintf(out, bytes, "%.*s", (int)bytes - 1, text);
+}
+
+static uint64_t number_get(cl_device_id device, cl_device_info what, size_t bytes) {
+    uint64_t value = 0;
+    if (cl->GetDeviceInfo(device, what, bytes, &value, NULL)) value = 0;
+    return value; /* little-endian hosts only, as the sign words are */
+}
+
+tc_status device_describe(cl_device_id device, tc_device_info *info) {
+    cl_platform_id platform = NULL;
+    memset(info, 0, sizeof *info);
+    info->struct_size = sizeof *info;
+    info->platform_index = info->device_index = -1;
+    cl_int error = cl->GetDeviceInfo(device, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
+    if (error) return opencl_fail("asking the device for its platform", error);
+    if (cl->GetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform, NULL))
+        info->platform[0] = 0;
+    text_get(device, CL_DEVICE_NAME, info->name, sizeof info->name);
+    text_get(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
+    text_get(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    uint64_t type = number_get(device, CL_DEVICE_TYPE, sizeof(cl_device_type));
+    strcpy(info->type, type & CL_DEVICE_TYPE_GPU           ? "gpu"
+                       : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
+                       : type & CL_DEVICE_TYPE_CPU         ? "cpu"
+                                                           : "other");
+    info->compute_units = (uint32_t)number_get(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
+    info->max_work_group_size = number_get(device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
+    info->global_memory_bytes = number_get(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
+    info->max_buffer_bytes = number_get(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong));
+    info->local_memory_bytes = number_get(device, CL_DEVICE_LOCAL_MEM_SIZE, sizeof(cl_ulong));
+    info->shares_host_memory = number_get(device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(cl_bool)) != 0;
+    info->has_fp64 = number_get(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(cl_device_fp_config)) != 0;
+    info->rounds_division = (number_get(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(cl_device_fp_config)) &
+                             CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    return TC_OK;
+}
+
+static bool text_contains(const char *text, const char *part) {
+    size_t length = strlen(part);
+    for (; *text; text++)
+        if (!strncasecmp(text, part, length)) return true;
+    return false;
+}
+
+/* "3" or "1:0". */
+static bool indices_match(const char *specification, int index, const device_choice *d, bool *is_index) {
+    char *end;
+    long first = strtol(specification, &end, 10);
+    *is_index = end > specification && (*end == 0 || *end == ':');
+    if (!*is_index) return false;
+    if (*end == 0) return first == index;
+    const char *second = end + 1;
+    long device = strtol(second, &end, 10);
+    *is_index = end > second && *end == 0;
+    return *is_index && first == d->platform_index && device == d->device_index;
+}
+
+static bool device_matches(const char *specification, int index, const device_choice *d) {
+    bool is_index;
+    tc_device_info info;
+    bool same = indices_match(specification, index, d, &is_index);
+    if (is_index) return same;
+    if (device_describe(d->device, &info)) return false;
+    if (!strcasecmp(specification, "cpu") || !strcasecmp(specification, "gpu") ||
+        !strcasecmp(specification, "accelerator"))
+        return !strcasecmp(specification, info.type);
+    return text_contains(info.name, specification) || text_contains(info.platform, specification);
+}
+
+tc_status device_choose(const char *specification, device_choice *choice) {
+    device_list list;
+    tc_status status = device_list_make(&list);
+    if (status) return status;
+    if (!specification) specification = getenv("TETRACUBES_DEVICE");
+    const char *wanted = specification && *specification ? specification : "cpu";
+    for (int n = 0; n < list.count; n++)
+        if (device_matches(wanted, n, &list.devices[n])) {
+            *choice = list.devices[n];
+            return TC_OK;
+        }
+    if (specification && *specification)
+        return (tc_status)fail(TC_ERROR_DEVICE, "no device \"%s\" among the %d of this machine: give an index, "
+                                                "platform:device, cpu, gpu or part of a name",
+                               specification, list.count);
+    *choice = list.devices[0];
+    return TC_OK;
+}
+
+tc_status tc_device_count(int *count) {
+    device_list list;
+    if (!count) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_count needs a place for the count");
+    *count = 0;
+    tc_status status = device_list_make(&list);
+    if (!status) *count = list.count;
+    return status;
+}
+
+tc_status tc_device_get(int index, tc_device_info *info) {
+    device_list list;
+    if (!info || info->struct_size < sizeof *info)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_get needs info with its struct_size set");
+    tc_status status = device_list_make(&list);
+    if (status) return status;
+    if (index < 0 || index >= list.count)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "device %d: this machine has devices 0 to %d", index, list.count - 1);
+    status = device_describe(list.devices[index].device, info);
+    info->platform_index = list.devices[index].platform_index;
+    info->device_index = list.devices[index].device_index;
+    return status;
+}

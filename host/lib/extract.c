@@ -1,0 +1,79 @@
+/*
+ * The public calls on grids and meshes: arguments checked, then one engine or the other.
+ */
+#include "context.h"
+#include "failure.h"
+#include "reference.h"
+#include "structured.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void tc_extract_options_init(tc_extract_options *options) {
+    *options = (tc_extract_options){.struct_size = sizeof *options};
+}
+
+tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
+    tc_grid_options o;
+    if (!out || !context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
+    *out = NULL;
+    tc_grid_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "grid options");
+    if (status) return status;
+    tc_grid *grid = malloc(sizeof *grid);
+    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    status = grid_describe(&o, grid);
+    grid->context = context;
+    if (!status && context->options.engine == TC_ENGINE_OPENCL) status = structured_grid_create(grid);
+    if (status) {
+        tc_grid_destroy(grid);
+        return status;
+    }
+    *out = grid;
+    return TC_OK;
+}
+
+void tc_grid_destroy(tc_grid *grid) {
+    if (!grid) return;
+    structured_grid_destroy(grid);
+    free(grid);
+}
+
+static tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {
+    tc_extract_options_init(o);
+    tc_status status = options_take(o, sizeof *o, options, "extract options");
+    if (!status && !isfinite(o->isovalue))
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
+    return status;
+}
+
+tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    tc_extract_options o;
+    if (!grid || !counts || counts->struct_size < sizeof *counts)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid, and counts with its struct_size set");
+    *counts = (tc_counts){.struct_size = counts->struct_size};
+    tc_status status = extract_options_take(&o, options);
+    if (status) return status;
+    status = grid->device ? structured_count(grid, &o, counts) : reference_count(grid, &o, counts);
+    if (status) *counts = (tc_counts){.struct_size = counts->struct_size};
+    counts->mesh_bytes = counts->vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
+                         counts->triangle_count * MESH_BYTES_PER_TRIANGLE;
+    return status;
+}
+
+tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **out) {
+    tc_extract_options o;
+    if (!grid || !out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract needs a grid and a place for the mesh");
+    tc_mesh *mesh = *out ? *out : calloc(1, sizeof *mesh);
+    if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
+    mesh_clear(mesh);
+    tc_status status = extract_options_take(&o, options);
+    if (!status) status = grid->device ? structured_extract(grid, &o, mesh) : reference_extract(grid, &o, mesh);
+    if (status) mesh_clear(mesh);
+    if (status && !*out) {
+        tc_mesh_destroy(mesh);
+        mesh = NULL;
+    }
+    *out = mesh;
+    return status;
+}

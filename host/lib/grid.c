@@ -1,0 +1,100 @@
+#include "grid.h"
+
+#include "failure.h"
+
+#include <math.h>
+
+static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
+static const size_t type_bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+static const int64_t index_limit = 1 << 24; /* indices up to here are exact in float32 */
+
+size_t tc_type_bytes(tc_type type) { return (unsigned)type <= TC_F64 ? type_bytes[type] : 0; }
+
+const char *tc_type_name(tc_type type) { return (unsigned)type <= TC_F64 ? type_names[type] : NULL; }
+
+void tc_grid_options_init(tc_grid_options *options) {
+    *options = (tc_grid_options){.struct_size = sizeof *options, .type = TC_U8};
+    for (int r = 0; r < 3; r++) options->matrix[r][r] = 1;
+}
+
+int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }
+
+unsigned grid_parity(const tc_grid *grid) { return (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1; }
+
+static tc_status sizes_check(const tc_grid_options *o) {
+    for (int axis = 0; axis < 3; axis++) {
+        if (o->dims[axis] == 1)
+            return (tc_status)fail(TC_ERROR_DATA, "the grid has one sample along %c: a surface needs two or more",
+                                   'x' + axis);
+        if (o->dims[axis] < 1)
+            return (tc_status)fail(TC_ERROR_ARGUMENT, "%lld samples along %c: a grid needs two or more",
+                                   (long long)o->dims[axis], 'x' + axis);
+        if (o->dims[axis] > index_limit || o->first[axis] < -index_limit || o->first[axis] > index_limit - o->dims[axis])
+            return (tc_status)fail(TC_ERROR_DATA, "%lld samples along %c from index %lld on: indices are limited to 2^24",
+                                   (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);
+    }
+    int64_t count;
+    if (__builtin_mul_overflow(o->dims[0] * o->dims[1], o->dims[2], &count) ||
+        (uint64_t)count > PTRDIFF_MAX / tc_type_bytes(o->type))
+        return (tc_status)fail(TC_ERROR_DATA, "%lld x %lld x %lld samples overflow the address space",
+                               (long long)o->dims[0], (long long)o->dims[1], (long long)o->dims[2]);
+    return TC_OK;
+}
+
+/* The cofactors of m are the inverse transposed times the determinant; its sign is taken out again. */
+static void normal_matrix_derive(const double m[3][3], double determinant, float out[9]) {
+    double c[9], largest = 0;
+    for (int r = 0; r < 3; r++)
+        for (int s = 0; s < 3; s++) {
+            int r1 = (r + 1) % 3, r2 = (r + 2) % 3, s1 = (s + 1) % 3, s2 = (s + 2) % 3;
+            double value = m[r1][s1] * m[r2][s2] - m[r1][s2] * m[r2][s1];
+            c[3 * r + s] = determinant < 0 ? -value : value;
+            largest = fmax(largest, fabs(value));
+        }
+    for (int n = 0; n < 9; n++) out[n] = (float)(c[n] / largest);
+}
+
+static tc_status matrix_take(const double matrix[3][4], tc_grid *grid) {
+    double m[3][3], largest = 0;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++) {
+            float value = (float)matrix[r][c];
+            if (!isfinite(value))
+                return (tc_status)fail(TC_ERROR_ARGUMENT, "spacing, origin or direction %g is beyond float32",
+                                       matrix[r][c]);
+            grid->matrix[4 * r + c] = value;
+            if (c < 3) largest = fmax(largest, fabs((double)value));
+        }
+    if (largest == 0) largest = 1;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) m[r][c] = grid->matrix[4 * r + c] / largest;
+    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    if (determinant == 0)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "spacing and directions flatten the grid (their determinant is 0)");
+    grid->mirrored = determinant < 0;
+    normal_matrix_derive(m, determinant, grid->normal_matrix);
+    return TC_OK;
+}
+
+tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
+    *grid = (tc_grid){0};
+    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
+    tc_status status = sizes_check(o);
+    if (status) return status;
+    if (!o->samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
+    if ((uintptr_t)o->samples % tc_type_bytes(o->type))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
+                               tc_type_name(o->type));
+    for (int axis = 0; axis < 3; axis++) {
+        grid->dims[axis] = o->dims[axis];
+        grid->first[axis] = o->first[axis];
+    }
+    grid->type = o->type;
+    grid->samples = o->samples;
+    grid->has_nodata = o->has_nodata != 0;
+    grid->nodata = o->nodata;
+    return matrix_take(o->matrix, grid);
+}

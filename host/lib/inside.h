@@ -1,0 +1,26 @@
+/*
+ * inside.h - "sample >= isovalue" as a test on bit patterns, exact for every sample type
+ *
+ * The isovalue is a double. Samples compare with the smallest value of their type that is >= it. The patterns that are
+ * inside form one run modulo 2^width, so that (bits - low) <= span, unsigned, decides: integers count up from low; floats
+ * above 0 order like integers; from a negative float f or 0 on, all patterns from +0 to +infinity and from -0 down to f are
+ * inside, which is one run again.
+ */
+#ifndef INSIDE_H
+#define INSIDE_H
+
+#include "tetracubes.h"
+
+#include <stdbool.h>
+
+typedef struct inside_range {
+    bool uniform; /* every sample of the type is on the same side: no surface */
+    uint64_t low, span;
+} inside_range;
+
+inside_range inside_range_of(tc_type type, double isovalue);
+
+/* Patterns of the samples that equal value, two for zero in floating types. False where none can. */
+bool sample_patterns(tc_type type, double value, uint64_t patterns[2]);
+
+#endif

@@ -1,0 +1,79 @@
+#include "mesh.h"
+
+#include "failure.h"
+
+#include <stdlib.h>
+#include <sys/mman.h>
+
+static const size_t page_bytes = 4096;
+static const size_t huge_page_bytes = 2 << 20;
+
+tc_status host_block_reserve(host_block *block, uint64_t bytes) {
+    if (bytes <= block->bytes) return TC_OK;
+    host_block_release(block);
+    if (bytes > SIZE_MAX / 2) return (tc_status)fail(TC_ERROR_MEMORY, "the mesh does not fit the address space");
+    size_t alignment = bytes < huge_page_bytes ? page_bytes : huge_page_bytes;
+    size_t rounded = ((size_t)bytes + page_bytes - 1) & ~(page_bytes - 1);
+    size_t mapped = rounded + alignment - page_bytes;
+    char *start = mmap(NULL, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED)
+        return (tc_status)fail(TC_ERROR_MEMORY, "the host has no %llu MB of memory for the mesh",
+                               (unsigned long long)(bytes >> 20));
+    char *aligned = start + (-(uintptr_t)start & (alignment - 1));
+    if (aligned > start) munmap(start, (size_t)(aligned - start));
+    if (aligned + rounded < start + mapped) munmap(aligned + rounded, (size_t)(start + mapped - aligned) - rounded);
+    if (alignment == huge_page_bytes) madvise(aligned, rounded, MADV_HUGEPAGE);
+    *block = (host_block){aligned, rounded};
+    return TC_OK;
+}
+
+void host_block_release(host_block *block) {
+    if (block->memory) munmap(block->memory, block->bytes);
+    *block = (host_block){0};
+}
+
+tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, bool normals) {
+    if (vertex_count > UINT32_MAX)
+        return (tc_status)fail(TC_ERROR_LIMIT,
+                               "the surface has %llu vertices, and indices of 32 bits reach %lu: extract parts of the "
+                               "volume, or reduce it",
+                               (unsigned long long)vertex_count, (unsigned long)UINT32_MAX);
+    tc_status status = host_block_reserve(&mesh->positions, vertex_count * MESH_BYTES_PER_VERTEX);
+    if (!status && normals) status = host_block_reserve(&mesh->normals, vertex_count * MESH_BYTES_PER_VERTEX);
+    if (!status) status = host_block_reserve(&mesh->triangles, triangle_count * MESH_BYTES_PER_TRIANGLE);
+    if (status) return status;
+    mesh->vertex_count = vertex_count;
+    mesh->triangle_count = triangle_count;
+    mesh->has_normals = normals;
+    return TC_OK;
+}
+
+void mesh_clear(tc_mesh *mesh) {
+    mesh->vertex_count = mesh->triangle_count = mesh->active_cell_count = 0;
+    mesh->has_normals = false;
+    mesh->slab_count = 0;
+    mesh->timings = (tc_timings){0};
+}
+
+tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
+    if (!mesh || !data || data->struct_size < sizeof *data)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh and data with its struct_size set");
+    *data = (tc_mesh_data){.struct_size = data->struct_size,
+                           .vertex_count = mesh->vertex_count,
+                           .triangle_count = mesh->triangle_count,
+                           .active_cell_count = mesh->active_cell_count,
+                           .positions = mesh->positions.memory,
+                           .normals = mesh->has_normals ? mesh->normals.memory : NULL,
+                           .triangles = mesh->triangles.memory,
+                           .slab_count = mesh->slab_count,
+                           .timings = mesh->timings};
+    return TC_OK;
+}
+
+void tc_mesh_destroy(tc_mesh *mesh) {
+    if (!mesh) return;
+    host_block_release(&mesh->positions);
+    host_block_release(&mesh->normals);
+    host_block_release(&mesh->triangles);
+    free(mesh);
+}

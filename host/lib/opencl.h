@@ -1,0 +1,57 @@
+/*
+ * opencl.h - the OpenCL library, loaded when first needed: without one the reference engine still works
+ */
+#ifndef OPENCL_H
+#define OPENCL_H
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include "tetracubes.h"
+
+#define OPENCL_FUNCTIONS(X)                                                                                            \
+    X(GetPlatformIDs)                                                                                                  \
+    X(GetPlatformInfo)                                                                                                 \
+    X(GetDeviceIDs)                                                                                                    \
+    X(GetDeviceInfo)                                                                                                   \
+    X(CreateContext)                                                                                                   \
+    X(RetainContext)                                                                                                   \
+    X(ReleaseContext)                                                                                                  \
+    X(CreateCommandQueue)                                                                                              \
+    X(RetainCommandQueue)                                                                                              \
+    X(ReleaseCommandQueue)                                                                                             \
+    X(GetCommandQueueInfo)                                                                                             \
+    X(CreateProgramWithSource)                                                                                         \
+    X(BuildProgram)                                                                                                    \
+    X(GetProgramBuildInfo)                                                                                             \
+    X(ReleaseProgram)                                                                                                  \
+    X(CreateKernel)                                                                                                    \
+    X(ReleaseKernel)                                                                                                   \
+    X(SetKernelArg)                                                                                                    \
+    X(CreateBuffer)                                                                                                    \
+    X(ReleaseMemObject)                                                                                                \
+    X(EnqueueReadBuffer)                                                                                               \
+    X(EnqueueWriteBuffer)                                                                                              \
+    X(EnqueueFillBuffer)                                                                                               \
+    X(EnqueueMapBuffer)                                                                                                \
+    X(EnqueueUnmapMemObject)                                                                                           \
+    X(EnqueueNDRangeKernel)                                                                                            \
+    X(Flush)                                                                                                           \
+    X(Finish)
+
+struct opencl_functions {
+#define X(name) __typeof__(cl##name) *name;
+    OPENCL_FUNCTIONS(X)
+#undef X
+};
+
+/* cl->CreateBuffer is clCreateBuffer; set by opencl_load. */
+extern const struct opencl_functions *cl;
+
+/* Loads the ICD loader once per process. TC_ERROR_DEVICE, with what to install, where there is none. */
+tc_status opencl_load(void);
+
+/* Records "WHAT failed: CL_...": TC_ERROR_MEMORY for allocation failures, else TC_ERROR_DEVICE. */
+tc_status opencl_fail(const char *what, cl_int error);
+
+#endif

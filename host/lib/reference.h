@@ -1,0 +1,22 @@
+/*
+ * reference.h - the scalar reference: plain loops over bricks, cubes, five tetrahedra and 16-case tables
+ *
+ * It makes the same bytes as the kernels and shares with them only the tables, the grid and the mesh.
+ */
+#ifndef REFERENCE_H
+#define REFERENCE_H
+
+#include "grid.h"
+#include "mesh.h"
+
+/* Counts only. counts->struct_size is left alone. */
+tc_status reference_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+
+/* Fills the mesh; on failure it is in no defined state and to be cleared. */
+tc_status reference_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+/* Makes the positions and normals alone of a mesh that is already allocated, for devices that cannot (u32, i32 and f64
+ * samples without fp64). */
+tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+#endif

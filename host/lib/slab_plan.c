@@ -1,0 +1,129 @@
+#include "slab_plan.h"
+
+#include "failure.h"
+#include "slab.h"
+
+/* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan word counts to 2^30. */
+static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
+
+static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
+
+uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index) { return slab_index * plan->slab_layers * BRICK_PLANES; }
+
+uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
+    return (uint32_t)min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES, (uint64_t)grid->dims[2]);
+}
+
+uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index) {
+    uint32_t z0 = slab_begin(plan, slab_index);
+    return plan->samples_whole || z0 == 0 ? 0 : z0 - 1;
+}
+
+uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
+    uint64_t nz = (uint64_t)grid->dims[2];
+    return (uint32_t)(plan->samples_whole ? nz : min_u64(slab_end(plan, grid, slab_index) + 2ull, nz));
+}
+
+uint32_t plan_window_layers(const slab_plan *plan) {
+    return plan->words_whole ? plan->layer_count : (uint32_t)min_u64(plan->slab_layers + 1ull, plan->layer_count);
+}
+
+uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid) {
+    return (uint64_t)plan->words_x * (uint64_t)grid->dims[1];
+}
+
+uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->words_x * plan->bricks_y; }
+
+/* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
+ * samples. Never so large that groups run out of tiles. */
+static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
+    uint64_t wanted = (context->options.tile_bricks + plan->words_x - 1ull) / plan->words_x;
+    if (!context->options.tile_bricks)
+        wanted = context->options.work_items == 1 ? rows / (16ull * context->options.work_groups) : 8 / plan->words_x;
+    if (wanted == 0) wanted = 1;
+    plan->tile_rows = (uint32_t)min_u64(wanted, plan->bricks_y);
+    plan->tile_layers = (uint32_t)min_u64(wanted / plan->bricks_y, plan->slab_layers);
+    if (plan->tile_layers == 0) plan->tile_layers = 1;
+    plan->slab_tiles = ((plan->bricks_y + plan->tile_rows - 1) / plan->tile_rows) *
+                       ((plan->slab_layers + plan->tile_layers - 1) / plan->tile_layers);
+    plan->scratch_words =
+        (uint32_t)min_u64(plan->tile_rows * (uint64_t)BRICK_ROWS + 1 + plan->tile_layers * (uint64_t)BRICK_PLANES,
+                          (uint64_t)grid->dims[1] + plan->tile_layers * (uint64_t)BRICK_PLANES + 1) *
+        plan->words_x;
+}
+
+static uint64_t samples_bytes(const slab_plan *plan, const tc_grid *grid) {
+    uint64_t planes = plan->samples_whole ? (uint64_t)grid->dims[2]
+                                          : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
+    return planes * (uint64_t)(grid->dims[0] * grid->dims[1]) * tc_type_bytes(grid->type);
+}
+
+static bool can_miss_samples(const tc_grid *grid) {
+    return grid->has_nodata || grid->type == TC_F32 || grid->type == TC_F64;
+}
+
+/* Bytes of everything but the mesh; *largest: of the largest buffer. */
+static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
+    uint64_t layers = plan_window_layers(plan);
+    uint64_t words = 8 * BRICK_PLANES * layers * plan_words_per_plane(plan, grid);
+    uint64_t samples = samples_bytes(plan, grid);
+    uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + 2ull * plan->slab_tiles);
+    uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
+    *largest = samples > words ? samples : words;
+    return samples + words * 2 + words / 4 + (can_miss_samples(grid) ? words : 0) +
+           16 * layers * plan_bricks_per_layer(plan) + state + scratch;
+}
+
+static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,
+                      uint64_t budget, uint64_t *bytes) {
+    uint64_t largest;
+    plan->slab_layers = slab_layers;
+    plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
+    tiles_shape(context, grid, plan);
+    *bytes = plan_bytes(context, grid, plan, &largest);
+    return *bytes <= budget && largest <= context->info.max_buffer_bytes;
+}
+
+/* Most layers per slab that fit, by bisection; 0 where not even one does. */
+static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
+                           uint64_t budget) {
+    uint64_t bytes;
+    uint32_t low = 0, high = most;
+    while (low < high) {
+        uint32_t middle = high - (high - low) / 2;
+        if (plan_fits(context, grid, plan, middle, budget, &bytes))
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
+    uint64_t budget = context->options.max_memory_bytes;
+    if (!budget) budget = context->info.shares_host_memory ? UINT64_MAX : context->info.global_memory_bytes;
+    *plan = (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
+                        .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
+                        .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
+    if (layer_samples > scan_samples)
+        return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
+                               (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
+    uint32_t most = (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
+    plan->samples_whole = plan->words_whole = true;
+    if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
+        plan->samples_whole = false;
+        if (!plan_fits(context, grid, plan, 1, budget / 2, &bytes)) plan->words_whole = false;
+        uint32_t layers = layers_fit(context, grid, plan, most, budget / 2);
+        if (layers == 0) {
+            plan_fits(context, grid, plan, 1, budget, &bytes);
+            return (tc_status)fail(TC_ERROR_MEMORY, "a layer of this grid needs %llu bytes of device memory beside its "
+                                                    "mesh; allow %llu or more",
+                                   (unsigned long long)bytes, (unsigned long long)bytes * 2);
+        }
+        plan_fits(context, grid, plan, layers, budget, &bytes);
+    }
+    plan->mesh_bytes = budget - bytes;
+    return TC_OK;
+}

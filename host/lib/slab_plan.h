@@ -1,0 +1,37 @@
+/*
+ * slab_plan.h - how a grid is cut into slabs and tiles so that counts and buffers fit the device
+ *
+ * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
+ * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a slab
+ * with one plane before and two after (gradients and missing cells reach that far), sign words with one layer after.
+ */
+#ifndef SLAB_PLAN_H
+#define SLAB_PLAN_H
+
+#include "context.h"
+#include "grid.h"
+
+typedef struct slab_plan {
+    uint32_t words_x, bricks_y, layer_count;
+    uint32_t slab_layers, slab_count;
+    bool samples_whole, words_whole;
+    uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
+    uint32_t scratch_words;                      /* per group */
+    uint64_t mesh_bytes;                         /* bound on a window of the mesh */
+} slab_plan;
+
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+
+/* Planes z0 <= z < z1 of a slab. */
+uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
+
+/* Planes of samples that a slab needs. */
+uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
+
+uint32_t plan_window_layers(const slab_plan *plan);
+uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid);
+uint64_t plan_bricks_per_layer(const slab_plan *plan);
+
+#endif

@@ -1,0 +1,179 @@
+/*
+ * The device path as the diagram of the design has it: classify and scan, totals, allocate, emit.
+ */
+#include "structured.h"
+
+#include "failure.h"
+#include "inside.h"
+#include "reference.h"
+#include "structured_run.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void base_fill(run *r, inside_range inside, double isovalue) {
+    const tc_grid *grid = r->grid;
+    slab *s = &r->base;
+    s->inside_low = inside.low;
+    s->inside_span = inside.span;
+    s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
+    s->nx = (uint32_t)grid->dims[0];
+    s->ny = (uint32_t)grid->dims[1];
+    s->nz = (uint32_t)grid->dims[2];
+    s->words_x = r->plan->words_x;
+    s->bricks_y = r->plan->bricks_y;
+    s->parity = grid_parity(grid);
+    for (int axis = 0; axis < 3; axis++) s->first[axis] = (int32_t)grid->first[axis];
+    s->tile_rows = r->plan->tile_rows;
+    s->tile_layers = r->plan->tile_layers;
+    s->spin_limit = r->context->options.spin_limit;
+    s->isovalue32 = (float)isovalue;
+    memcpy(&s->isovalue64, &isovalue, sizeof isovalue);
+    memcpy(s->matrix, grid->matrix, sizeof s->matrix);
+    memcpy(s->normal_matrix, grid->normal_matrix, sizeof s->normal_matrix);
+}
+
+static uint64_t state_bytes(const run *r) {
+    return 4ull * r->plan->slab_count * (STATE_WORDS + 2ull * r->plan->slab_tiles);
+}
+
+static tc_status workspace_reserve(run *r) {
+    workspace *w = &r->context->work;
+    const slab_plan *plan = r->plan;
+    uint64_t layers = plan_window_layers(plan);
+    uint64_t words = layers * BRICK_PLANES * plan_words_per_plane(plan, r->grid);
+    uint64_t bricks = layers * plan_bricks_per_layer(plan);
+    const struct {
+        device_buffer *buffer;
+        uint64_t bytes;
+        const char *name;
+    } buffers[] = {{&w->words, 8 * words, "sign words"},
+                   {&w->offsets, 8 * words, "vertex offsets"},
+                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
+                   {&w->bases, 8 * bricks, "brick offsets"},
+                   {&w->masks, 4 * bricks, "brick masks"},
+                   {&w->active, 4 * bricks, "active bricks"},
+                   {&w->state, state_bytes(r), "the scan"},
+                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
+    tc_status status = TC_OK;
+    for (size_t n = 0; n < sizeof buffers / sizeof *buffers && !status; n++)
+        status = buffer_reserve(r->context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
+    return status;
+}
+
+static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside) {
+    *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
+    base_fill(r, inside, options->isovalue);
+    tc_status status = program_get(r->context, grid->type, grid->device->missing, r->normals, &r->program);
+    if (!status) status = workspace_reserve(r);
+    if (!status) status = slab_store_allocate(r);
+    if (status) return status;
+    r->heads = calloc(r->plan->slab_count, STATE_WORDS * sizeof *r->heads);
+    return r->heads ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
+}
+
+static void run_end(run *r) {
+    cl->Finish(r->context->queue);
+    if (!r->plan->samples_whole && r->context->info.shares_host_memory)
+        buffer_release(r->context, &r->context->work.samples);
+    slab_store_release(&r->store);
+    free(r->heads);
+}
+
+/* ---------------------------------------------------------------------------------------------------- classification */
+
+static tc_status slab_classify(run *r, uint32_t slab_index) {
+    workspace *w = &r->context->work;
+    slab s;
+    tc_status status = slab_prepare(r, slab_index, &s);
+    if (status) return status;
+    const cl_uint scratch_words = r->plan->scratch_words;
+    const kernel_argument arguments[] = {ARGUMENT(s), ARGUMENT(r->samples->memory), ARGUMENT(w->cells.memory),
+                                         ARGUMENT(w->words.memory), ARGUMENT(w->offsets.memory),
+                                         ARGUMENT(w->triangle_offsets.memory), ARGUMENT(w->bases.memory),
+                                         ARGUMENT(w->masks.memory), ARGUMENT(w->active.memory),
+                                         ARGUMENT(w->state.memory), ARGUMENT(w->scratch.memory),
+                                         ARGUMENT(scratch_words)};
+    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
+    status = kernel_launch(r, r->program->classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments, 1,
+                           &global, &local);
+    return status ? status : slab_save(r, slab_index);
+}
+
+/* The one point where the host waits before the mesh can be allocated. */
+static tc_status totals_read(run *r) {
+    uint32_t slabs = r->plan->slab_count;
+    cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.state.memory, CL_TRUE, 0,
+                                         slabs * STATE_WORDS * sizeof *r->heads, r->heads, 0, NULL, NULL);
+    if (error) return opencl_fail("reading the totals of kernel classify", error);
+    r->vertex_count = r->triangle_count = r->active_cell_count = 0;
+    for (uint32_t n = 0; n < slabs; n++) {
+        const uint32_t *head = r->heads + n * STATE_WORDS;
+        r->vertex_count += head[STATE_VERTICES];
+        r->triangle_count += head[STATE_TRIANGLES];
+        r->active_cell_count += head[STATE_ACTIVE_CELLS];
+        if (head[STATE_NONFINITE]) r->grid->device->missing = true;
+    }
+    return TC_OK;
+}
+
+static tc_status slabs_classify(run *r) {
+    const cl_uint zero = 0;
+    cl_int error = cl->EnqueueFillBuffer(r->context->queue, r->context->work.state.memory, &zero, sizeof zero, 0,
+                                         state_bytes(r), 0, NULL, NULL);
+    if (error) return opencl_fail("clearing the scan", error);
+    tc_status status = TC_OK;
+    for (uint32_t n = 0; n < r->plan->slab_count && !status; n++) {
+        status = slab_classify(r, n);
+        if (!status) status = context_progress(r->context, "classify", (n + 1.0) / r->plan->slab_count);
+    }
+    return status ? status : totals_read(r);
+}
+
+/* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with missing
+ * cells, and remembered as such. */
+static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside) {
+    tc_status status = run_begin(r, grid, options, inside);
+    if (status) return status;
+    bool missing = grid->device->missing;
+    status = slabs_classify(r);
+    if (status || grid->device->missing == missing) return status;
+    run_end(r);
+    status = run_begin(r, grid, options, inside);
+    return status ? status : slabs_classify(r);
+}
+
+/* -------------------------------------------------------------------------------------------------------- extraction */
+
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    inside_range inside = inside_range_of(grid->type, options->isovalue);
+    double start = clock_ms();
+    run r;
+    if (inside.uniform) return TC_OK;
+    tc_status status = classify(&r, grid, options, inside);
+    counts->vertex_count = r.vertex_count;
+    counts->triangle_count = r.triangle_count;
+    counts->active_cell_count = r.active_cell_count;
+    counts->classify_ms = clock_ms() - start;
+    run_end(&r);
+    return status;
+}
+
+tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    inside_range inside = inside_range_of(grid->type, options->isovalue);
+    double start = clock_ms(), classified;
+    run r;
+    if (inside.uniform) return TC_OK;
+    tc_status status = classify(&r, grid, options, inside);
+    classified = clock_ms();
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
+    if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
+    mesh->active_cell_count = r.active_cell_count;
+    mesh->slab_count = r.plan->slab_count;
+    mesh->timings.classify_ms = classified - start;
+    mesh->timings.total_ms = clock_ms() - start - mesh->timings.readback_ms;
+    mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    run_end(&r);
+    return status;
+}

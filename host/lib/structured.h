@@ -1,0 +1,18 @@
+/*
+ * structured.h - the device path over structured grids: upload, classify, totals, allocate, emit
+ */
+#ifndef STRUCTURED_H
+#define STRUCTURED_H
+
+#include "grid.h"
+#include "mesh.h"
+
+/* Plans slabs and tiles and, where the samples fit the device whole, makes them available to it. */
+tc_status structured_grid_create(tc_grid *grid);
+void structured_grid_destroy(tc_grid *grid);
+
+/* As tc_count and tc_extract, with arguments already checked. */
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+#endif

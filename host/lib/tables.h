@@ -1,0 +1,65 @@
+/*
+ * tables.h - the split of a cube into five tetrahedra, the 16 cases of a tetrahedron, and what follows from them
+ *
+ * Cube corners are numbered c = x + 2 y + 4 z:          6-------7
+ *                                                      /|      /|      z  y
+ *                                                     4-------5 |      | /
+ *                                                     | 2-----|-3      |/
+ *                                                     |/      |/       0---x
+ *                                                     0-------1
+ *
+ * An even cube (i + j + k even) has the central tetrahedron {0, 3, 5, 6} and one at each of the corners 1, 2, 4, 7; an
+ * odd cube is its mirror in x. Every tetrahedron (v0, v1, v2, v3) is listed so that (v1 - v0) x (v2 - v0) . (v3 - v0)
+ * is positive.
+ *
+ *             v3            Edges: 0 = v0 v1, 1 = v0 v2, 2 = v0 v3, 3 = v1 v2, 4 = v1 v3, 5 = v2 v3.
+ *            /|\            A case has bit n set when vn is inside. Its triangles are listed by edges and wind
+ *           / | \           counter-clockwise seen from outside.
+ *         v0--|--v2
+ *           \ | /           Source: Carneiro, Silva, Kaufman, "Tetra-Cubes" (SIBGRAPI 1996), section 5.1, which counts
+ *             v1            seven edges; there are six.
+ */
+#ifndef TABLES_H
+#define TABLES_H
+
+#include <stdint.h>
+
+enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
+
+/* Edges that a sample owns, in the order of their vertices in a mesh. */
+enum edge_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ };
+
+extern const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4]; /* [parity][tetrahedron][vertex] */
+extern const uint8_t tetrahedron_edges[6][2];                        /* [edge][end] */
+
+typedef struct tetrahedron_case {
+    uint8_t triangle_count;
+    uint8_t triangles[2][3]; /* edges */
+} tetrahedron_case;
+
+extern const tetrahedron_case tetrahedron_cases[16];
+
+/* The edge between two corners of one cube: the sample that owns it, by its offset, and its type. */
+typedef struct owned_edge {
+    uint8_t dx, dy, dz;
+    uint8_t type;
+} owned_edge;
+
+owned_edge edge_between(unsigned corner_a, unsigned corner_b);
+
+/* The 18 edges of a cube in the order in which the emit kernel numbers them: those owned by samples at x (rows (y, z),
+ * (y + 1, z), (y, z + 1), (y + 1, z + 1)), then those owned by samples at x + 1. */
+extern const owned_edge cube_edges[CUBE_EDGES];
+
+/* What all tetrahedra of a cube emit, derived from the tables above: edges are places in cube_edges. */
+typedef struct cube_case {
+    uint8_t triangle_count;
+    uint8_t edges[CUBE_TRIANGLES_MAX][3];
+    uint8_t padding;
+} cube_case; /* 32 bytes, as the emit kernel reads it */
+
+/* Fills cases[parity][pattern], bit c of pattern being corner c. mirrored: the grid's Jacobian is negative, so
+ * triangles are turned over. */
+void cube_cases_derive(cube_case cases[2][256], int mirrored);
+
+#endif

@@ -1,0 +1,203 @@
+/* layout.c - takes one scalar volume out of a stored array; see layout.h */
+#include "layout.h"
+
+#include "exit_status.h"
+#include "failure.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+size_t element_bytes(int element) {
+    static const unsigned char bytes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8};
+    return bytes[element];
+}
+
+/* The index along a component or frame axis that the request chooses. */
+static int choose(const char *path, const char *what, const char *meaning, const char *option, int64_t size, int wanted,
+                  uint64_t *index) {
+    if (wanted >= 0 && wanted < size) {
+        *index = (uint64_t)wanted;
+        return 0;
+    }
+    return fail(STATUS_INPUT, "%s: has %" PRId64 " %s%s%s%s; choose one with %s 0 to %" PRId64, path, size, what,
+                meaning ? " (" : "", meaning ? meaning : "", meaning ? ")" : "", option, size - 1);
+}
+
+/* Sizes multiplied, all checked, before any is acted on. */
+static int count_elements(const char *path, const axes *from, int element, layout *out) {
+    for (int a = 0; a < from->count; a++) {
+        if (from->size[a] < 1)
+            return fail(STATUS_INPUT, "%s: says %" PRId64 " samples along axis %d; at least 1 is needed", path,
+                        from->size[a], a + 1);
+        if (__builtin_mul_overflow(out->count, (uint64_t)from->size[a], &out->count))
+            return fail(STATUS_INPUT, "%s: its sizes multiply to more than 2^64 samples; the header is damaged", path);
+    }
+    if (__builtin_mul_overflow(out->count, element_bytes(element), &out->bytes) || out->bytes > INT64_MAX / 8)
+        return fail(STATUS_INPUT, "%s: its sizes ask for more than 2^60 bytes; the header is damaged", path);
+    return 0;
+}
+
+int layout_make(const char *path, const axes *from, int element, const read_request *request, layout *out) {
+    *out = (layout){.element = element, .count = 1, .dims = {1, 1, 1}, .slope = 1};
+    int status = count_elements(path, from, element, out), space = 0, chosen[3] = {0};
+    uint64_t stride = 1;
+    for (int a = 0; a < from->count && !status; stride *= (uint64_t)from->size[a++]) {
+        uint64_t index = 0;
+        if (from->role[a] == AXIS_SPACE) {
+            out->dims[space] = from->size[a];
+            out->stride[space++] = stride;
+            continue;
+        }
+        if (from->size[a] == 1) continue;
+        if (chosen[from->role[a]]++)
+            return fail(STATUS_INPUT, "%s: has more axes than three of space, one of components and one of frames",
+                        path);
+        if (from->role[a] == AXIS_COMPONENT)
+            status = choose(path, "values per sample", from->meaning, "--component", from->size[a], request->component,
+                            &index);
+        else
+            status = choose(path, "frames", NULL, "--frame", from->size[a], request->frame, &index);
+        out->offset += index * stride;
+    }
+    if (!status && request->component > 0 && !chosen[AXIS_COMPONENT])
+        status = fail(STATUS_INPUT, "%s: has one value per sample; leave out --component", path);
+    if (!status && request->frame > 0 && !chosen[AXIS_FRAME])
+        status = fail(STATUS_INPUT, "%s: has one frame; leave out --frame", path);
+    return status;
+}
+
+tc_type layout_type(const layout *l) { return l->scaled || l->element > TC_F64 ? TC_F64 : (tc_type)l->element; }
+
+int layout_is_plain(const layout *l, const unsigned char *stored) {
+    size_t bytes = element_bytes(l->element);
+    return !l->scaled && l->element <= TC_F64 && (!l->swapped || bytes == 1) &&
+           (l->dims[0] == 1 || l->stride[0] == 1) && (l->dims[1] == 1 || l->stride[1] == (uint64_t)l->dims[0]) &&
+           (l->dims[2] == 1 || l->stride[2] == (uint64_t)l->dims[0] * (uint64_t)l->dims[1]) &&
+           (uintptr_t)stored % bytes == 0;
+}
+
+/* Copies n elements of the given size, in this machine's byte order. */
+#define COPY_ELEMENTS(type, swap)                                                                                      \
+    do {                                                                                                               \
+        for (int64_t i = 0; i < n; i++, from += step) {                                                                \
+            type value;                                                                                                \
+            memcpy(&value, from, sizeof value);                                                                        \
+            value = swapped ? swap(value) : value;                                                                     \
+            memcpy(to + (size_t)i * sizeof value, &value, sizeof value);                                               \
+        }                                                                                                              \
+    } while (0)
+
+static void copy_elements(unsigned char *to, const unsigned char *from, int64_t n, size_t step, size_t bytes,
+                          int swapped) {
+    switch (bytes) {
+    case 1:
+        for (int64_t i = 0; i < n; i++) to[i] = from[(size_t)i * step];
+        break;
+    case 2:
+        COPY_ELEMENTS(uint16_t, __builtin_bswap16);
+        break;
+    case 4:
+        COPY_ELEMENTS(uint32_t, __builtin_bswap32);
+        break;
+    default:
+        COPY_ELEMENTS(uint64_t, __builtin_bswap64);
+        break;
+    }
+}
+
+/* The element as a double; *exact is cleared where a 64-bit integer has none. */
+static double element_value(const unsigned char *from, int element, int swapped, int *exact) {
+    union {
+        uint8_t u8;
+        int8_t i8;
+        uint16_t u16;
+        int16_t i16;
+        uint32_t u32;
+        int32_t i32;
+        uint64_t u64;
+        int64_t i64;
+        float f32;
+        double f64;
+        unsigned char bytes[8];
+    } v;
+    size_t bytes = element_bytes(element);
+    copy_elements(v.bytes, from, 1, bytes, bytes, swapped);
+    double value;
+    switch (element) {
+    case TC_U8:
+        return v.u8;
+    case TC_I8:
+        return v.i8;
+    case TC_U16:
+        return v.u16;
+    case TC_I16:
+        return v.i16;
+    case TC_U32:
+        return v.u32;
+    case TC_I32:
+        return v.i32;
+    case TC_F32:
+        return (double)v.f32;
+    case TC_F64:
+        return v.f64;
+    case ELEMENT_I64: /* 2^63 itself, to which large values round, would overflow on the way back */
+        value = (double)v.i64;
+        if (value >= 0x1p63 || (int64_t)value != v.i64) *exact = 0;
+        return value;
+    default:
+        value = (double)v.u64;
+        if (value >= 0x1p64 || (uint64_t)value != v.u64) *exact = 0;
+        return value;
+    }
+}
+
+static int convert_elements(double *to, const unsigned char *from, int64_t n, size_t step, const layout *l) {
+    int exact = 1;
+    for (int64_t i = 0; i < n; i++, from += step) {
+        double value = element_value(from, l->element, l->swapped, &exact);
+        to[i] = l->scaled ? l->slope * value + l->intercept : value;
+    }
+    return exact;
+}
+
+int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples) {
+    size_t bytes = element_bytes(l->element), out_bytes = element_bytes(layout_type(l));
+    int converts = l->scaled || l->element > TC_F64;
+    unsigned char *to = samples;
+    for (int64_t z = 0; z < l->dims[2]; z++)
+        for (int64_t y = 0; y < l->dims[1]; y++, to += (size_t)l->dims[0] * out_bytes) {
+            const unsigned char *from =
+                stored + (l->offset + (uint64_t)z * l->stride[2] + (uint64_t)y * l->stride[1]) * bytes;
+            size_t step = (size_t)l->stride[0] * bytes;
+            if (!converts)
+                copy_elements(to, from, l->dims[0], step, bytes, l->swapped);
+            else if (!convert_elements((double *)(void *)to, from, l->dims[0], step, l))
+                return fail(STATUS_INPUT,
+                            "%s: has 64-bit integers that a double cannot hold exactly; convert it to another type",
+                            path);
+        }
+    return 0;
+}
+
+void *samples_allocate(uint64_t bytes) {
+    void *memory = NULL;
+    return bytes <= SIZE_MAX / 2 && posix_memalign(&memory, 4096, bytes ? (size_t)bytes : 1) == 0 ? memory : NULL;
+}
+
+int matrix_check(const char *path, double matrix[3][4]) {
+    double(*m)[4] = matrix;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            if (!isfinite(m[r][c]))
+                return fail(STATUS_INPUT, "%s: its spacing, directions or origin are not finite numbers; correct them",
+                            path);
+    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    if (determinant == 0 || !isfinite(determinant))
+        return fail(STATUS_INPUT, "%s: its spacing and directions do not span space (determinant %g); correct them",
+                    path, determinant);
+    return 0;
+}

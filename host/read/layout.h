@@ -1,0 +1,62 @@
+/*
+ * layout.h - how a file stores its samples, and how one scalar volume is taken out of it
+ *
+ * A stored array has up to 16 axes, fastest first; at most three are of space, the others hold several values per
+ * sample (components) or several volumes (frames), of which the user chooses one. What remains is a strided view, and
+ * every format is gathered by the same loop: byte order, 64-bit integers and scaling included.
+ */
+#ifndef LAYOUT_H
+#define LAYOUT_H
+
+#include "volume.h"
+
+enum { MAX_AXES = 16 };
+
+/* Stored sample types: those of tc_type by the same number, and two that become f64. */
+enum element { ELEMENT_I64 = TC_F64 + 1, ELEMENT_U64 };
+
+/* Bytes of one element. */
+size_t element_bytes(int element);
+
+enum axis_role { AXIS_SPACE, AXIS_COMPONENT, AXIS_FRAME };
+
+typedef struct axes {
+    int count;
+    int64_t size[MAX_AXES]; /* each at least 1 */
+    enum axis_role role[MAX_AXES];
+    const char *meaning; /* of the components, "red, green, blue"; NULL where unknown */
+} axes;
+
+typedef struct layout {
+    int element;
+    int swapped;        /* the other byte order than this machine's */
+    uint64_t count;     /* elements stored */
+    uint64_t bytes;     /* of all of them */
+    int64_t dims[3];    /* of the volume taken out */
+    uint64_t stride[3]; /* elements from one sample to the next */
+    uint64_t offset;    /* element of the first sample */
+    int scaled;         /* slope * value + intercept, in double */
+    double slope;
+    double intercept;
+} layout;
+
+/* Fills *out from the axes and the element; overflow and the choice of component and frame are checked. */
+int layout_make(const char *path, const axes *from, int element, const read_request *request, layout *out);
+
+/* The type of the samples taken out. */
+tc_type layout_type(const layout *l);
+
+/* Whether the samples can be used where they are, given the address of the stored array. */
+int layout_is_plain(const layout *l, const unsigned char *stored);
+
+/* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of layout_type. STATUS_INPUT where a
+ * 64-bit integer has no exact double. */
+int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
+
+/* Memory for samples, page-aligned so that devices can use it in place, to be freed; NULL where there is none. */
+void *samples_allocate(uint64_t bytes);
+
+/* STATUS_INPUT unless the matrix is finite and invertible. */
+int matrix_check(const char *path, double matrix[3][4]);
+
+#endif

@@ -1,0 +1,43 @@
+/* mapping.c - whole files mapped into memory; see mapping.h */
+#include "mapping.h"
+
+#include "exit_status.h"
+#include "failure.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+int mapping_open(const char *path, mapping *m) {
+    *m = (mapping){0};
+    /* without O_NONBLOCK, opening a pipe would wait for its writer */
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+
+    int status = 0;
+    struct stat about;
+    if (fstat(file, &about)) {
+        status = fail(STATUS_INPUT, "%s: cannot be read: %s", path, strerror(errno));
+    } else if (!S_ISREG(about.st_mode)) {
+        status = fail(STATUS_INPUT, "%s: is not a regular file; name a volume file", path);
+    } else if ((uintmax_t)about.st_size > SIZE_MAX / 2) {
+        status = fail(STATUS_INPUT, "%s: is larger than this machine can address", path);
+    } else if (about.st_size > 0) {
+        void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
+        if (bytes == MAP_FAILED)
+            status = fail(STATUS_INPUT, "%s: cannot be mapped into memory: %s", path, strerror(errno));
+        else
+            *m = (mapping){bytes, (size_t)about.st_size};
+    }
+    close(file);
+    return status;
+}
+
+void mapping_close(mapping *m) {
+    if (m->bytes) munmap((void *)(uintptr_t)m->bytes, m->size);
+    *m = (mapping){0};
+}

@@ -1,0 +1,244 @@
+/* source.c - brings the samples that a header describes; see source.h */
+#include "source.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "mapping.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the data starts in a mapped file, after skips. */
+static int find_start(const source *from, const char *path, const mapping *m, uint64_t bytes, uint64_t *start) {
+    uint64_t at = from->files.count ? 0 : from->start;
+    if (from->byte_skip == SKIP_FROM_END && from->encoding == ENCODING_RAW) {
+        if (m->size < at || m->size - at < bytes)
+            return fail(STATUS_INPUT,
+                        "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64
+                        "; the header is wrong or the file is cut",
+                        path, m->size < at ? 0 : m->size - at, bytes);
+        *start = m->size - bytes;
+        return 0;
+    }
+    if (from->byte_skip < 0)
+        return fail(STATUS_INPUT,
+                    "%s: asks to skip %" PRId64 " bytes; only -1 with raw data, or 0 and more, is possible",
+                    from->header_path, from->byte_skip);
+    for (int64_t line = 0; line < from->line_skip; line++) {
+        const unsigned char *end = at < m->size ? memchr(m->bytes + at, '\n', m->size - at) : NULL;
+        if (!end)
+            return fail(STATUS_INPUT, "%s: its header asks to skip %" PRId64 " lines, but it has only %" PRId64, path,
+                        from->line_skip, line);
+        at = (uint64_t)(end - m->bytes) + 1;
+    }
+    if (__builtin_add_overflow(at, (uint64_t)from->byte_skip, &at) || at > m->size)
+        return fail(STATUS_INPUT,
+                    "%s: is %zu bytes long, but its data should start behind that; the header is wrong or "
+                    "the file is cut",
+                    path, m->size);
+    *start = at;
+    return 0;
+}
+
+/* Whether `available` stored bytes can hold what the header declares for this file. */
+static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element) {
+    uint64_t needed;
+    switch (from->encoding) {
+    case ENCODING_RAW:
+        if (available >= bytes) return 0;
+        return fail(STATUS_INPUT,
+                    "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64
+                    "; the header is wrong or the file is cut",
+                    path, available, bytes);
+    case ENCODING_TEXT: /* a digit each and a space between */
+        if (available >= 2 * (bytes / element) - 1) return 0;
+        return fail(STATUS_INPUT,
+                    "%s: holds %" PRIu64 " characters of text, too few for %" PRIu64
+                    " numbers; the header is wrong or the file is cut",
+                    path, available, bytes / element);
+    default:
+        if (__builtin_add_overflow(bytes, from->stream_skip, &needed)) needed = UINT64_MAX;
+        return unpack_check(path, from->encoding, (size_t)available, needed);
+    }
+}
+
+/* Writes one number of text as an element in this machine's byte order. Returns 0 where it is none, or out of range. */
+static int store_number(const char *word, int element, unsigned char *to) {
+    static const int64_t low[] = {0, INT8_MIN, 0, INT16_MIN, 0, INT32_MIN},
+                         high[] = {UINT8_MAX, INT8_MAX, UINT16_MAX, INT16_MAX, UINT32_MAX, INT32_MAX};
+    char *end;
+    errno = 0;
+    if (element == TC_F32 || element == TC_F64) {
+        double wide = strtod(word, &end);
+        float narrow = (float)wide;
+        memcpy(to, element == TC_F32 ? (void *)&narrow : (void *)&wide, element_bytes(element));
+        return end != word && !*end;
+    }
+    if (element == ELEMENT_U64) {
+        unsigned long long value = strtoull(word, &end, 10);
+        memcpy(to, &value, 8);
+        return end != word && !*end && !errno && *word != '-';
+    }
+    long long value = strtoll(word, &end, 10);
+    if (end == word || *end || errno) return 0;
+    if (element < TC_F32 && (value < low[element] || value > high[element])) return 0;
+    size_t bytes = element_bytes(element);
+    uint64_t bits = (uint64_t)value;
+    uint32_t bits32 = (uint32_t)bits;
+    uint16_t bits16 = (uint16_t)bits;
+    uint8_t bits8 = (uint8_t)bits;
+    memcpy(to,
+           bytes == 8   ? (void *)&bits
+           : bytes == 4 ? (void *)&bits32
+           : bytes == 2 ? (void *)&bits16
+                        : &bits8,
+           bytes);
+    return 1;
+}
+
+static int read_text(const char *path, const unsigned char *text, size_t size, int element, unsigned char *to,
+                     uint64_t count) {
+    size_t at = 0, bytes = element_bytes(element);
+    for (uint64_t i = 0; i < count; i++, to += bytes) {
+        char word[64];
+        size_t length = 0;
+        while (at < size && (isspace(text[at]) || text[at] == ',')) at++;
+        while (at < size && !isspace(text[at]) && text[at] != ',' && length < sizeof word - 1)
+            word[length++] = (char)text[at++];
+        word[length] = 0;
+        if (!length)
+            return fail(STATUS_INPUT,
+                        "%s: has %" PRIu64 " numbers of text, but its header asks for %" PRIu64
+                        "; the header is wrong or the file is cut",
+                        path, i, count);
+        if (!store_number(word, element, to))
+            return fail(STATUS_INPUT, "%s: number %" PRIu64 " of its data, '%s', is no number of its type", path, i + 1,
+                        word);
+    }
+    return 0;
+}
+
+/* Notes that a raw file holds more than was used. */
+static void notice_rest(const source *from, const char *path, uint64_t rest, volume *out) {
+    if (rest && from->encoding == ENCODING_RAW && from->byte_skip != SKIP_FROM_END && !*out->notice)
+        snprintf(out->notice, sizeof out->notice, "%.160s: its last %" PRIu64 " bytes are not used", path, rest);
+}
+
+/* Checks one file and, where `to` is given, brings its part of the stored array. */
+static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
+                     volume *out) {
+    mapping m;
+    uint64_t start;
+    int status = mapping_open(path, &m);
+    if (status) return status;
+    if ((status = find_start(from, path, &m, bytes, &start)) ||
+        (status = check_size(from, path, m.size - start, bytes, element_bytes(l->element))) || !to)
+        goto cleanup;
+    size_t available = m.size - (size_t)start;
+    if (from->encoding == ENCODING_RAW)
+        memcpy(to, m.bytes + start, (size_t)bytes);
+    else if (from->encoding == ENCODING_TEXT)
+        status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element));
+    else
+        status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes);
+    if (!status) notice_rest(from, path, available - (from->encoding == ENCODING_RAW ? bytes : 0), out);
+cleanup:
+    mapping_close(&m);
+    return status;
+}
+
+static int no_memory(const char *path, uint64_t bytes) {
+    return fail(STATUS_FAILED, "%s: needs %" PRIu64 " bytes of memory, which are not to be had; use a larger machine",
+                path, bytes);
+}
+
+/* Gathers the volume from the stored array into memory of its own. */
+static int gather(const source *from, const layout *l, const unsigned char *stored, volume *out) {
+    uint64_t bytes = 0, count = (uint64_t)l->dims[0] * (uint64_t)l->dims[1] * (uint64_t)l->dims[2];
+    if (__builtin_mul_overflow(count, element_bytes(layout_type(l)), &bytes)) bytes = UINT64_MAX;
+    void *samples = samples_allocate(bytes);
+    if (!samples) return no_memory(from->header_path, bytes);
+    int status = layout_gather(from->header_path, l, stored, samples);
+    if (status) {
+        free(samples);
+        return status;
+    }
+    out->samples = out->allocation = samples;
+    return 0;
+}
+
+/* One raw file: nothing is copied where the samples can be used as they lie. */
+static int load_raw(const source *from, const char *path, const layout *l, volume *out) {
+    mapping m;
+    uint64_t start;
+    int status = mapping_open(path, &m);
+    if (status) return status;
+    if ((status = find_start(from, path, &m, l->bytes, &start)) ||
+        (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
+        goto cleanup;
+    notice_rest(from, path, m.size - start - l->bytes, out);
+    if (layout_is_plain(l, m.bytes + start)) {
+        out->samples = m.bytes + start + l->offset * element_bytes(l->element);
+        out->mapping = (void *)(uintptr_t)m.bytes;
+        out->mapping_bytes = m.size;
+        return 0;
+    }
+    status = gather(from, l, m.bytes + start, out);
+cleanup:
+    mapping_close(&m);
+    return status;
+}
+
+/* Each of several files holds the first axes_per_file axes whole, or, where that is all axes, a run along the last. */
+static int check_file_count(const source *from) {
+    const axes *a = from->axes;
+    int64_t files = from->files.count, expected = 1;
+    if (files <= 1) return 0;
+    if (from->axes_per_file < 1 || from->axes_per_file > a->count)
+        return fail(STATUS_INPUT, "%s: says that each data file has %" PRId64 " axes; 1 to %d are possible",
+                    from->header_path, from->axes_per_file, a->count);
+    if (from->axes_per_file == a->count) {
+        if (a->size[a->count - 1] % files == 0) return 0;
+        return fail(STATUS_INPUT,
+                    "%s: names %" PRId64 " data files, among which its %" PRId64 " slices cannot be shared evenly",
+                    from->header_path, files, a->size[a->count - 1]);
+    }
+    for (int64_t i = from->axes_per_file; i < a->count; i++) expected *= a->size[i];
+    if (expected == files) return 0;
+    return fail(STATUS_INPUT, "%s: names %" PRId64 " data files, but its sizes ask for %" PRId64, from->header_path,
+                files, expected);
+}
+
+int source_load(const source *from, const layout *l, volume *out) {
+    int64_t parts = from->files.count ? from->files.count : 1;
+    int status = check_file_count(from);
+    if (status) return status;
+    for (int i = 0; i < 3; i++) out->dims[i] = l->dims[i];
+    out->type = layout_type(l);
+    if (parts == 1 && from->encoding == ENCODING_RAW)
+        return load_raw(from, from->files.count ? from->files.paths[0] : from->header_path, l, out);
+
+    uint64_t part_bytes = l->bytes / (uint64_t)parts;
+    unsigned char *stored = NULL;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t i = 0; i < parts; i++) {
+            const char *path = from->files.count ? from->files.paths[i] : from->header_path;
+            unsigned char *to = stored ? stored + (uint64_t)i * part_bytes : NULL;
+            if ((status = load_part(from, path, l, part_bytes, to, out))) goto cleanup;
+        }
+        if (!stored && !(stored = samples_allocate(l->bytes))) return no_memory(from->header_path, l->bytes);
+    }
+    if (layout_is_plain(l, stored)) {
+        out->samples = stored + l->offset * element_bytes(l->element);
+        out->allocation = stored;
+        return 0;
+    }
+    status = gather(from, l, stored, out);
+cleanup:
+    free(stored);
+    return status;
+}

@@ -1,0 +1,65 @@
+/*
+ * options.h - the command line as values
+ *
+ * One table (options.c) drives parsing, --help and suggestions; a command sees only this struct.
+ */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Bits: which commands know an option. */
+enum command_bit {
+    COMMAND_EXTRACT = 1,
+    COMMAND_INFO = 2,
+    COMMAND_DEVICES = 4,
+    COMMAND_GENERATE = 8,
+    COMMAND_SELFTEST = 16,
+};
+
+typedef struct typed_isovalue {
+    double value;  /* finite */
+    char text[48]; /* as typed */
+} typed_isovalue;
+
+typedef struct options {
+    const char *command;
+    char **operands; /* what is no option: input files, the field of generate */
+    int operand_count;
+
+    typed_isovalue *isovalues;
+    size_t isovalue_count;
+    const char *output; /* NULL where not given, as all texts */
+    const char *format;
+    const char *device;
+    int engine; /* a tc_engine */
+    int method; /* 0: tetra */
+    int has_nodata;
+    double nodata;
+    int component, frame; /* -1 where not given */
+    uint64_t max_memory;  /* 0 where not given */
+    uint64_t seed;
+
+    int64_t dims[3]; /* zeros where not given */
+    int type;        /* a tc_type, -1 where not given */
+    int big_endian;
+    uint64_t skip;
+    double spacing[3], origin[3];
+
+    uint64_t given; /* bit n: row n of the table stood on the command line */
+    int verify, check, json, count, soup, normals, quiet, help;
+} options;
+
+/* Parses what follows the command's name into *o, to be released. Returns 0 or STATUS_USAGE with its text. */
+int options_parse(enum command_bit command, const char *name, int argc, char **argv, options *o);
+void options_release(options *o);
+
+/* Nonzero where the option, e.g. "--dims", stood on the command line. */
+int options_given(const options *o, const char *name);
+
+/* The options of a command, one per line or more, as --help shows them. */
+void options_print(enum command_bit command, FILE *out);
+
+#endif

@@ -1,0 +1,28 @@
+/*
+ * progress.h - time, progress on a terminal, and Ctrl-C
+ *
+ * Interrupt and termination signals only set a flag, which stops the next step that asks; a second one ends the
+ * process at once.
+ */
+#ifndef PROGRESS_H
+#define PROGRESS_H
+
+/* Milliseconds of a clock that never goes back. */
+double now_ms(void);
+
+/* From here on signals set the flag, and progress_update prints where standard error is a terminal and not quiet. */
+void progress_begin(int quiet);
+
+/* A tc_progress: prints stage and percentage once a second has passed. Nonzero: stop. */
+int progress_update(void *user, const char *stage, double fraction);
+
+/* Clears the line, where one was printed, so that other text may follow. */
+void progress_clear(void);
+
+/* Nonzero once a signal came. */
+int progress_cancelled(void);
+
+/* 0, or STATUS_FAILED with the text that a cancelled run ends with. */
+int progress_status(void);
+
+#endif

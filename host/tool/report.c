@@ -1,0 +1,157 @@
+/* report.c - building JSON with jansson, and the text beside it; each fact is formatted in both, next to each other */
+#include "report.h"
+
+#include "exit_status.h"
+#include "failure.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ------------------------------------------------------------------------------------------------------------ JSON */
+
+json_t *report_real(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+json_t *report_reals(const double *values, int count) {
+    json_t *array = json_array();
+    for (int n = 0; array && n < count; n++) json_array_append_new(array, report_real(values[n]));
+    return array;
+}
+
+int report_digits(double value) {
+    char text[40];
+    for (int digits = 15; digits < 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) return digits;
+    }
+    return 17;
+}
+
+int report_print(json_t *object, int digits) {
+    int failed = !object || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
+    json_decref(object);
+    if (failed) return fail(STATUS_FAILED, "could not print the report: out of memory, or standard output is full");
+    putchar('\n');
+    return 0;
+}
+
+static json_t *count_json(uint64_t count) { return json_integer((json_int_t)count); }
+
+/* Milliseconds to the microsecond. */
+static json_t *ms_json(double ms) { return report_real(round(ms * 1e3) / 1e3); }
+
+static void add_topology(json_t *object, const mesh_topology *t) {
+    json_object_set_new(object, "boundary_edges", count_json(t->boundary_edges));
+    json_object_set_new(object, "nonmanifold_edges", count_json(t->nonmanifold_edges));
+    json_object_set_new(object, "nonmanifold_vertices", count_json(t->nonmanifold_vertices));
+    json_object_set_new(object, "misoriented_edges", count_json(t->misoriented_edges));
+    json_object_set_new(object, "euler_characteristic", json_integer((json_int_t)t->euler_characteristic));
+    json_object_set_new(object, "components", count_json(t->components));
+    json_object_set_new(object, "area", report_real(t->area));
+    json_object_set_new(object, "volume", report_real(t->volume));
+}
+
+static void add_mesh(json_t *object, const surface_report *s) {
+    char hash[24];
+    snprintf(hash, sizeof hash, "%016" PRIx64, s->hash);
+    json_object_set_new(object, "degenerate_triangles", count_json(s->summary.degenerate_triangles));
+    json_object_set_new(
+        object, "bounds",
+        json_pack("[o, o]", report_reals(s->summary.bounds[0], 3), report_reals(s->summary.bounds[1], 3)));
+    json_object_set_new(object, "hash", json_string(hash));
+}
+
+static json_t *surface_json(const surface_report *s) {
+    json_t *object = json_object(), *timings = json_object();
+    json_object_set_new(object, "iso", report_real(s->iso->value));
+    json_object_set_new(object, "vertices", count_json(s->vertex_count));
+    json_object_set_new(object, "triangles", count_json(s->triangle_count));
+    json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
+    if (s->has_mesh) add_mesh(object, s);
+    json_object_set_new(timings, "classify", ms_json(s->classify_ms));
+    if (s->has_mesh) {
+        json_object_set_new(timings, "emit", ms_json(s->emit_ms));
+        json_object_set_new(timings, "readback", ms_json(s->readback_ms));
+    }
+    json_object_set_new(object, "timings_ms", timings);
+    if (s->has_topology) add_topology(object, &s->topology);
+    if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
+    return object;
+}
+
+static uint64_t cell_count(const volume *v) {
+    return (uint64_t)(v->dims[0] - 1) * (uint64_t)(v->dims[1] - 1) * (uint64_t)(v->dims[2] - 1);
+}
+
+static json_t *timings_json(const extract_report *r) {
+    return json_pack("{s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "upload", ms_json(r->upload_ms), "write",
+                     ms_json(r->write_ms), "total", ms_json(r->total_ms));
+}
+
+int report_extract_json(const extract_report *r) {
+    const int64_t *dims = r->v->dims;
+    int digits = 15;
+    json_t *surfaces = json_array(), *object = json_object();
+    for (size_t n = 0; n < r->surface_count; n++) {
+        int needed = report_digits(r->surfaces[n].iso->value);
+        if (needed > digits) digits = needed;
+        json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
+    }
+    json_object_set_new(object, "input", json_string(r->o->operands[0]));
+    json_object_set_new(object, "device", r->device[0] ? json_string(r->device) : json_null());
+    json_object_set_new(object, "engine", json_string(r->o->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
+    json_object_set_new(object, "method", json_string("tetra"));
+    json_object_set_new(object, "dims",
+                        json_pack("[I, I, I]", (json_int_t)dims[0], (json_int_t)dims[1], (json_int_t)dims[2]));
+    json_object_set_new(object, "cells", count_json(cell_count(r->v)));
+    json_object_set_new(object, "tetrahedra", count_json(5 * cell_count(r->v)));
+    json_object_set_new(object, "timings_ms", timings_json(r));
+    json_object_set_new(object, "surfaces", surfaces);
+    return report_print(object, digits);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ text */
+
+static void topology_text(const mesh_topology *t) {
+    printf("  check       %s, %s: %" PRIu64 " boundary edges, %" PRIu64 " non-manifold edges, %" PRIu64
+           " non-manifold vertices, %" PRIu64 " misoriented edges\n",
+           t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
+           t->boundary_edges ? "open" : "closed", t->boundary_edges, t->nonmanifold_edges, t->nonmanifold_vertices,
+           t->misoriented_edges);
+    printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g, volume %.7g\n",
+           t->euler_characteristic, t->components, t->area, t->volume);
+}
+
+static void surface_text(const surface_report *s) {
+    const mesh_summary *m = &s->summary;
+    printf("isovalue %s\n", s->iso->text);
+    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles", s->vertex_count, s->triangle_count);
+    if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
+    printf(", through %" PRIu64 " cells\n", s->active_cell_count);
+    if (s->has_mesh) {
+        printf("  bounds      %.7g %.7g %.7g to %.7g %.7g %.7g\n", m->bounds[0][0], m->bounds[0][1], m->bounds[0][2],
+               m->bounds[1][0], m->bounds[1][1], m->bounds[1][2]);
+        printf("  hash        %016" PRIx64 "\n", s->hash);
+        printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
+               s->readback_ms);
+    } else {
+        printf("  time        classify %.2f ms", s->classify_ms);
+    }
+    if (s->slab_count > 1) printf(", in %" PRIu32 " slabs", s->slab_count);
+    printf("\n");
+    if (s->has_topology) topology_text(&s->topology);
+    if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
+    if (s->path) printf("  written     %s\n", s->path);
+}
+
+void report_extract_text(const extract_report *r) {
+    const int64_t *dims = r->v->dims;
+    printf("%s: %" PRId64 " x %" PRId64 " x %" PRId64 " %s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n",
+           r->o->operands[0], dims[0], dims[1], dims[2], tc_type_name(r->v->type), cell_count(r->v),
+           5 * cell_count(r->v));
+    printf("%s\n", r->device[0] ? r->device : "reference engine");
+    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n]);
+    printf("read %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms, r->upload_ms, r->write_ms,
+           r->total_ms);
+}

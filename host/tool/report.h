@@ -1,0 +1,58 @@
+/*
+ * report.h - what extract found out, as the JSON object of the contract or as text for people
+ *
+ * JSON numbers keep 15 significant digits, or as many more as the exact ones (isovalues, ranges) need to read back the
+ * same double. Numbers that JSON cannot hold (NaN, infinities) become null.
+ */
+#ifndef REPORT_H
+#define REPORT_H
+
+#include "mesh_check.h"
+#include "options.h"
+#include "tetracubes.h"
+#include "volume.h"
+
+#include <jansson.h>
+
+/* One isovalue's results. */
+typedef struct surface_report {
+    const typed_isovalue *iso;
+    uint64_t vertex_count, triangle_count, active_cell_count;
+    double classify_ms, emit_ms, readback_ms;
+    uint32_t slab_count;
+    int has_mesh; /* 0: counted only; then the rest is not filled */
+    mesh_summary summary;
+    uint64_t hash;
+    int has_topology;
+    mesh_topology topology;
+    int has_verdict;
+    int verified;
+    char *path; /* of the file written, or NULL; from malloc */
+} surface_report;
+
+typedef struct extract_report {
+    const options *o;
+    const volume *v;
+    char device[160]; /* "" for the reference engine */
+    double read_ms, upload_ms, write_ms, total_ms;
+    surface_report *surfaces;
+    size_t surface_count;
+} extract_report;
+
+/* Prints the whole report on standard output. Returns 0 or STATUS_FAILED where memory runs out. */
+int report_extract_json(const extract_report *report);
+void report_extract_text(const extract_report *report);
+
+/* A number, or null where it is not finite. */
+json_t *report_real(double value);
+
+/* An array of count numbers. */
+json_t *report_reals(const double *values, int count);
+
+/* Significant digits, 15 to 17, that read back the same double. */
+int report_digits(double value);
+
+/* Prints and releases the object, NULL where building it failed. Returns 0 or STATUS_FAILED. */
+int report_print(json_t *object, int digits);
+
+#endif

@@ -1,0 +1,35 @@
+/* statistics.h - range, histogram and sensible isovalues of a volume's finite samples */
+#ifndef STATISTICS_H
+#define STATISTICS_H
+
+#include "volume.h"
+
+#define STATISTICS_BINS 256
+
+/*
+ * Bins have one width: bin n holds low + n width <= v < low + (n + 1) width. Of integer samples the width is a whole
+ * number and the edges lie half-way between integers, so that no sample equals an edge; of others bins divide the
+ * range, and the last one holds the maximum too.
+ */
+typedef struct statistics {
+    uint64_t finite_count, nonfinite_count;
+    double minimum, maximum; /* of the finite samples; zeros where there are none */
+    int bin_count;           /* 0 where there are none */
+    double low, width;
+    uint64_t bins[STATISTICS_BINS];
+} statistics;
+
+typedef struct suggestion {
+    double isovalue;
+    const char *name;   /* "otsu", "otsu-upper", "otsu-lower", "middle" */
+    const char *reason; /* one line */
+} suggestion;
+
+#define SUGGESTIONS_MAX 4
+
+void statistics_of(const volume *v, statistics *out);
+
+/* Isovalues that some sample reaches and some does not, the most useful first. Returns how many. */
+int statistics_suggest(const statistics *s, suggestion out[SUGGESTIONS_MAX]);
+
+#endif

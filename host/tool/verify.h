@@ -1,0 +1,11 @@
+/* verify.h - two meshes, byte by byte */
+#ifndef VERIFY_H
+#define VERIFY_H
+
+#include "tetracubes.h"
+
+/* Nonzero where counts, positions, normals and triangles are the same bytes; else text (of bytes) says what differs
+ * first. */
+int verify_same(const tc_mesh_data *device, const tc_mesh_data *reference, char *text, size_t bytes);
+
+#endif

@@ -1,0 +1,15 @@
+/* decimal.h - numbers as text, fast and in every locale the same */
+#ifndef DECIMAL_H
+#define DECIMAL_H
+
+#include <stdint.h>
+
+enum { DECIMAL_MOST = 16 }; /* bytes of the longest number */
+
+/* Nine significant digits, trailing zeros dropped: what reads back as the same float, like "%.9g". "nan", "inf" and
+ * "-inf" for what is no number. Returns the address behind; no zero byte is appended. */
+char *put_float_text(char *to, float value);
+
+char *put_u32_text(char *to, uint32_t value);
+
+#endif

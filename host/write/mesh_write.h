@@ -1,0 +1,26 @@
+/*
+ * mesh_write.h - a mesh to a file: the format follows the file's ending
+ *
+ * Written beside the final name and renamed when complete, so that a failed run leaves no partial file and an older
+ * file under the name stays whole until then. A name that exists and is no regular file (/dev/stdout, a FIFO) is
+ * written directly.
+ */
+#ifndef MESH_WRITE_H
+#define MESH_WRITE_H
+
+#include "tetracubes.h"
+
+typedef struct mesh_write_options {
+    const char *format; /* "ply", "stl" or "obj", in any case; NULL: the file's ending */
+    int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
+} mesh_write_options;
+
+/* 0 where path's ending (or options->format) is a format that can be written, else STATUS_USAGE with a text that names
+ * the formats: to be called before any work is done. options may be NULL here and below. */
+int mesh_write_check(const char *path, const mesh_write_options *options);
+
+/* Writes positions, normals (where the mesh has them and the format takes them: PLY, OBJ) and triangles, whose indices
+ * must be below vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
+int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
+
+#endif

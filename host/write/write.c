@@ -1,0 +1,75 @@
+/*
+ * write.c - finds the format, checks that its counts suffice, and has it written
+ */
+#include "mesh_write.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "formats.h"
+#include "output.h"
+
+#include <string.h>
+#include <strings.h>
+
+typedef struct format {
+    const char *name;
+    void (*write)(output *o, const tc_mesh_data *mesh, int soup);
+} format;
+
+static const format formats[] = {{"ply", ply_write}, {"stl", stl_write}, {"obj", obj_write}, {NULL, NULL}};
+
+static const format *find_format(const char *name) {
+    for (const format *f = formats; f->name; f++)
+        if (strcasecmp(f->name, name) == 0) return f;
+    return NULL;
+}
+
+/* What follows the last dot of the file's name; "" where there is none. */
+static const char *ending_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return dot ? dot + 1 : "";
+}
+
+static int choose_format(const char *path, const mesh_write_options *options, const format **chosen) {
+    int named = options && options->format;
+    *chosen = find_format(named ? options->format : ending_of(path));
+    if (*chosen) return 0;
+    if (named)
+        return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl or obj", options->format);
+    return fail(STATUS_USAGE,
+                "%s: its ending names no known format: let it end in .ply, .stl or .obj, or name the format (ply, stl, "
+                "obj)",
+                path);
+}
+
+static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {
+    int is_stl = f->write == stl_write;
+    uint64_t count = is_stl ? mesh->triangle_count : mesh->vertex_count;
+    if (!is_stl && soup && mesh->triangle_count > FORMAT_LIMIT / 3)
+        return fail(STATUS_FAILED,
+                    "%s: %llu triangles with vertices of their own are more than the 2^32 - 1 vertices that %s holds; "
+                    "write shared vertices instead",
+                    path, (unsigned long long)mesh->triangle_count, f->name);
+    if (count > FORMAT_LIMIT)
+        return fail(STATUS_FAILED, "%s: %llu %s are more than the 2^32 - 1 that %s holds%s", path,
+                    (unsigned long long)count, is_stl ? "triangles" : "vertices", f->name,
+                    is_stl ? "; write ply or obj instead" : "; extract a part of the volume");
+    return 0;
+}
+
+int mesh_write_check(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return choose_format(path, options, &f);
+}
+
+int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
+    const format *f;
+    output o;
+    int soup = options && options->soup;
+    int status = choose_format(path, options, &f);
+    if (!status) status = check_counts(path, mesh, soup, f);
+    if (!status) status = output_open(&o, path);
+    if (status) return status;
+    f->write(&o, mesh, soup);
+    return output_close(&o);
+}

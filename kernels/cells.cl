@@ -1,0 +1,65 @@
+/*
+ * cells.cl - grids with missing samples: one bit per cube whose eight corners are present
+ *
+ * Made before kernel 1, only where a sample is missing (not finite, or equal to the missing value). The cells buffer holds
+ * the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists only on an edge of a present cube.
+ */
+#if MISSING
+
+ulong word_present(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+    ulong word = 0;
+    for (uint part = 4 * w; part < 4 * w + 4 && 16 * part < s->nx; part++) {
+        BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
+        word |= (ulong)(~mask_pack(missing_mask(bits, s)) & 0xffff) << (16 * (part & 3));
+    }
+    return word & word_valid(s, w);
+}
+
+/* Present samples of a row, and those whose right-hand neighbour is present too. */
+ulong word_present_pair(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+    ulong word = word_present(samples, s, y, z, w);
+    ulong next = 0;
+    if (w + 1 < s->words_x) {
+        ulong n = row_start(s, y, z) + 64ul * (w + 1);
+        next = (mask_pack(missing_mask((BITS16)samples[n], s)) & 1) ^ 1;
+    }
+    return word & word_shifted(word, next);
+}
+
+/* One work-item per word: dimension 0 runs over words of a row, 1 over rows, 2 over planes from cell_z on. */
+kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells) {
+    uint w = (uint)get_global_id(0), y = (uint)get_global_id(1), z = s.cell_z + (uint)get_global_id(2);
+    ulong present = 0;
+    if (y + 1 < s.ny && z + 1 < s.nz)
+        present = word_present_pair(samples, &s, y, z, w) & word_present_pair(samples, &s, y + 1, z, w) &
+                  word_present_pair(samples, &s, y, z + 1, w) & word_present_pair(samples, &s, y + 1, z + 1, w);
+    cells[((z - s.cell_z) * s.ny + y) * s.words_x + w] = present;
+}
+
+/* Present cubes of the row (y, z); none where that is outside the grid. */
+ulong cells_at(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+    if (y >= s->ny || z >= s->nz || z < s->cell_z) return 0; /* y and z wrap below 0 */
+    return cells[((z - s->cell_z) * s->ny + y) * s->words_x + w];
+}
+
+/* Present cubes, or those at x - 1. */
+ulong cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+    ulong carry = w ? cells_at(s, cells, y, z, w - 1) >> 63 : 0;
+    ulong word = cells_at(s, cells, y, z, w);
+    return word | word << 1 | carry;
+}
+
+/* Keeps the crossings of edges that a present cube contains. */
+void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
+    ulong here = cells_at(s, cells, y, z, w), low_y = cells_at(s, cells, y - 1, z, w);
+    ulong low_z = cells_at(s, cells, y, z - 1, w), low_yz = cells_at(s, cells, y - 1, z - 1, w);
+    ulong before = cells_before(s, cells, y, z, w);
+    k->type[0] &= here | low_y | low_z | low_yz;
+    k->type[1] &= before | cells_before(s, cells, y, z - 1, w);
+    k->type[2] &= before | cells_before(s, cells, y - 1, z, w);
+    k->type[3] &= here | low_z;
+    k->type[4] &= here | low_y;
+    k->type[5] &= before;
+}
+
+#endif

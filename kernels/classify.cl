@@ -1,0 +1,318 @@
+/*
+ * classify.cl - kernel 1: sign words, what each row of 64 cubes will emit, and its prefix sums
+ *
+ * A tile is a run of bricks: tile_rows rows of bricks in one layer, or tile_layers whole layers. Its group
+ *   makes the sign words of the tile's samples, and of the halo: the next row and the next plane of samples, which
+ *   others own, into scratch;
+ *   counts the vertices and triangles of every brick that is not uniform, row by row, and stores where in the brick each
+ *   row's output begins;
+ *   posts the tile's sums and obtains what all tiles before it emit (scan.cl);
+ *   stores where each brick's output begins, and appends the bricks that emit something to the list for kernel 2.
+ * Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base.
+ */
+
+typedef struct tile {
+    uint y0, y1, z0, z1; /* rows and planes of samples */
+} tile;
+
+tile tile_locate(const slab *s, uint n) {
+    tile t;
+    uint groups_y = (s->bricks_y + s->tile_rows - 1) / s->tile_rows;
+    t.y0 = n % groups_y * s->tile_rows * BRICK_ROWS;
+    t.y1 = min(t.y0 + s->tile_rows * BRICK_ROWS, s->ny);
+    t.z0 = s->z0 + n / groups_y * s->tile_layers * BRICK_PLANES;
+    t.z1 = min(t.z0 + s->tile_layers * BRICK_PLANES, s->z1);
+    return t;
+}
+
+/* A row of sign words: the tile's own are in words; of the halo, the plane z1 comes first in scratch (rows y0 to y1),
+ * then the rows y1 of the other planes. */
+global ulong *tile_row(const slab *s, tile t, uint y, uint z, global ulong *words, global ulong *scratch) {
+    if (z >= t.z1) return scratch + (y - t.y0) * s->words_x;
+    if (y >= t.y1) return scratch + (t.y1 - t.y0 + 1 + z - t.z0) * s->words_x;
+    return words + word_index(s, y, z, 0);
+}
+
+/* Sign words of the planes z0 <= z < z1 of the tile, halo rows included. */
+uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *samples, global ulong *words,
+                 global ulong *scratch) {
+    uint rows = min(t.y1 + 1, s->ny) - t.y0;
+    uint nonfinite = 0;
+#if WORK_ITEMS == 1
+    for (uint z = z0; z < z1; z++)
+        for (uint y = t.y0; y < t.y0 + rows; y++) {
+            global ulong *row = tile_row(s, t, y, z, words, scratch);
+            for (uint w = 0; w < s->words_x; w++) row[w] = word_inside(samples, s, y, z, w, &nonfinite);
+        }
+#else
+    uint parts = 4 * s->words_x;
+    uint count = (z1 - z0) * rows * parts;
+    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+        uint row = n / parts, part = n % parts;
+        uint y = t.y0 + row % rows, z = z0 + row / rows;
+        global ushort *out = (global ushort *)tile_row(s, t, y, z, words, scratch);
+        out[part] = (ushort)word_part(samples, s, y, z, part, &nonfinite);
+    }
+#endif
+    return nonfinite;
+}
+
+/* A brick whose samples, neighbours included, are all inside or all outside emits nothing. */
+bool brick_uniform(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
+    ulong any = 0, all = ~0ul, valid = word_valid(s, w);
+    bool next = w + 1 < s->words_x;
+    for (uint z = z0; z <= z0 + BRICK_PLANES && z < s->nz; z++)
+        for (uint y = y0; y <= y0 + BRICK_ROWS && y < s->ny; y++) {
+            global const ulong *row = tile_row(s, t, y, z, words, scratch) + w;
+            ulong beyond = next ? row[1] : 0;
+            any |= row[0] | (beyond & 1);
+            all &= (row[0] | ~valid) & (next ? beyond | ~1ul : ~0ul);
+        }
+    return any == 0 || all == ~0ul;
+}
+
+typedef struct emission {
+    uint vertices, triangles, cells;
+} emission;
+
+/* What one row of 64 cubes emits; *packed as offsets_pack makes it, for a row that comes first in its brick. */
+emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, global const ulong *cells, ulong *packed) {
+    crossings k = crossings_owned(r);
+    ulong active = cubes_active(r);
+#if MISSING
+    crossings_keep(s, cells, y, z, w, &k);
+    active &= cells_at(s, cells, y, z, w);
+#endif
+    emission e;
+    *packed = offsets_pack(&k, 0, &e.vertices);
+    e.triangles = active ? triangles_count(r, active) : 0;
+    e.cells = (uint)popcount(active);
+    return e;
+}
+
+emission tile_row_count(const slab *s, tile t, uint y, uint z, uint w, global ulong *words, global ulong *scratch,
+                        global const ulong *cells, ulong *packed) {
+    cube_row r = cube_row_load(s, y, z, w, tile_row(s, t, y, z, words, scratch),
+                               tile_row(s, t, y + 1, z, words, scratch), tile_row(s, t, y, z + 1, words, scratch),
+                               tile_row(s, t, y + 1, z + 1, words, scratch));
+    return row_count(s, &r, y, z, w, cells, packed);
+}
+
+/* Brick n of a layer of the tile: x, then y. */
+typedef struct brick {
+    uint w, y0;
+} brick;
+
+brick brick_locate(const slab *s, tile t, uint n) {
+    brick b = {n % s->words_x, t.y0 + n / s->words_x * BRICK_ROWS};
+    return b;
+}
+
+uint layer_bricks(const slab *s, tile t) { return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x; }
+
+#if WORK_ITEMS == 1
+
+/* Counts a layer of the tile, brick by brick; *sums runs on from brick to brick. Stores bases within the tile. */
+void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
+                 global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
+                 emission *sums) {
+    uint z1 = min(z0 + BRICK_PLANES, t.z1), count = layer_bricks(s, t);
+    for (uint n = 0; n < count; n++) {
+        brick b = brick_locate(s, t, n);
+        emission e = {0, 0, 0};
+        uint mask = 0;
+        if (!brick_uniform(s, t, b.y0, z0, b.w, words, scratch))
+            for (uint z = z0; z < z1; z++)
+                for (uint y = b.y0; y < min(b.y0 + BRICK_ROWS, t.y1); y++) {
+                    ulong packed;
+                    emission row = tile_row_count(s, t, y, z, b.w, words, scratch, cells, &packed);
+                    uint index = word_index(s, y, z, b.w);
+                    offsets[index] = packed + e.vertices;
+                    triangle_offsets[index] = (ushort)e.triangles;
+                    e.vertices += row.vertices, e.triangles += row.triangles, e.cells += row.cells;
+                    mask |= (uint)(row.vertices + row.triangles > 0) << ((z - z0) * BRICK_ROWS + (y - b.y0));
+                }
+        uint index = brick_index(s, b.y0, z0, b.w);
+        bases[index] = (uint2)(sums->vertices, sums->triangles);
+        masks[index] = mask;
+        sums->vertices += e.vertices, sums->triangles += e.triangles, sums->cells += e.cells;
+    }
+}
+
+#else
+
+#define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
+
+/* The same with a work-item per row of a brick: each adds up the rows before its own. rows: emissions of the bricks at
+ * hand; masks_local likewise. All work-items leave with the same sums. */
+void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
+                 global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
+                 emission *sums, local emission *rows) {
+    uint lid = (uint)get_local_id(0), slot = lid / BRICK_WORDS, place = lid % BRICK_WORDS;
+    uint count = layer_bricks(s, t);
+    for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
+        brick b = brick_locate(s, t, n + slot);
+        uint y = b.y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+        emission e = {0, 0, 0};
+        ulong packed = 0;
+        if (n + slot < count && y < t.y1 && z < t.z1)
+            e = tile_row_count(s, t, y, z, b.w, words, scratch, cells, &packed);
+        rows[lid] = e;
+        group_barrier();
+        emission before = {0, 0, 0}, total = *sums;
+        uint mask = 0;
+        for (uint m = 0; m < WORK_ITEMS; m++) {
+            emission row = rows[m];
+            if (m == slot * BRICK_WORDS && n + slot < count && place == 0)
+                bases[brick_index(s, b.y0, z0, b.w)] = (uint2)(total.vertices, total.triangles);
+            if (m / BRICK_WORDS == slot) {
+                if (m < lid) before.vertices += row.vertices, before.triangles += row.triangles;
+                mask |= (uint)(row.vertices + row.triangles > 0) << (m % BRICK_WORDS);
+            }
+            total.vertices += row.vertices, total.triangles += row.triangles, total.cells += row.cells;
+        }
+        *sums = total;
+        if (n + slot < count && place == 0) masks[brick_index(s, b.y0, z0, b.w)] = mask;
+        if (e.vertices + e.triangles) {
+            uint index = word_index(s, y, z, b.w);
+            offsets[index] = packed + before.vertices;
+            triangle_offsets[index] = (ushort)before.triangles;
+        }
+        group_barrier();
+    }
+}
+
+#endif
+
+/* The fallback of the scan: one work-item's share of a tile's sums, straight from the samples. */
+emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
+    tile t = tile_locate(s, number);
+    emission sums = {0, 0, 0};
+    uint rows = t.y1 - t.y0, count = rows * (t.z1 - t.z0) * s->words_x, ignored = 0;
+    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+        uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows, z = t.z0 + n / s->words_x / rows;
+        bool next = w + 1 < s->words_x;
+        ulong word[4][2];
+        for (uint m = 0; m < 4; m++) {
+            uint ym = y + (m & 1), zm = z + (m >> 1);
+            bool here = ym < s->ny && zm < s->nz;
+            word[m][0] = here ? word_inside(samples, s, ym, zm, w, &ignored) : 0;
+            word[m][1] = here && next ? word_inside(samples, s, ym, zm, w + 1, &ignored) : 0;
+        }
+        ulong packed;
+        cube_row r = cube_row_of(s, y, z, w, word);
+        emission e = row_count(s, &r, y, z, w, cells, &packed);
+        sums.vertices += e.vertices, sums.triangles += e.triangles;
+    }
+    return sums;
+}
+
+/* What all tiles before this one emit. Called by the whole group; shared: 5 words of local memory. */
+uint2 tile_prefix(const slab *s, uint number, emission sums, global const BITS *samples, global const ulong *cells,
+                  global uint *head, global uint *tiles, local uint *shared) {
+    bool leader = get_local_id(0) == 0;
+    uint back[2] = {number, number}, prefix[2] = {0, 0};
+    if (leader) {
+        scan_post_sum(tiles, number, 0, sums.vertices);
+        scan_post_sum(tiles, number, 1, sums.triangles);
+    }
+    bool complete = false;
+    while (!complete) {
+        group_barrier();
+        if (leader) {
+            shared[0] = scan_look_back(tiles, 0, &back[0], &prefix[0], s->spin_limit);
+            shared[1] = shared[0] && scan_look_back(tiles, 1, &back[1], &prefix[1], s->spin_limit);
+            shared[2] = shared[0] ? back[1] : back[0];
+            shared[3] = 0;
+            shared[4] = 0;
+        }
+        group_barrier();
+        complete = shared[1];
+        uint missing = shared[2] - 1;
+        if (!complete) {
+            emission e = tile_recount(s, missing, samples, cells);
+            atomic_add(&shared[3], e.vertices);
+            atomic_add(&shared[4], e.triangles);
+        }
+        group_barrier();
+        if (leader && !complete) {
+            scan_post_sum(tiles, missing, 0, shared[3]);
+            scan_post_sum(tiles, missing, 1, shared[4]);
+            atomic_inc(&head[STATE_FALLBACKS]);
+        }
+    }
+    if (leader) {
+        scan_post_prefix(tiles, number, 0, prefix[0] + sums.vertices);
+        scan_post_prefix(tiles, number, 1, prefix[1] + sums.triangles);
+        shared[0] = prefix[0];
+        shared[1] = prefix[1];
+    }
+    group_barrier();
+    return (uint2)(shared[0], shared[1]);
+}
+
+/* Turns bases within the tile into bases within the slab, and appends the bricks that emit something to the list. */
+void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, global const uint *masks, global uint *active,
+                 global uint *head, local uint *shared) {
+    uint first = brick_index(s, t.y0, t.z0, 0);
+    uint count = layer_bricks(s, t) * ((t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES);
+    uint emitting = 0;
+    group_barrier();
+    if (get_local_id(0) == 0) shared[0] = 0;
+    group_barrier();
+    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) emitting += masks[first + n] != 0;
+    atomic_add(&shared[0], emitting);
+    group_barrier();
+    if (get_local_id(0) == 0) shared[1] = shared[0] ? atomic_add(&head[STATE_ACTIVE_BRICKS], shared[0]) : 0;
+    group_barrier();
+    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+        bases[first + n] += prefix;
+        if (masks[first + n]) active[atomic_inc(&shared[1])] = first + n;
+    }
+}
+
+/* state: heads and tiles of the slabs, cleared. scratch: per group, room for the halo of a tile. */
+kernel void classify(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
+                     global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
+                     global uint *active, global uint *state, global ulong *scratch, uint scratch_words) {
+    local uint shared[5];
+#if WORK_ITEMS > 1
+    local emission rows[WORK_ITEMS];
+#endif
+    global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
+    active += s.active_offset;
+    scratch += get_group_id(0) * (size_t)scratch_words;
+    uint number = 0;
+    while (number < s.tile_count) {
+        group_barrier();
+        if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
+        group_barrier();
+        number = shared[0];
+        group_barrier();
+        if (number < s.tile_count) {
+            tile t = tile_locate(&s, number);
+            emission sums = {0, 0, 0};
+            uint nonfinite = planes_sign(&s, t, t.z0, t.z0 + 1, samples, words, scratch);
+            for (uint z = t.z0; z < t.z1; z += BRICK_PLANES) {
+                nonfinite |= planes_sign(&s, t, z + 1, min(z + BRICK_PLANES, min(t.z1, s.nz - 1)) + 1, samples, words,
+                                         scratch);
+                group_barrier();
+                layer_count(&s, t, z, words, scratch, cells, offsets, triangle_offsets, bases, masks, &sums
+#if WORK_ITEMS > 1
+                            , rows
+#endif
+                );
+            }
+            if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
+            uint2 prefix = tile_prefix(&s, number, sums, samples, cells, head, tiles, shared);
+            tile_finish(&s, t, prefix, bases, masks, active, head, shared);
+            if (get_local_id(0) == 0) {
+                if (sums.cells) atomic_add(&head[STATE_ACTIVE_CELLS], sums.cells);
+                if (number + 1 == s.tile_count) {
+                    head[STATE_VERTICES] = prefix.x + sums.vertices;
+                    head[STATE_TRIANGLES] = prefix.y + sums.triangles;
+                }
+            }
+        }
+    }
+}

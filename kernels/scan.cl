@@ -1,0 +1,45 @@
+/*
+ * scan.cl - single-pass chained scan with decoupled look-back and fallback
+ *
+ * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted, back
+ * to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket, so all
+ * earlier tiles have been started; a device that lets a started group starve is met by the fallback: after spin_limit
+ * polls the waiting group recomputes the missing sum itself.
+ *
+ * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
+ * Owens, "Decoupled Fallback" (2025).
+ */
+
+#define SCAN_EMPTY  0u
+#define SCAN_SUM    1u
+#define SCAN_PREFIX 2u
+#define SCAN_VALUE  0x3fffffffu /* 30 bits: the host bounds a slab so that no sum passes them */
+
+uint scan_word(uint state, uint value) { return state << 30 | value; }
+
+volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) { return tiles + 2 * tile + channel; }
+
+void scan_post_sum(global uint *tiles, uint tile, uint channel, uint sum) {
+    atomic_cmpxchg(scan_at(tiles, tile, channel), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
+}
+
+void scan_post_prefix(global uint *tiles, uint tile, uint channel, uint prefix) {
+    atomic_xchg(scan_at(tiles, tile, channel), scan_word(SCAN_PREFIX, prefix));
+}
+
+/* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted nothing
+ * within the limit of polls. */
+bool scan_look_back(global uint *tiles, uint channel, uint *tile, uint *sum, uint spin_limit) {
+    uint polls = 0;
+    while (*tile > 0 && polls <= spin_limit) {
+        uint word = atomic_or(scan_at(tiles, *tile - 1, channel), 0u);
+        if (word >> 30 == SCAN_EMPTY) {
+            polls++;
+            continue;
+        }
+        *sum += word & SCAN_VALUE;
+        *tile = word >> 30 == SCAN_PREFIX ? 0 : *tile - 1;
+        polls = 0;
+    }
+    return *tile == 0;
+}

@@ -1,0 +1,28 @@
+/*
+ * expect.h - the whole of the test framework: a test is a main() of EXPECTs that returns EXPECT_DONE()
+ *
+ * EXPECT(condition, format, ...) prints file, line and text where the condition does not hold, and goes on.
+ */
+#ifndef EXPECT_H
+#define EXPECT_H
+
+#include <stdio.h>
+
+static long expect_checks, expect_failures;
+
+#define EXPECT(condition, ...)                                                                                         \
+    do {                                                                                                               \
+        expect_checks++;                                                                                               \
+        if (!(condition)) {                                                                                            \
+            expect_failures++;                                                                                         \
+            printf("%s:%d: ", __FILE__, __LINE__);                                                                     \
+            printf(__VA_ARGS__);                                                                                       \
+            printf("\n");                                                                                              \
+        }                                                                                                              \
+    } while (0)
+
+/* Prints the counts; nonzero where a check failed or none ran. */
+#define EXPECT_DONE()                                                                                                  \
+    (printf("%ld checks, %ld failed\n", expect_checks, expect_failures), expect_failures != 0 || expect_checks == 0)
+
+#endif
