@@ -229,6 +229,12 @@ static void test_nrrd_stream_skip(void) {
     read_request r = request_for(file_write("a.nrrd", file.data, file.size));
     expected e = plain(TC_U8, "NRRD");
     expect_volume("two gzip members, bytes skipped inside", &r, &e);
+    volume v;
+    EXPECT(volume_read(&r, &v) == 0 && strstr(v.notice, "more data"), "notice: '%s'", v.notice);
+    volume_release(&v);
+    r = write_nrrd(TC_U8, 0, "gzip", "");
+    EXPECT(volume_read(&r, &v) == 0 && !*v.notice, "notice: '%s'", v.notice);
+    volume_release(&v);
     bytes_free(&inner);
     bytes_free(&samples);
     bytes_free(&file);
@@ -410,6 +416,17 @@ static void test_nifti_pair(void) {
     }
 }
 
+/* A single file's data cannot start within its header, so an offset of 0 means right behind it. */
+static void test_nifti_offset(void) {
+    for (int version = 1; version <= 2; version++) {
+        nifti_fields f = nifti_plain(version, 4, 16, 5, 4, 3);
+        f.vox_offset = 0;
+        read_request r = write_nifti("a.nii", &f, TC_I16, COUNT, 0);
+        expected e = plain(TC_I16, NULL);
+        expect_volume("vox_offset 0", &r, &e);
+    }
+}
+
 /* The content decides before the ending does. */
 static void test_detection(void) {
     read_request r = write_nrrd(TC_U8, 0, "raw", "");
@@ -439,6 +456,7 @@ int main(void) {
     test_nifti_world();
     test_nifti_choices();
     test_nifti_pair();
+    test_nifti_offset();
     test_detection();
     folder_remove();
     return EXPECT_DONE();

@@ -23,12 +23,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    BLOCK_TRIANGLES = 1 << 16,
-    WINDOW_CORNERS = 1 << 23, /* 64 MiB */
-    MOST_WINDOWS = 16,
-    INSERTION_SORT_MOST = 48,
-};
+#ifndef BLOCK_TRIANGLES /* the test makes both tiny, to have many of them in a small mesh */
+#define BLOCK_TRIANGLES (UINT64_C(1) << 16)
+#define WINDOW_CORNERS  (UINT64_C(1) << 23) /* 64 MiB */
+#endif
+
+enum { WINDOW_SHARE = 16, INSERTION_SORT_MOST = 48 };
 
 typedef struct corner {
     uint32_t next, previous;
@@ -267,7 +267,7 @@ int mesh_check(const float *positions, uint64_t vertex_count, const uint32_t *tr
     if (status) goto cleanup;
     survey_triangles(&m, &w, result);
     most_corners = sum_starts(&m, &w, &used_vertices, &result->components);
-    capacity = max_u64(max_u64(WINDOW_CORNERS, 3 * triangle_count / MOST_WINDOWS), most_corners);
+    capacity = max_u64(max_u64(WINDOW_CORNERS, 3 * triangle_count / WINDOW_SHARE), most_corners);
     capacity = min_u64(capacity, 3 * triangle_count + 1);
 
     status = allocate_window(&m, &w, capacity, most_corners);

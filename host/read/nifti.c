@@ -45,7 +45,7 @@ static int is_gzip(const mapping *file) { return file->size > 2 && file->bytes[0
 
 /* Copies the first bytes of the file, unpacked. */
 static int read_start(const char *path, const mapping *file, void *to, size_t bytes) {
-    if (is_gzip(file)) return unpack(path, ENCODING_DEFLATE, file->bytes, file->size, 0, to, bytes);
+    if (is_gzip(file)) return unpack(path, ENCODING_DEFLATE, file->bytes, file->size, 0, to, bytes, NULL);
     if (file->size < bytes)
         return fail(STATUS_INPUT, "%s: is %zu bytes long, but a NIfTI header has %zu; the file is cut or no NIfTI",
                     path, file->size, bytes);

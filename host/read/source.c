@@ -122,10 +122,11 @@ static int read_text(const char *path, const unsigned char *text, size_t size, i
     return 0;
 }
 
-/* Notes that a raw file holds more than was used. */
-static void notice_rest(const source *from, const char *path, uint64_t rest, volume *out) {
-    if (rest && from->encoding == ENCODING_RAW && from->byte_skip != SKIP_FROM_END && !*out->notice)
-        snprintf(out->notice, sizeof out->notice, "%.160s: its last %" PRIu64 " bytes are not used", path, rest);
+/* Notes, once, that a file holds more than was used. */
+static void notice_rest(const char *path, uint64_t rest, volume *out) {
+    if (rest && !*out->notice)
+        snprintf(out->notice, sizeof out->notice,
+                 "%.160s: holds more data than its header asks for; the rest is not used", path);
 }
 
 /* Checks one file and, where `to` is given, brings its part of the stored array. */
@@ -139,13 +140,14 @@ static int load_part(const source *from, const char *path, const layout *l, uint
         (status = check_size(from, path, m.size - start, bytes, element_bytes(l->element))) || !to)
         goto cleanup;
     size_t available = m.size - (size_t)start;
+    int more = 0;
     if (from->encoding == ENCODING_RAW)
         memcpy(to, m.bytes + start, (size_t)bytes);
     else if (from->encoding == ENCODING_TEXT)
         status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element));
     else
-        status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes);
-    if (!status) notice_rest(from, path, available - (from->encoding == ENCODING_RAW ? bytes : 0), out);
+        status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes, &more);
+    if (!status) notice_rest(path, from->encoding == ENCODING_RAW ? available - bytes : (uint64_t)more, out);
 cleanup:
     mapping_close(&m);
     return status;
@@ -180,7 +182,7 @@ static int load_raw(const source *from, const char *path, const layout *l, volum
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
         goto cleanup;
-    notice_rest(from, path, m.size - start - l->bytes, out);
+    notice_rest(path, m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
         out->samples = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;

@@ -57,6 +57,7 @@ typedef struct target {
     unsigned char scratch[65536];
     unsigned char *out;
     uint64_t skip, bytes; /* still wanted */
+    int more;             /* whether more came than was wanted */
 } target;
 
 static unsigned char *target_room(target *t, uint64_t *room) {
@@ -75,9 +76,9 @@ static int target_took(target *t, uint64_t count) {
         t->out += count;
         t->bytes -= count;
     } else {
-        return count > 0;
+        t->more = count > 0;
     }
-    return 0;
+    return t->more;
 }
 
 #endif
@@ -160,8 +161,9 @@ static int bunzip_stream(const char *path, const unsigned char *in, size_t in_by
 #endif
 
 int unpack(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t skip, void *out,
-           uint64_t bytes) {
+           uint64_t bytes, int *more) {
     uint64_t wanted;
+    if (more) *more = 0;
     if (__builtin_add_overflow(skip, bytes, &wanted))
         return fail(STATUS_INPUT, "%s: asks to skip %" PRIu64 " bytes; the header is damaged", path, skip);
     int status = unpack_check(path, packed, in_bytes, wanted);
@@ -171,15 +173,17 @@ int unpack(const char *path, encoding packed, const unsigned char *in, size_t in
     t.out = out;
     t.skip = skip;
     t.bytes = bytes;
+    t.more = 0;
+#ifdef HAVE_ZLIB
+    if (packed == ENCODING_DEFLATE) status = inflate_stream(path, in, in_bytes, &t, wanted);
+#endif
+#ifdef HAVE_BZIP2
+    if (packed == ENCODING_BZIP2) status = bunzip_stream(path, in, in_bytes, &t, wanted);
+#endif
+    if (more) *more = t.more;
 #else
     (void)in;
     (void)out;
 #endif
-#ifdef HAVE_ZLIB
-    if (packed == ENCODING_DEFLATE) return inflate_stream(path, in, in_bytes, &t, wanted);
-#endif
-#ifdef HAVE_BZIP2
-    if (packed == ENCODING_BZIP2) return bunzip_stream(path, in, in_bytes, &t, wanted);
-#endif
-    return fail(STATUS_FAILED, "%s: no compressed data to unpack", path);
+    return status;
 }

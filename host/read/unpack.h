@@ -16,9 +16,10 @@ typedef enum encoding { ENCODING_RAW, ENCODING_TEXT, ENCODING_DEFLATE, ENCODING_
 /* STATUS_INPUT where so many packed bytes cannot hold so many unpacked ones, or this program lacks the library. */
 int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_t unpacked_bytes);
 
-/* Unpacks, drops the first skip bytes and writes the next `bytes` to out; what follows is ignored. Several members one
- * after another count as one stream. STATUS_INPUT where the stream is damaged or ends early. */
+/* Unpacks, drops the first skip bytes and writes the next `bytes` to out; *more, where given, tells whether the stream
+ * holds more than that. Several members one after another count as one stream. STATUS_INPUT where the stream is damaged
+ * or ends early. */
 int unpack(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t skip, void *out,
-           uint64_t bytes);
+           uint64_t bytes, int *more);
 
 #endif

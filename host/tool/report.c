@@ -119,8 +119,10 @@ static void topology_text(const mesh_topology *t) {
            t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
            t->boundary_edges ? "open" : "closed", t->boundary_edges, t->nonmanifold_edges, t->nonmanifold_vertices,
            t->misoriented_edges);
-    printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g, volume %.7g\n",
-           t->euler_characteristic, t->components, t->area, t->volume);
+    printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g", t->euler_characteristic,
+           t->components, t->area);
+    if (!t->boundary_edges) printf(", volume %.7g", t->volume);
+    printf("\n");
 }
 
 static void surface_text(const surface_report *s) {
