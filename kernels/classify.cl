@@ -57,20 +57,6 @@ uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *sam
     return nonfinite;
 }
 
-/* A brick whose samples, neighbours included, are all inside or all outside emits nothing. */
-bool brick_uniform(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
-    ulong any = 0, all = ~0ul, valid = word_valid(s, w);
-    bool next = w + 1 < s->words_x;
-    for (uint z = z0; z <= z0 + BRICK_PLANES && z < s->nz; z++)
-        for (uint y = y0; y <= y0 + BRICK_ROWS && y < s->ny; y++) {
-            global const ulong *row = tile_row(s, t, y, z, words, scratch) + w;
-            ulong beyond = next ? row[1] : 0;
-            any |= row[0] | (beyond & 1);
-            all &= (row[0] | ~valid) & (next ? beyond | ~1ul : ~0ul);
-        }
-    return any == 0 || all == ~0ul;
-}
-
 typedef struct emission {
     uint vertices, triangles, cells;
 } emission;
@@ -83,7 +69,9 @@ emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, glo
     crossings_keep(s, cells, y, z, w, &k);
     active &= cells_at(s, cells, y, z, w);
 #endif
-    emission e;
+    emission e = {0, 0, 0};
+    *packed = 0;
+    if (!(active | k.type[0] | k.type[1] | k.type[2] | k.type[3] | k.type[4] | k.type[5])) return e;
     *packed = offsets_pack(&k, 0, &e.vertices);
     e.triangles = active ? triangles_count(r, active) : 0;
     e.cells = (uint)popcount(active);
@@ -112,31 +100,59 @@ uint layer_bricks(const slab *s, tile t) { return (t.y1 - t.y0 + BRICK_ROWS - 1)
 
 #if WORK_ITEMS == 1
 
+/* Which of the eight bricks from w on have samples on both sides, neighbours included; the others emit nothing. Reads up to
+ * eight words past the end of a row: buffers of words are that much longer. */
+ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
+    const ulong8 column = w + (ulong8)(0, 1, 2, 3, 4, 5, 6, 7);
+    const ulong8 has_next = as_ulong8(column + 1 < (ulong8)s->words_x);
+    const ulong8 past_end = as_ulong8(column + 1 == (ulong8)s->words_x) & ~word_valid(s, s->words_x - 1);
+    ulong8 any = 0, all = ~0ul;
+    for (uint z = z0; z <= z0 + BRICK_PLANES && z < s->nz; z++)
+        for (uint y = y0; y <= y0 + BRICK_ROWS && y < s->ny; y++) {
+            global const ulong *row = tile_row(s, t, y, z, words, scratch) + w;
+            ulong8 here = vload8(0, row), next = vload8(0, row + 1);
+            any |= here | (next & has_next & 1ul);
+            all &= (here | past_end) & (next | ~1ul | ~has_next);
+        }
+    return as_ulong8((any != 0ul) & (all != ~0ul) & (column < (ulong8)s->words_x));
+}
+
+/* Counts a brick row by row, stores where in the brick each row's output begins and returns which rows emit. */
+uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch,
+                 global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
+    uint y1 = min(y0 + BRICK_ROWS, t.y1), z1 = min(z0 + BRICK_PLANES, t.z1), mask = 0;
+    emission e = {0, 0, 0};
+    for (uint z = z0; z < z1; z++)
+        for (uint y = y0; y < y1; y++) {
+            ulong packed;
+            emission row = tile_row_count(s, t, y, z, w, words, scratch, cells, &packed);
+            if (row.vertices + row.triangles == 0) continue;
+            uint index = word_index(s, y, z, w);
+            offsets[index] = packed + e.vertices;
+            triangle_offsets[index] = (ushort)e.triangles;
+            e.vertices += row.vertices, e.triangles += row.triangles, e.cells += row.cells;
+            mask |= 1u << ((z - z0) * BRICK_ROWS + (y - y0));
+        }
+    sums->vertices += e.vertices, sums->triangles += e.triangles, sums->cells += e.cells;
+    return mask;
+}
+
 /* Counts a layer of the tile, brick by brick; *sums runs on from brick to brick. Stores bases within the tile. */
 void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
                  global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
                  emission *sums) {
-    uint z1 = min(z0 + BRICK_PLANES, t.z1), count = layer_bricks(s, t);
-    for (uint n = 0; n < count; n++) {
-        brick b = brick_locate(s, t, n);
-        emission e = {0, 0, 0};
-        uint mask = 0;
-        if (!brick_uniform(s, t, b.y0, z0, b.w, words, scratch))
-            for (uint z = z0; z < z1; z++)
-                for (uint y = b.y0; y < min(b.y0 + BRICK_ROWS, t.y1); y++) {
-                    ulong packed;
-                    emission row = tile_row_count(s, t, y, z, b.w, words, scratch, cells, &packed);
-                    uint index = word_index(s, y, z, b.w);
-                    offsets[index] = packed + e.vertices;
-                    triangle_offsets[index] = (ushort)e.triangles;
-                    e.vertices += row.vertices, e.triangles += row.triangles, e.cells += row.cells;
-                    mask |= (uint)(row.vertices + row.triangles > 0) << ((z - z0) * BRICK_ROWS + (y - b.y0));
-                }
-        uint index = brick_index(s, b.y0, z0, b.w);
-        bases[index] = (uint2)(sums->vertices, sums->triangles);
-        masks[index] = mask;
-        sums->vertices += e.vertices, sums->triangles += e.triangles, sums->cells += e.cells;
-    }
+    for (uint y0 = t.y0; y0 < t.y1; y0 += BRICK_ROWS)
+        for (uint w0 = 0; w0 < s->words_x; w0 += 8) {
+            ulong mixed[8];
+            vstore8(bricks_mixed(s, t, y0, z0, w0, words, scratch), 0, mixed);
+            for (uint w = w0; w < min(w0 + 8, s->words_x); w++) {
+                uint index = brick_index(s, y0, z0, w);
+                bases[index] = (uint2)(sums->vertices, sums->triangles);
+                masks[index] = mixed[w - w0] ? brick_count(s, t, y0, z0, w, words, scratch, cells, offsets,
+                                                           triangle_offsets, sums)
+                                             : 0;
+            }
+        }
 }
 
 #else

@@ -23,6 +23,9 @@ typedef float slab_f32;
 /* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word; a brick has 32 of them. */
 enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 
+/* Bytes that buffers of words have after their end, because kernel 1 reads words by eights. */
+enum { WORDS_READ_PAST = 128 };
+
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
     STATE_TICKET,        /* next tile of kernel 1 */

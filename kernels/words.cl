@@ -16,6 +16,8 @@
 #define PASTE(a, b)  PASTE2(a, b)
 #define BITS16       PASTE(BITS, 16)
 
+#define inline_always static inline __attribute__((always_inline))
+
 #if WORK_ITEMS == 1
 #define group_barrier()
 #else
@@ -29,7 +31,7 @@
 #endif
 
 /* 0xFF or 0 per sample. */
-char16 inside_mask(BITS16 bits, const slab *s) {
+inline_always char16 inside_mask(BITS16 bits, const slab *s) {
     return convert_char16((bits - (BITS)s->inside_low) <= (BITS16)(BITS)s->inside_span);
 }
 
@@ -45,7 +47,7 @@ char16 missing_mask(BITS16 bits, const slab *s) {
 
 /* Bit n of the result for byte n of the mask: each byte keeps one bit, the product sums the bytes of a half into its
  * highest one. */
-uint mask_pack(char16 mask) {
+inline_always uint mask_pack(char16 mask) {
     ulong2 kept = as_ulong2(mask) & 0x8040201008040201ul;
     ulong2 bytes = (kept * 0x0101010101010101ul) >> 56;
     return (uint)(bytes.x | bytes.y << 8);
@@ -81,7 +83,23 @@ uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint p
     return mask_pack(inside_mask(bits, s)) & (left >= 16 ? 0xffffu : (1u << left) - 1);
 }
 
+/* 64 samples at once, all of which the buffer has. Stays in registers: a detour through memory costs as much again. */
+inline_always ulong word_full(global const BITS *samples, const slab *s, uint *nonfinite) {
+    BITS16 b0 = vload16(0, samples), b1 = vload16(1, samples), b2 = vload16(2, samples), b3 = vload16(3, samples);
+#if FLOATING && !MISSING
+    *nonfinite |= any(convert_char16((b0 & EXPONENT) == EXPONENT) | convert_char16((b1 & EXPONENT) == EXPONENT) |
+                      convert_char16((b2 & EXPONENT) == EXPONENT) | convert_char16((b3 & EXPONENT) == EXPONENT));
+#endif
+    ulong8 mask = (ulong8)(as_ulong2(inside_mask(b0, s)), as_ulong2(inside_mask(b1, s)),
+                           as_ulong2(inside_mask(b2, s)), as_ulong2(inside_mask(b3, s)));
+    ulong8 bytes = ((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56;
+    return as_ulong(convert_uchar8(bytes));
+}
+
 ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w, uint *nonfinite) {
+    ulong start = row_start(s, y, z) + 64ul * w;
+    if (start + 64 <= s->sample_offset + s->sample_count)
+        return word_full(samples + start, s, nonfinite) & word_valid(s, w);
     ulong word = 0;
     for (uint n = 0; n < 4; n++) word |= (ulong)word_part(samples, s, y, z, 4 * w + n, nonfinite) << (16 * n);
     return word;

@@ -47,14 +47,14 @@ static tc_status workspace_reserve(run *r) {
         device_buffer *buffer;
         uint64_t bytes;
         const char *name;
-    } buffers[] = {{&w->words, 8 * words, "sign words"},
+    } buffers[] = {{&w->words, 8 * words + WORDS_READ_PAST, "sign words"},
                    {&w->offsets, 8 * words, "vertex offsets"},
                    {&w->triangle_offsets, 2 * words, "triangle offsets"},
                    {&w->bases, 8 * bricks, "brick offsets"},
                    {&w->masks, 4 * bricks, "brick masks"},
                    {&w->active, 4 * bricks, "active bricks"},
                    {&w->state, state_bytes(r), "the scan"},
-                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
+                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups + WORDS_READ_PAST, "halos"}};
     tc_status status = TC_OK;
     for (size_t n = 0; n < sizeof buffers / sizeof *buffers && !status; n++)
         status = buffer_reserve(r->context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
