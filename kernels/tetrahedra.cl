@@ -106,7 +106,7 @@ ulong offsets_pack(const crossings *k, uint first, uint *vertex_count) {
     return (ulong)first | (ulong)y << 14 | (ulong)z << 21 | (ulong)xy << 29 | (ulong)xz << 37 | (ulong)yz << 46;
 }
 
-uint offset_of_type(ulong packed, uint type) {
+inline_always uint offset_of_type(ulong packed, uint type) {
     uint first = (uint)packed & 0x3fff;
     switch (type) {
     case 0: return first;

@@ -7,10 +7,15 @@
  * From the build: REAL (float for u8 i8 u16 i16 f32, double for u32 i32 f64), SAMPLE_VALUE(bits), DIVISION (1: built in;
  * 2: through double; 3: in integers), NORMALS.
  */
+/* The first sample of a brick: its position in the grid. */
+typedef struct corner {
+    uint x, y, z;
+} corner;
+
 #ifdef REAL
 
 #if DIVISION == 1
-float divide(float a, float b) { return a / b; }
+inline_always float divide(float a, float b) { return a / b; }
 float root(float a) { return sqrt(a); }
 #elif DIVISION == 2
 /* Rounding to double first changes nothing: 53 >= 2 * 24 + 2 bits. */
@@ -74,43 +79,29 @@ float root(float a) {
 #endif
 
 /* Where the isovalue lies between the samples at the two ends; halved first where their difference overflows. */
-float crossing(REAL a, REAL b, REAL iso) {
-    REAL span = b - a;
+inline_always float crossing(REAL a, REAL b, REAL iso) {
 #if FLOATING
-    if (isinf(span)) {
-        a *= (REAL)0.5f, b *= (REAL)0.5f, iso *= (REAL)0.5f;
-        span = b - a;
-    }
+    REAL scale = isinf(b - a) ? (REAL)0.5f : (REAL)1;
+    a *= scale, b *= scale, iso *= scale;
 #endif
-    return (float)DIVIDE(iso - a, span);
+    return (float)DIVIDE(iso - a, b - a);
 }
 
-/* An edge from sample a to sample b of the grid. */
-typedef struct edge {
-    uint a[3], b[3];
-} edge;
+/* Where an edge begins and which way it goes, in one word: offsets of its first end from the first sample of the brick's
+ * row of bits 0-6 x, 7-10 y, 11-13 z, then a step of -1, 0 or 1 along each axis, plus 1, two bits each. */
+#define PLACE(x, y, z, step_x, step_y, step_z)                                                                         \
+    ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
+     (uint)((step_z) + 1) << 18)
 
-/* The edge of a type that the sample (x, y, z) owns; see edge_ends of the reference. */
-edge edge_of(uint type, bool odd, uint x, uint y, uint z) {
-    edge e = {{x, y, z}, {x, y, z}};
-    e.b[0] += type == 0 || type == 3 || type == 4;
-    e.b[1] += type == 1 || type == 3 || type == 5;
-    e.b[2] += type == 2 || type == 4 || type == 5;
-    if (odd && (type == 3 || type == 4)) e.a[0]++, e.b[0]--;
-    if (odd && type == 5) e.a[1]++, e.b[1]--;
-    return e;
-}
-
-void position_store(const slab *s, const edge *e, float t, global float *out) {
-    float p[3];
-    for (uint axis = 0; axis < 3; axis++) {
-        float start = (float)(s->first[axis] + (int)e->a[axis]);
-        p[axis] = e->b[axis] > e->a[axis] ? start + t : e->b[axis] < e->a[axis] ? start - t : start;
-    }
-    for (uint row = 0; row < 3; row++) {
-        const float *m = s->matrix + 4 * row;
-        out[row] = ((m[0] * p[0] + m[1] * p[1]) + m[2] * p[2]) + m[3];
-    }
+/* The position on the edge at t, in world space. */
+inline_always float3 position_at(const slab *s, corner c, uint place, float t) {
+    int step_x = (int)(place >> 14 & 3) - 1, step_y = (int)(place >> 16 & 3) - 1, step_z = (int)(place >> 18 & 3) - 1;
+    float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
+    float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
+    float z = (float)(s->first[2] + (int)(c.z + (place >> 11 & 7))) + (float)step_z * t;
+    const float *m = s->matrix;
+    return (float3)(((m[0] * x + m[1] * y) + m[2] * z) + m[3], ((m[4] * x + m[5] * y) + m[6] * z) + m[7],
+                    ((m[8] * x + m[9] * y) + m[10] * z) + m[11]);
 }
 
 #if NORMALS
@@ -143,11 +134,13 @@ REAL difference(global const BITS *samples, const slab *s, const uint p[3], uint
 }
 
 /* Unit length, towards lower values; zero where the gradient vanishes. */
-void normal_store(global const BITS *samples, const slab *s, const edge *e, float t, global float *out) {
+void normal_store(global const BITS *samples, const slab *s, corner c, uint place, float t, global float *out) {
     const float *m = s->normal_matrix;
+    const uint a[3] = {c.x + (place & 0x7f), c.y + (place >> 7 & 0xf), c.z + (place >> 11 & 7)};
+    const uint b[3] = {a[0] + (place >> 14 & 3) - 1, a[1] + (place >> 16 & 3) - 1, a[2] + (place >> 18 & 3) - 1};
     REAL g[3], n[3];
     for (uint axis = 0; axis < 3; axis++) {
-        REAL ga = difference(samples, s, e->a, axis), gb = difference(samples, s, e->b, axis);
+        REAL ga = difference(samples, s, a, axis), gb = difference(samples, s, b, axis);
         g[axis] = ga + (REAL)t * (gb - ga);
     }
     for (uint row = 0; row < 3; row++)
