@@ -6,7 +6,7 @@
  *   others own, into scratch;
  *   counts the vertices and triangles of every brick that is not uniform, row by row, and stores where in the brick each
  *   row's output begins;
- *   posts the tile's sums and obtains what all tiles before it emit (scan.cl);
+ *   posts the tile's sums and, now or after its other tiles, obtains what all tiles before it emit (scan.cl);
  *   stores where each brick's output begins, and appends the bricks that emit something to the list for kernel 2.
  * Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base.
  */
@@ -224,20 +224,16 @@ emission tile_recount(const slab *s, uint number, global const BITS *samples, gl
 }
 
 /* What all tiles before this one emit. Called by the whole group; shared: 5 words of local memory. */
-uint2 tile_prefix(const slab *s, uint number, emission sums, global const BITS *samples, global const ulong *cells,
-                  global uint *head, global uint *tiles, local uint *shared) {
+uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint *head,
+                  global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
-    if (leader) {
-        scan_post_sum(tiles, number, 0, sums.vertices);
-        scan_post_sum(tiles, number, 1, sums.triangles);
-    }
     bool complete = false;
     while (!complete) {
         group_barrier();
         if (leader) {
-            shared[0] = scan_look_back(tiles, 0, &back[0], &prefix[0], s->spin_limit);
-            shared[1] = shared[0] && scan_look_back(tiles, 1, &back[1], &prefix[1], s->spin_limit);
+            shared[0] = scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->spin_limit);
+            shared[1] = shared[0] && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->spin_limit);
             shared[2] = shared[0] ? back[1] : back[0];
             shared[3] = 0;
             shared[4] = 0;
@@ -252,14 +248,12 @@ uint2 tile_prefix(const slab *s, uint number, emission sums, global const BITS *
         }
         group_barrier();
         if (leader && !complete) {
-            scan_post_sum(tiles, missing, 0, shared[3]);
-            scan_post_sum(tiles, missing, 1, shared[4]);
+            scan_post_sum(tiles, missing, TILE_VERTICES, shared[3]);
+            scan_post_sum(tiles, missing, TILE_TRIANGLES, shared[4]);
             atomic_inc(&head[STATE_FALLBACKS]);
         }
     }
     if (leader) {
-        scan_post_prefix(tiles, number, 0, prefix[0] + sums.vertices);
-        scan_post_prefix(tiles, number, 1, prefix[1] + sums.triangles);
         shared[0] = prefix[0];
         shared[1] = prefix[1];
     }
@@ -287,6 +281,21 @@ void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, globa
     }
 }
 
+/* Looks back for a tile whose sums are posted, posts its prefix and stores what follows from it. */
+void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint2 *bases,
+                 global const uint *masks, global uint *active, global uint *head, global uint *tiles,
+                 local uint *shared) {
+    uint2 prefix = tile_prefix(s, number, samples, cells, head, tiles, shared);
+    if (get_local_id(0) == 0) {
+        uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
+        uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);
+        scan_post_prefix(tiles, number, TILE_VERTICES, vertices);
+        scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
+        if (number + 1 == s->tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
+    }
+    tile_finish(s, tile_locate(s, number), prefix, bases, masks, active, head, shared);
+}
+
 /* state: heads and tiles of the slabs, cleared. scratch: per group, room for the halo of a tile. */
 kernel void classify(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
                      global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
@@ -298,7 +307,7 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
     global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
     active += s.active_offset;
     scratch += get_group_id(0) * (size_t)scratch_words;
-    uint number = 0;
+    uint number = 0, first_own = s.tile_count, last_own = s.tile_count, cell_count = 0, nonfinite = 0;
     while (number < s.tile_count) {
         group_barrier();
         if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
@@ -308,7 +317,7 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
         if (number < s.tile_count) {
             tile t = tile_locate(&s, number);
             emission sums = {0, 0, 0};
-            uint nonfinite = planes_sign(&s, t, t.z0, t.z0 + 1, samples, words, scratch);
+            nonfinite |= planes_sign(&s, t, t.z0, t.z0 + 1, samples, words, scratch);
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES) {
                 nonfinite |= planes_sign(&s, t, z + 1, min(z + BRICK_PLANES, min(t.z1, s.nz - 1)) + 1, samples, words,
                                          scratch);
@@ -319,16 +328,27 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
 #endif
                 );
             }
-            if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
-            uint2 prefix = tile_prefix(&s, number, sums, samples, cells, head, tiles, shared);
-            tile_finish(&s, t, prefix, bases, masks, active, head, shared);
+            cell_count += sums.cells;
             if (get_local_id(0) == 0) {
-                if (sums.cells) atomic_add(&head[STATE_ACTIVE_CELLS], sums.cells);
-                if (number + 1 == s.tile_count) {
-                    head[STATE_VERTICES] = prefix.x + sums.vertices;
-                    head[STATE_TRIANGLES] = prefix.y + sums.triangles;
-                }
+                scan_post_sum(tiles, number, TILE_VERTICES, sums.vertices);
+                scan_post_sum(tiles, number, TILE_TRIANGLES, sums.triangles);
             }
+#if WORK_ITEMS == 1
+            if (first_own == s.tile_count)
+                first_own = number;
+            else
+                tiles[TILE_WORDS * last_own + TILE_NEXT] = number;
+            tiles[TILE_WORDS * number + TILE_NEXT] = s.tile_count;
+            last_own = number;
+#else
+            tile_settle(&s, number, samples, cells, bases, masks, active, head, tiles, shared);
+#endif
         }
     }
+#if WORK_ITEMS == 1
+    for (uint own = first_own; own < s.tile_count; own = tiles[TILE_WORDS * own + TILE_NEXT])
+        tile_settle(&s, own, samples, cells, bases, masks, active, head, tiles, shared);
+#endif
+    if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
+    if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }

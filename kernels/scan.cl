@@ -4,7 +4,8 @@
  * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted, back
  * to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket, so all
  * earlier tiles have been started; a device that lets a started group starve is met by the fallback: after spin_limit
- * polls the waiting group recomputes the missing sum itself.
+ * polls the waiting group recomputes the missing sum itself. Where a group is one thread of a CPU, which the system may take
+ * away at any time, groups post the sums of all their tiles before they look back for any.
  *
  * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
  * Owens, "Decoupled Fallback" (2025).
@@ -17,10 +18,17 @@
 
 uint scan_word(uint state, uint value) { return state << 30 | value; }
 
-volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) { return tiles + 2 * tile + channel; }
+volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) {
+    return tiles + TILE_WORDS * tile + channel;
+}
 
 void scan_post_sum(global uint *tiles, uint tile, uint channel, uint sum) {
     atomic_cmpxchg(scan_at(tiles, tile, channel), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
+}
+
+/* The sum that a group posted for a tile of its own. */
+uint scan_own_sum(global uint *tiles, uint tile, uint channel) {
+    return atomic_or(scan_at(tiles, tile, channel), 0u) & SCAN_VALUE;
 }
 
 void scan_post_prefix(global uint *tiles, uint tile, uint channel, uint prefix) {

@@ -39,6 +39,9 @@ enum {
     STATE_WORDS
 };
 
+/* Words of the state buffer per tile: its two sums as scan.cl keeps them, and the next tile of the same group. */
+enum { TILE_VERTICES, TILE_TRIANGLES, TILE_NEXT, TILE_WORDS };
+
 typedef struct slab {
     slab_u64 sample_offset;  /* of plane sample_z in the buffer, in samples */
     slab_u64 sample_count;   /* samples in the buffer from there on */
@@ -59,7 +62,7 @@ typedef struct slab {
     slab_u32 tile_count;
     slab_u32 spin_limit;
     slab_u32 head_offset;    /* of the slab's head in the state buffer, in words */
-    slab_u32 tiles_offset;   /* of its tiles, two words each, one per sum */
+    slab_u32 tiles_offset;   /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset;  /* of its list of active bricks */
     slab_u32 has_nodata;
     slab_u32 vertex_base;      /* number of the slab's first vertex */

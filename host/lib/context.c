@@ -132,7 +132,7 @@ static tc_status tuning_default(tc_context *context) {
     bool cpu = !strcmp(context->info.type, "cpu");
     if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
     if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
-    if (!o->spin_limit) o->spin_limit = cpu ? 1u << 20 : 1u << 12;
+    if (!o->spin_limit) o->spin_limit = 1u << 14;
     if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
     if ((o->work_items != 1 && o->work_items % 32) || o->work_items > context->info.max_work_group_size)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %llu on this device",

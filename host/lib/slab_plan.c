@@ -68,7 +68,7 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t layers = plan_window_layers(plan);
     uint64_t words = 8 * BRICK_PLANES * layers * plan_words_per_plane(plan, grid);
     uint64_t samples = samples_bytes(plan, grid);
-    uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + 2ull * plan->slab_tiles);
+    uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
     *largest = samples > words ? samples : words;
     return samples + words * 2 + words / 4 + (can_miss_samples(grid) ? words : 0) +

@@ -34,7 +34,7 @@ static void base_fill(run *r, inside_range inside, double isovalue) {
 }
 
 static uint64_t state_bytes(const run *r) {
-    return 4ull * r->plan->slab_count * (STATE_WORDS + 2ull * r->plan->slab_tiles);
+    return 4ull * r->plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * r->plan->slab_tiles);
 }
 
 static tc_status workspace_reserve(run *r) {

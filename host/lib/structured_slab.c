@@ -89,7 +89,7 @@ tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
     s->cell_z = s->z0 ? s->z0 - 1 : 0;
     s->sample_z = slab_samples_begin(r->plan, slab_index);
     s->head_offset = slab_index * STATE_WORDS;
-    s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * 2 * r->plan->slab_tiles;
+    s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
     s->active_offset =
         (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
