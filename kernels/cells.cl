@@ -26,14 +26,20 @@ ulong word_present_pair(global const BITS *samples, const slab *s, uint y, uint 
     return word & word_shifted(word, next);
 }
 
-/* One work-item per word: dimension 0 runs over words of a row, 1 over rows, 2 over planes from cell_z on. */
-kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells) {
-    uint w = (uint)get_global_id(0), y = (uint)get_global_id(1), z = s.cell_z + (uint)get_global_id(2);
-    ulong present = 0;
-    if (y + 1 < s.ny && z + 1 < s.nz)
-        present = word_present_pair(samples, &s, y, z, w) & word_present_pair(samples, &s, y + 1, z, w) &
-                  word_present_pair(samples, &s, y, z + 1, w) & word_present_pair(samples, &s, y + 1, z + 1, w);
-    cells[((z - s.cell_z) * s.ny + y) * s.words_x + w] = present;
+/* All groups together go through the words of the planes from cell_z on, plane_count of them. */
+kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells, uint plane_count) {
+    uint row_count = s.ny * plane_count;
+    for (uint row = (uint)get_group_id(0); row < row_count; row += (uint)get_num_groups(0)) {
+        uint y = row % s.ny, z = s.cell_z + row / s.ny;
+        bool last = y + 1 == s.ny || z + 1 == s.nz;
+        for (uint w = (uint)get_local_id(0); w < s.words_x; w += WORK_ITEMS) {
+            ulong present = last ? 0 : word_present_pair(samples, &s, y, z, w);
+            if (present) present &= word_present_pair(samples, &s, y + 1, z, w);
+            if (present) present &= word_present_pair(samples, &s, y, z + 1, w);
+            if (present) present &= word_present_pair(samples, &s, y + 1, z + 1, w);
+            cells[(ulong)row * s.words_x + w] = present;
+        }
+    }
 }
 
 /* Present cubes of the row (y, z); none where that is outside the grid. */

@@ -108,6 +108,18 @@ static bool edge_exists(const reference *r, const int64_t owner[3], int type) {
     return false;
 }
 
+/* A row of cubes and edges without a sign change, neighbours included, has nothing to emit. */
+static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    int64_t count = (x1 < r->dims[0] ? x1 + 1 : x1) - x0;
+    uint8_t any = 0, all = INSIDE;
+    for (int64_t k = z; k <= z + 1 && k < r->dims[2]; k++)
+        for (int64_t j = y; j <= y + 1 && j < r->dims[1]; j++) {
+            const uint8_t *signs = r->signs + sample_index(r, (int64_t[3]){x0, j, k});
+            for (int64_t n = 0; n < count; n++) any |= signs[n], all &= signs[n];
+        }
+    return !(any & INSIDE) || (all & INSIDE);
+}
+
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
 #define REAL    float
@@ -152,6 +164,7 @@ static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
 }
 
 static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    if (row_uniform(r, x0, x1, y, z)) return;
     for (int type = 0; type < EDGES_PER_SAMPLE; type++)
         for (int64_t x = x0; x < x1; x++) {
             int64_t owner[3] = {x, y, z}, a[3], b[3];
@@ -184,6 +197,7 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
 }
 
 static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    if (row_uniform(r, x0, x1, y, z)) return;
     for (int64_t x = x0; x < x1; x++) {
         int64_t cube[3] = {x, y, z};
         if (!cube_present(r, cube)) continue;

@@ -94,9 +94,7 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
                                          ARGUMENT(w->masks.memory), ARGUMENT(w->active.memory),
                                          ARGUMENT(w->state.memory), ARGUMENT(w->scratch.memory),
                                          ARGUMENT(scratch_words)};
-    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
-    status = kernel_launch(r, r->program->classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments, 1,
-                           &global, &local);
+    status = kernel_launch(r, r->program->classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
     return status ? status : slab_save(r, slab_index);
 }
 

@@ -109,9 +109,7 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
         ARGUMENT(work->masks.memory), ARGUMENT(work->active.memory), ARGUMENT(work->state.memory),
         ARGUMENT(cases->memory), ARGUMENT(work->positions.memory), ARGUMENT(work->normals.memory),
         ARGUMENT(work->triangles.memory)};
-    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
-    return kernel_launch(r, r->program->emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments, 1, &global,
-                         &local);
+    return kernel_launch(r, r->program->emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
 /* Where the layers of a slab begin in it: layer_count + 1 pairs of vertices and triangles. */

@@ -48,14 +48,14 @@ void slab_store_release(slab_store *store);
 /* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
 tc_status slabs_emit(run *r, tc_mesh *mesh);
 
-/* Sets one argument after the other, then launches work_groups groups. */
+/* Sets one argument after the other, then launches work_groups groups of work_items. */
 typedef struct kernel_argument {
     size_t bytes;
     const void *value;
 } kernel_argument;
 
 tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const kernel_argument *arguments,
-                        cl_uint argument_count, cl_uint dimensions, const size_t *global, const size_t *local);
+                        cl_uint argument_count);
 
 #define ARGUMENT(x) {sizeof(x), &(x)}
 

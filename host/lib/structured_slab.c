@@ -12,12 +12,13 @@
 static const uintptr_t page_bytes = 4096;
 
 tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const kernel_argument *arguments,
-                        cl_uint argument_count, cl_uint dimensions, const size_t *global, const size_t *local) {
+                        cl_uint argument_count) {
+    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
     cl_int error = CL_SUCCESS;
     for (cl_uint n = 0; n < argument_count && !error; n++)
         error = cl->SetKernelArg(kernel, n, arguments[n].bytes, arguments[n].value);
     if (!error)
-        error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, dimensions, NULL, global, local, 0, NULL, NULL);
+        error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
     return error ? opencl_fail(name, error) : TC_OK;
 }
 
@@ -70,13 +71,13 @@ void structured_grid_destroy(tc_grid *grid) {
 /* One bit per cube whose corners are present, for the planes that kernels 1 and 2 look at. */
 static tc_status cells_make(run *r, const slab *s) {
     workspace *work = &r->context->work;
-    uint32_t planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
+    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
     uint64_t bytes = 8ull * planes * plan_words_per_plane(r->plan, r->grid);
     tc_status status = buffer_reserve(r->context, &work->cells, bytes, "present cells");
     if (status) return status;
-    const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory)};
-    const size_t global[] = {s->words_x, s->ny, planes};
-    return kernel_launch(r, r->program->cells, "kernel cells_mark", arguments, 3, 3, global, NULL);
+    const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory),
+                                         ARGUMENT(planes)};
+    return kernel_launch(r, r->program->cells, "kernel cells_mark", arguments, 4);
 }
 
 tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
