@@ -40,10 +40,8 @@ uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *sam
     uint nonfinite = 0;
 #if WORK_ITEMS == 1
     for (uint z = z0; z < z1; z++)
-        for (uint y = t.y0; y < t.y0 + rows; y++) {
-            global ulong *row = tile_row(s, t, y, z, words, scratch);
-            for (uint w = 0; w < s->words_x; w++) row[w] = word_inside(samples, s, y, z, w, &nonfinite);
-        }
+        for (uint y = t.y0; y < t.y0 + rows; y++)
+            row_sign(samples, s, y, z, tile_row(s, t, y, z, words, scratch), &nonfinite);
 #else
     uint parts = 4 * s->words_x;
     uint count = (z1 - z0) * rows * parts;

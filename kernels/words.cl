@@ -105,6 +105,19 @@ ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uin
     return word;
 }
 
+#if WORK_ITEMS == 1
+/* All words of a row. */
+void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row, uint *nonfinite) {
+    ulong start = row_start(s, y, z);
+    if (start + 64ul * s->words_x <= s->sample_offset + s->sample_count) {
+        for (uint w = 0; w < s->words_x; w++) row[w] = word_full(samples + start + 64ul * w, s, nonfinite);
+        row[s->words_x - 1] &= word_valid(s, s->words_x - 1);
+    } else {
+        for (uint w = 0; w < s->words_x; w++) row[w] = word_inside(samples, s, y, z, w, nonfinite);
+    }
+}
+#endif
+
 uint word_index(const slab *s, uint y, uint z, uint w) { return ((z - s->word_z) * s->ny + y) * s->words_x + w; }
 
 uint brick_index(const slab *s, uint y, uint z, uint w) {

@@ -1,0 +1,117 @@
+/*
+ * bench.c - tetracubes-bench: cases, each verified and then timed, beside the limits of the device's memory
+ *
+ * Everything measured is reached through the public API. With --turns the process is one of two peers that take turns
+ * (peers.py): what happens between two turns, the release of the mesh included, is outside the timed part of both.
+ */
+#include "bench_options.h"
+#include "device_limits.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "measure.h"
+#include "progress.h"
+#include "report.h"
+
+#include <stdlib.h>
+
+/* Cold extractions, one per line on standard input, until its end. */
+static int take_turns(measurement *m, case_result *result) {
+    char line[256];
+    double *times = NULL;
+    int count = 0, status = 0;
+    printf("ready\n");
+    fflush(stdout);
+    while (!status && fgets(line, sizeof line, stdin)) {
+        double *grown = realloc(times, ((size_t)count + 1) * sizeof *times);
+        if (!grown) {
+            status = fail(STATUS_FAILED, "no memory for the times of %d turns", count);
+            break;
+        }
+        times = grown;
+        status = measure_cold(m, &times[count]);
+        if (status) break;
+        printf("%.6f\n", times[count++]);
+        fflush(stdout);
+        if (progress_cancelled()) status = progress_status();
+    }
+    if (!status) result->extract_ms = spread_of(times, count);
+    free(times);
+    return status;
+}
+
+static int case_run(tc_context *context, const bench_options *o, const samples *s, const device_limits *limits,
+                    case_result *result) {
+    measurement m;
+    int status = measure_open(context, s, o->iso, &m, result);
+    if (!status && !o->turns) status = measure_cold_times(&m, o->repeat, result);
+    if (!status) status = measure_warm_times(&m, o->repeat, limits, result);
+    if (!status && o->turns) status = take_turns(&m, result);
+    measure_close(&m);
+    progress_clear();
+    return status;
+}
+
+/* Case n of the command line, fields varying slowest, sizes fastest. */
+static int case_samples(const bench_options *o, int n, samples *out) {
+    if (o->input) return samples_read(o, out);
+    int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
+    return samples_make(o->fields[f], o->dims[size], o->types[type], out);
+}
+
+static int cases_run(tc_context *context, const bench_options *o) {
+    bench_report report = {.device = {.struct_size = sizeof report.device}};
+    int case_count = o->input ? 1 : o->field_count * o->dims_count * o->type_count;
+    int has_table = !o->json && !o->turns;
+    samples s = {0};
+    case_result *results = calloc((size_t)case_count, sizeof *results);
+    report.cases = results;
+    int status = results ? 0 : fail(STATUS_FAILED, "no memory for %d results", case_count);
+    if (!status) status = library_status(tc_context_device(context, &report.device));
+    if (!status) status = device_limits_measure(context, &report.limits);
+    if (!status && has_table) report_head(&report);
+    for (int n = 0; n < case_count && !status; n++) {
+        status = case_samples(o, n, &s);
+        if (!status) status = case_run(context, o, &s, &report.limits, &results[n]);
+        if (!status) report.case_count++;
+        if (!status && has_table) report_row(&results[n]);
+        samples_release(&s);
+    }
+    if (!status && !has_table) status = report_json(&report);
+    free(results);
+    return status;
+}
+
+static int dump_run(const bench_options *o) {
+    samples s;
+    int status = case_samples(o, 0, &s);
+    if (!status) status = samples_dump(&s, o->dump);
+    progress_clear();
+    if (!status) status = report_dump_json(&s);
+    samples_release(&s);
+    return status;
+}
+
+static int measure_run(const bench_options *o) {
+    tc_context_options options;
+    tc_context *context = NULL;
+    tc_context_options_init(&options);
+    options.device = o->device;
+    int status = library_status(tc_context_create(&options, &context));
+    if (!status) status = cases_run(context, o);
+    tc_context_destroy(context);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    bench_options o;
+    int status = bench_options_parse(argc, argv, &o);
+    if (!status && o.help) {
+        bench_options_help(stdout);
+    } else if (!status) {
+        progress_begin(0);
+        status = o.dump ? dump_run(&o) : measure_run(&o);
+        progress_clear();
+    }
+    if (status) fprintf(stderr, "tetracubes-bench: %s\n", failure_text());
+    return status;
+}

@@ -1,0 +1,31 @@
+/* bench_options.h - the command line of tetracubes-bench */
+#ifndef BENCH_OPTIONS_H
+#define BENCH_OPTIONS_H
+
+#include "field.h"
+
+#include <stdio.h>
+
+#define LIST_MAX 16
+
+/* Options that may be given several times are lists; every combination is a case. */
+typedef struct bench_options {
+    const field *fields[LIST_MAX];
+    int64_t dims[LIST_MAX][3];
+    tc_type types[LIST_MAX];
+    int field_count, dims_count, type_count; /* never 0, but with an input, where dims and type are for raw data */
+    int has_iso;
+    double iso;
+    const char *device; /* NULL: the library's default */
+    const char *input;  /* a volume file instead of fields, or NULL */
+    const char *dump;   /* where to write the samples instead of measuring, or NULL */
+    int repeat;
+    int json, turns, help;
+} bench_options;
+
+/* Returns 0, or STATUS_USAGE with its text (failure.h). */
+int bench_options_parse(int argc, char **argv, bench_options *o);
+
+void bench_options_help(FILE *out);
+
+#endif

@@ -1,0 +1,79 @@
+#include "samples.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "progress.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#define CHUNK_BYTES ((uint64_t)4 << 20) /* made between two looks at progress */
+
+int samples_make(const field *f, const int64_t dims[3], tc_type type, samples *out) {
+    *out = (samples){.name = f->name};
+    tc_grid_options_init(&out->grid);
+    uint64_t plane = (uint64_t)dims[0] * (uint64_t)dims[1] * tc_type_bytes(type);
+    if (__builtin_mul_overflow(plane, (uint64_t)dims[2], &out->bytes) || out->bytes > PTRDIFF_MAX)
+        return fail(STATUS_USAGE, "--dims %" PRId64 ",%" PRId64 ",%" PRId64 " are more bytes than memory can have",
+                    dims[0], dims[1], dims[2]);
+    void *memory = mmap(NULL, out->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED)
+        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims",
+                    out->bytes >> 20);
+    out->made = memory;
+    out->grid.samples = memory;
+    out->grid.type = type;
+    for (int axis = 0; axis < 3; axis++) {
+        out->grid.dims[axis] = dims[axis];
+        out->grid.matrix[axis][axis] = 2.0 / (double)(dims[axis] - 1);
+        out->grid.matrix[axis][3] = -1.0;
+    }
+    int64_t step = plane < CHUNK_BYTES ? (int64_t)(CHUNK_BYTES / plane) : 1;
+    for (int64_t z = 0; z < dims[2]; z += step) {
+        int64_t end = dims[2] - z < step ? dims[2] : z + step;
+        field_sample(f, dims, type, 0, z, end, (char *)memory + (uint64_t)z * plane);
+        if (progress_update(NULL, "making samples", (double)end / (double)dims[2])) return progress_status();
+    }
+    return 0;
+}
+
+int samples_read(const bench_options *o, samples *out) {
+    read_request request;
+    *out = (samples){.name = o->input};
+    if (strrchr(o->input, '/')) out->name = strrchr(o->input, '/') + 1;
+    read_request_init(&request, o->input);
+    if (o->dims_count) {
+        memcpy(request.dims, o->dims[0], sizeof request.dims);
+        request.type = (int)o->types[0];
+    }
+    int status = volume_read(&request, &out->read);
+    if (status) return status;
+    const volume *v = &out->read;
+    tc_grid_options_init(&out->grid);
+    memcpy(out->grid.dims, v->dims, sizeof v->dims);
+    memcpy(out->grid.first, v->first, sizeof v->first);
+    memcpy(out->grid.matrix, v->matrix, sizeof v->matrix);
+    out->grid.type = v->type;
+    out->grid.samples = v->samples;
+    out->bytes = (uint64_t)v->dims[0] * (uint64_t)v->dims[1] * (uint64_t)v->dims[2] * tc_type_bytes(v->type);
+    return 0;
+}
+
+int samples_dump(const samples *s, const char *path) {
+    FILE *file = fopen(path, "wb");
+    if (!file) return fail(STATUS_FAILED, "--dump %s: cannot be written: %s", path, strerror(errno));
+    int failed = fwrite(s->grid.samples, 1, s->bytes, file) != s->bytes;
+    int error = errno;
+    if (fclose(file) && !failed) failed = 1, error = errno;
+    if (!failed) return 0;
+    remove(path);
+    return fail(STATUS_FAILED, "--dump %s: writing failed: %s", path, strerror(error));
+}
+
+void samples_release(samples *s) {
+    if (s->made) munmap(s->made, s->bytes);
+    volume_release(&s->read);
+    *s = (samples){0};
+}
