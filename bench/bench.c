@@ -68,9 +68,9 @@ static int cases_run(tc_context *context, const bench_options *o) {
     int status = results ? 0 : fail(STATUS_FAILED, "no memory for %d results", case_count);
     if (!status) status = library_status(tc_context_device(context, &report.device));
     if (!status) status = device_limits_measure(context, &report.limits);
-    if (!status && has_table) report_head(&report);
     for (int n = 0; n < case_count && !status; n++) {
         status = case_samples(o, n, &s);
+        if (!status && has_table && n == 0) report_head(&report);
         if (!status) status = case_run(context, o, &s, &report.limits, &results[n]);
         if (!status) report.case_count++;
         if (!status && has_table) report_row(&results[n]);

@@ -21,6 +21,7 @@
 #define PASSES       7
 #define PASS_MS      10.0
 #define LAUNCHES_MAX 64
+#define HOPELESS     2.0 /* a shape this many times slower than another is not timed */
 
 typedef struct shape {
     unsigned width; /* 32-bit words per access */
@@ -114,7 +115,7 @@ static cl_int kernel_measure(const bench_memory *m, const shape *s, cl_kernel ke
     cl_int error = clSetKernelArg(kernel, 0, sizeof m->buffer, &m->buffer);
     if (!error) error = clSetKernelArg(kernel, 1, sizeof chunk, &chunk);
     for (int warm = 0; warm < 2 && !error; warm++) error = pass_time(m, kernel, groups * s->items, s->items, 1, &ms);
-    if (error) return error;
+    if (error || bytes / ms * 1e-6 * HOPELESS < *best) return error;
     int launches = ms * LAUNCHES_MAX < PASS_MS ? LAUNCHES_MAX : 1 + (int)(PASS_MS / ms);
     for (int pass = 0; pass < PASSES && !error; pass++) {
         error = pass_time(m, kernel, groups * s->items, s->items, launches, &ms);

@@ -9,6 +9,7 @@ Then the two take turns, repeat by repeat, so that both see the same state of th
   VTK   vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
         are all cores unless --threads says otherwise
 
+On a device with memory of its own our mesh is complete there, not yet on the host; VTK's is always on the host.
 What is released is released outside the timed parts. Medians and their ratio are printed; a ratio above 1 means that
 Tetracubes is faster, though it makes about 2.4 times the triangles. With --skimage, skimage.measure.marching_cubes is
 timed too, a few times, after the turns: it is several times slower.

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Renders PLY meshes side by side into a PNG: the README's picture.
+r"""Renders PLY meshes side by side into a PNG: the README's picture.
 
     for field in tangle gyroid marschner-lobb; do
         tetracubes generate $field --dims 256,256,256 --type f32 -o $field.nrrd
         tetracubes extract $field.nrrd --iso 127.5 --normals -o $field.ply
     done
-    xvfb-run -a /usr/bin/python3 bench/picture.py tangle.ply gyroid.ply marschner-lobb.ply -o bench/pictures/surfaces.png
+    xvfb-run -a /usr/bin/python3 bench/picture.py tangle.ply gyroid.ply marschner-lobb.ply \
+        -o bench/pictures/surfaces.png
 
 Needs VTK (Debian: python3-vtk9) and, without a display, Xvfb (Debian: xvfb, xauth, libgl1-mesa-dri).
 """

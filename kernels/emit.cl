@@ -21,23 +21,10 @@ typedef struct mesh_buffers {
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-/* Without REAL (a wide type on a device without fp64) the host makes the vertices. */
-#ifdef REAL
-
-void vertex_store(const slab *s, corner c, uint place, BITS a, BITS b, ulong out, global const BITS *samples,
-                  mesh_buffers mesh) {
-    float t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
-    vstore3(position_at(s, c, place, t), out, mesh.positions);
-#if NORMALS
-    normal_store(samples, s, c, place, t, mesh.normals + 3 * out);
-#endif
-}
-
-#endif
-
-/* Crossed edges of a brick in the order of their vertices: where they are, and the samples at their ends. One work-item with
- * a brick to itself collects them first, so that the arithmetic runs over arrays; others store at once. */
+/* Crossed edges of a brick in the order of their vertices: where they are, and the samples at their ends. A work-item with a
+ * brick to itself collects them first, so that the arithmetic runs over arrays; others store at once. */
 #define BATCH_EDGES 1024
+#define BATCH_STEP  16
 
 typedef struct vertex_batch {
     corner brick;
@@ -49,28 +36,57 @@ typedef struct vertex_batch {
 #endif
 } vertex_batch;
 
+/* Without REAL (a wide type on a device without fp64) the host makes the vertices. */
 #ifdef REAL
 
-void batch_flush(vertex_batch *batch, const slab *s, global const BITS *samples, mesh_buffers mesh) {
 #if WORK_ITEMS == 1
-    for (uint n = 0; n < batch->count; n++)
-        vertex_store(s, batch->brick, batch->place[n], batch->a[n], batch->b[n], batch->out + n, samples, mesh);
-    batch->out += batch->count;
-    batch->count = 0;
-#endif
-}
 
 inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b,
                              global const BITS *samples, mesh_buffers mesh) {
-#if WORK_ITEMS == 1
     batch->place[batch->count] = place;
     batch->a[batch->count] = a;
     batch->b[batch->count] = b;
     batch->count++;
-#else
-    vertex_store(s, batch->brick, place, a, b, batch->out++, samples, mesh);
-#endif
 }
+
+/* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
+void batch_flush(vertex_batch *batch, const slab *s, global const BITS *samples, mesh_buffers mesh) {
+    const corner brick = batch->brick;
+    for (uint first = 0; first < batch->count; first += BATCH_STEP) {
+        float t[BATCH_STEP], positions[3 * BATCH_STEP];
+        for (uint n = 0; n < BATCH_STEP; n++) {
+            t[n] = crossing(SAMPLE_VALUE(batch->a[first + n]), SAMPLE_VALUE(batch->b[first + n]), ISOVALUE(s));
+            position_make(s, brick, batch->place[first + n], t[n], positions + 3 * n);
+        }
+        global float *out = mesh.positions + 3 * (batch->out + first);
+        uint count = min(batch->count - first, (uint)BATCH_STEP);
+        if (count == BATCH_STEP)
+            for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, out);
+        else
+            for (uint n = 0; n < 3 * count; n++) out[n] = positions[n];
+#if NORMALS
+        for (uint n = 0; n < count; n++)
+            normal_store(samples, s, brick, batch->place[first + n], t[n], mesh.normals + 3 * (batch->out + first + n));
+#endif
+    }
+    batch->out += batch->count;
+    batch->count = 0;
+}
+
+#else
+
+inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b,
+                             global const BITS *samples, mesh_buffers mesh) {
+    float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
+    position_make(s, batch->brick, place, t, position);
+    for (uint n = 0; n < 3; n++) mesh.positions[3 * batch->out + n] = position[n];
+#if NORMALS
+    normal_store(samples, s, batch->brick, place, t, mesh.normals + 3 * batch->out);
+#endif
+    batch->out++;
+}
+
+#endif
 
 /* The crossed edges of one type in a row. In even cubes the edge runs from the row's sample to the one `far` further on; in
  * odd ones a diagonal starts `near_odd` samples further on instead and ends at far_odd. */
@@ -143,12 +159,20 @@ inline_always cube_numbers cube_numbers_of(const crossings *a, const crossings *
     return n;
 }
 
+/* popcount of a vector, in the form that compilers know: some built-in ones go element by element. */
+inline_always ulong8 popcount8(ulong8 x) {
+    x -= (x >> 1) & 0x5555555555555555ul;
+    x = (x & 0x3333333333333333ul) + ((x >> 2) & 0x3333333333333333ul);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0ful;
+    return (x * 0x0101010101010101ul) >> 56;
+}
+
 /* Numbers of the 18 vertices of the cube at a bit; those on edges that are not crossed are meaningless. */
 inline_always void cube_vertices(const cube_numbers *n, uint bit, uint number[CUBE_EDGES]) {
     ulong at_x = (1ul << bit) - 1, at_x1 = at_x << 1 | 1;
     ulong8 below = (ulong8)(at_x, at_x, at_x, at_x, at_x, at_x1, at_x1, at_x1);
-    vstore8(n->base_a + convert_uint8(popcount(n->crossed_a & at_x)), 0, number);
-    vstore8(n->base_b + convert_uint8(popcount(n->crossed_b & below)), 1, number);
+    vstore8(n->base_a + convert_uint8(popcount8(n->crossed_a & at_x)), 0, number);
+    vstore8(n->base_b + convert_uint8(popcount8(n->crossed_b & below)), 1, number);
     number[16] = n->base_c[0] + (uint)popcount(n->crossed_c[0] & at_x1);
     number[17] = n->base_c[1] + (uint)popcount(n->crossed_c[1] & at_x1);
 }
@@ -179,8 +203,14 @@ void row_triangles(const slab *s, uint y, uint z, uint w, const cube_row *r, ulo
         uint odd = (uint)(~r->even >> bit & 1);
         global const uchar *entry = cases + CASE_BYTES * (256 * odd + pattern_at(corners, bit));
         global const uchar *edge = entry + 1;
-        for (uint end = out + entry[0]; out < end; out++, edge += 3)
-            vstore3((uint3)(number[edge[0]], number[edge[1]], number[edge[2]]), out, mesh.triangles);
+        global uint *index = mesh.triangles + 3ul * out;
+        out += entry[0];
+#pragma clang loop vectorize(disable) /* four or five rounds: gathers cost more */
+        for (uint n = entry[0]; n; n--, edge += 3, index += 3) {
+            index[0] = number[edge[0]];
+            index[1] = number[edge[1]];
+            index[2] = number[edge[2]];
+        }
     }
 }
 
@@ -254,7 +284,7 @@ void brick_emit(const slab *s, uint number, uint mask, vertex_batch *batch, glob
         if (batch->count + 6 * 64 > BATCH_EDGES) batch_flush(batch, s, samples, mesh);
 #endif
     }
-#ifdef REAL
+#if defined(REAL) && WORK_ITEMS == 1
     batch_flush(batch, s, samples, mesh);
 #endif
 }

@@ -94,14 +94,15 @@ inline_always float crossing(REAL a, REAL b, REAL iso) {
      (uint)((step_z) + 1) << 18)
 
 /* The position on the edge at t, in world space. */
-inline_always float3 position_at(const slab *s, corner c, uint place, float t) {
+inline_always void position_make(const slab *s, corner c, uint place, float t, float out[3]) {
     int step_x = (int)(place >> 14 & 3) - 1, step_y = (int)(place >> 16 & 3) - 1, step_z = (int)(place >> 18 & 3) - 1;
     float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
     float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
     float z = (float)(s->first[2] + (int)(c.z + (place >> 11 & 7))) + (float)step_z * t;
     const float *m = s->matrix;
-    return (float3)(((m[0] * x + m[1] * y) + m[2] * z) + m[3], ((m[4] * x + m[5] * y) + m[6] * z) + m[7],
-                    ((m[8] * x + m[9] * y) + m[10] * z) + m[11]);
+    out[0] = ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
+    out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
+    out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
 
 #if NORMALS

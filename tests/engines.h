@@ -38,8 +38,8 @@ static inline bool device_exists(void) {
 }
 
 /* Extracts into *mesh, which is made where NULL; false where that fails. */
-static inline bool extract(tc_context *context, const tc_grid_options *grid_options,
-                           const tc_extract_options *options, tc_mesh **mesh, tc_mesh_data *data) {
+static inline bool extract(tc_context *context, const tc_grid_options *grid_options, const tc_extract_options *options,
+                           tc_mesh **mesh, tc_mesh_data *data) {
     tc_grid *grid = NULL;
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     tc_status status = tc_grid_create(context, grid_options, &grid);

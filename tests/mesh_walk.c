@@ -162,7 +162,8 @@ static void cofactors_make(const walk *w, long double out[3][3]) {
         for (int c = 0; c < 3; c++) {
             const double(*m)[4] = w->grid->matrix;
             int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-            out[r][c] = (long double)m[r1][c1] * (long double)m[r2][c2] - (long double)m[r1][c2] * (long double)m[r2][c1];
+            out[r][c] =
+                (long double)m[r1][c1] * (long double)m[r2][c2] - (long double)m[r1][c2] * (long double)m[r2][c1];
         }
 }
 

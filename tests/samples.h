@@ -11,28 +11,52 @@
 
 static inline double sample_get(const void *samples, tc_type type, int64_t n) {
     switch (type) {
-    case TC_U8: return ((const uint8_t *)samples)[n];
-    case TC_I8: return ((const int8_t *)samples)[n];
-    case TC_U16: return ((const uint16_t *)samples)[n];
-    case TC_I16: return ((const int16_t *)samples)[n];
-    case TC_U32: return ((const uint32_t *)samples)[n];
-    case TC_I32: return ((const int32_t *)samples)[n];
-    case TC_F32: return (double)((const float *)samples)[n];
-    default: return ((const double *)samples)[n];
+    case TC_U8:
+        return ((const uint8_t *)samples)[n];
+    case TC_I8:
+        return ((const int8_t *)samples)[n];
+    case TC_U16:
+        return ((const uint16_t *)samples)[n];
+    case TC_I16:
+        return ((const int16_t *)samples)[n];
+    case TC_U32:
+        return ((const uint32_t *)samples)[n];
+    case TC_I32:
+        return ((const int32_t *)samples)[n];
+    case TC_F32:
+        return (double)((const float *)samples)[n];
+    default:
+        return ((const double *)samples)[n];
     }
 }
 
 /* Integers truncate towards zero; what the type cannot hold is the caller's mistake. */
 static inline void sample_set(void *samples, tc_type type, int64_t n, double value) {
     switch (type) {
-    case TC_U8: ((uint8_t *)samples)[n] = (uint8_t)value; break;
-    case TC_I8: ((int8_t *)samples)[n] = (int8_t)value; break;
-    case TC_U16: ((uint16_t *)samples)[n] = (uint16_t)value; break;
-    case TC_I16: ((int16_t *)samples)[n] = (int16_t)value; break;
-    case TC_U32: ((uint32_t *)samples)[n] = (uint32_t)value; break;
-    case TC_I32: ((int32_t *)samples)[n] = (int32_t)value; break;
-    case TC_F32: ((float *)samples)[n] = (float)value; break;
-    default: ((double *)samples)[n] = value; break;
+    case TC_U8:
+        ((uint8_t *)samples)[n] = (uint8_t)value;
+        break;
+    case TC_I8:
+        ((int8_t *)samples)[n] = (int8_t)value;
+        break;
+    case TC_U16:
+        ((uint16_t *)samples)[n] = (uint16_t)value;
+        break;
+    case TC_I16:
+        ((int16_t *)samples)[n] = (int16_t)value;
+        break;
+    case TC_U32:
+        ((uint32_t *)samples)[n] = (uint32_t)value;
+        break;
+    case TC_I32:
+        ((int32_t *)samples)[n] = (int32_t)value;
+        break;
+    case TC_F32:
+        ((float *)samples)[n] = (float)value;
+        break;
+    default:
+        ((double *)samples)[n] = value;
+        break;
     }
 }
 

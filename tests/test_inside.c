@@ -1,8 +1,9 @@
 /*
  * test_inside.c - the test on bit patterns against (double)sample >= isovalue
  *
- * 8 and 16 bits: every pattern. 32 and 64 bits: patterns around every value that could matter (limits, zeros, subnormals,
- * infinities, the isovalue itself, powers of two) and random ones. Missing floats (NaN, infinities) may fall anywhere.
+ * 8 and 16 bits: every pattern. 32 and 64 bits: patterns around every value that could matter (limits, zeros,
+ * subnormals, infinities, the isovalue itself, powers of two) and random ones. Missing floats (NaN, infinities) may
+ * fall anywhere.
  */
 #include "expect.h"
 #include "inside.h"
@@ -42,10 +43,14 @@ static double value_of(tc_type type, uint64_t pattern) {
         memcpy(&value, bytes, sizeof value);
         return (double)value;
     }
-    case TC_I8: return (int8_t)pattern;
-    case TC_I16: return (int16_t)pattern;
-    case TC_I32: return (int32_t)pattern;
-    default: return (double)pattern;
+    case TC_I8:
+        return (int8_t)pattern;
+    case TC_I16:
+        return (int16_t)pattern;
+    case TC_I32:
+        return (int32_t)pattern;
+    default:
+        return (double)pattern;
     }
 }
 
@@ -76,10 +81,11 @@ static void values_add_around(double value) {
 
 /* Isovalues for a type; those of narrow types within reach of its range, and beyond. */
 static void values_choose(tc_type type) {
-    const double landmarks[] = {0,       1,        -1,      127,     128,  -128, 255,     256,         32767,      -32768,
-                                65535,   -0x1p31,  0x1p31,  0x1p32,  0.1,  -0.3, 3.14159, 0x1p24,      0x1p-126,   -0x1p-126,
-                                0x1p53,  -0x1p53,  FLT_MAX, -FLT_MAX, 1e30, 1e-30, FLT_MIN, -0x1p-149, 0x1.8p-149, 1e300,
-                                DBL_MAX, -DBL_MAX, DBL_MIN, 0x1p-1074, 65504.7};
+    const double landmarks[] = {0,          1,       -1,       127,      128,      -128,      255,
+                                256,        32767,   -32768,   65535,    -0x1p31,  0x1p31,    0x1p32,
+                                0.1,        -0.3,    3.14159,  0x1p24,   0x1p-126, -0x1p-126, 0x1p53,
+                                -0x1p53,    FLT_MAX, -FLT_MAX, 1e30,     1e-30,    FLT_MIN,   -0x1p-149,
+                                0x1.8p-149, 1e300,   DBL_MAX,  -DBL_MAX, DBL_MIN,  0x1p-1074, 65504.7};
     value_count = 0;
     value_add(-0.0);
     for (unsigned n = 0; n < sizeof landmarks / sizeof *landmarks; n++) values_add_around(landmarks[n]);
@@ -136,8 +142,9 @@ static void expect_isovalue(tc_type type, double isovalue) {
     pattern_count = kept;
     EXPECT(wrong == 0, "%s, isovalue %.17g: %u patterns are on the wrong side, the first %llx", tc_type_name(type),
            isovalue, wrong, (unsigned long long)culprit);
-    EXPECT(!range.uniform || in == 0 || out == 0, "%s, isovalue %.17g: %u samples are inside, %u are not, though all are "
-                                                  "said to be on one side",
+    EXPECT(!range.uniform || in == 0 || out == 0,
+           "%s, isovalue %.17g: %u samples are inside, %u are not, though all are "
+           "said to be on one side",
            tc_type_name(type), isovalue, in, out);
 }
 
@@ -146,12 +153,14 @@ static void expect_value(tc_type type, double value) {
     bool any = sample_patterns(type, value, equal);
     unsigned wrong = 0, found = 0, kept = patterns_add_isovalue(type, value);
     for (unsigned n = 0; n < pattern_count; n++) {
-        bool listed = any && (patterns[n] == (equal[0] & type_mask(type)) || patterns[n] == (equal[1] & type_mask(type)));
+        bool listed =
+            any && (patterns[n] == (equal[0] & type_mask(type)) || patterns[n] == (equal[1] & type_mask(type)));
         found += listed;
         wrong += listed != (value_of(type, patterns[n]) == value);
     }
     pattern_count = kept;
-    EXPECT(wrong == 0, "%s: %u patterns are wrongly taken for the value %.17g, or not", tc_type_name(type), wrong, value);
+    EXPECT(wrong == 0, "%s: %u patterns are wrongly taken for the value %.17g, or not", tc_type_name(type), wrong,
+           value);
     EXPECT(!any || found, "%s: the patterns of %.17g are none that was tried", tc_type_name(type), value);
 }
 

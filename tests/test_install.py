@@ -136,7 +136,8 @@ class Installation:
         executables = ""
         for _, source in sources:
             name = f"by-cmake-{source.suffix[1:]}"
-            executables += f"add_executable({name} {source})\ntarget_link_libraries({name} PRIVATE tetracubes::tetracubes)\n"
+            executables += f"add_executable({name} {source})\n"
+            executables += f"target_link_libraries({name} PRIVATE tetracubes::tetracubes)\n"
         languages = " ".join("CXX" if source.suffix == ".cpp" else "C" for _, source in sources)
         version = ".".join(self.arguments.version.split(".")[:2])
         (self.folder / "CMakeLists.txt").write_text(
@@ -178,7 +179,8 @@ class Installation:
         source = folder / "readme.c"
         source.write_text(example, encoding="utf-8")
         program = self.compile(self.arguments.cc, source, "readme")
-        environment = dict(os.environ, LD_LIBRARY_PATH=str(self.libraries))
+        environment = dict(os.environ, LD_LIBRARY_PATH=str(self.libraries), POCL_CACHE_DIR=str(folder / "kernels"))
+        (folder / "kernels").mkdir(exist_ok=True)
         output = run(program, env=environment)
         if "OpenCL" in output:
             print(f"README example not compared: {output.strip()}")

@@ -1,9 +1,9 @@
 /*
  * test_patterns.c - every sign pattern of a cube in both parities, and every pattern of below, equal and above
  *
- * 256 patterns of one cube, at even and odd first samples; 3^8 patterns of one cube, and of the middle cube of a 4 x 4 x 4
- * grid whose other samples are below: closed surfaces. Both engines; each mesh whole against its grid (mesh_walk.h), and
- * the device's against the reference's, byte for byte.
+ * 256 patterns of one cube, at even and odd first samples; 3^8 patterns of one cube, and of the middle cube of a 4 x 4
+ * x 4 grid whose other samples are below: closed surfaces. Both engines; each mesh whole against its grid
+ * (mesh_walk.h), and the device's against the reference's, byte for byte.
  */
 #include "engines.h"
 #include "topology.h"

@@ -1,9 +1,9 @@
 /*
  * test_random.c - random grids: both engines against the grid, and against each other byte for byte
  *
- * Every sample type; sizes around words of 64 samples and the edges of bricks (64 x 8 x 4), and tiny ones; noise, smooth
- * fields, small integers with many ties, extremes of the type; NaN, infinities and missing values sprinkled; sheared and
- * mirrored matrices; odd and negative first indices.
+ * Every sample type; sizes around words of 64 samples and the edges of bricks (64 x 8 x 4), and tiny ones; noise,
+ * smooth fields, small integers with many ties, extremes of the type; NaN, infinities and missing values sprinkled;
+ * sheared and mirrored matrices; odd and negative first indices.
  *
  * Usage: test_random [SEED [COUNT]]. A failure names the seed of its grid: `test_random SEED 1` repeats it.
  */
@@ -68,12 +68,15 @@ static double extreme_value(tc_type type) {
 static double field_value(field_kind kind, tc_type type, const double wave[4], const int64_t p[3]) {
     double centre = type_is_floating(type) ? 0 : (type_least(type) + type_most(type)) / 2;
     switch (kind) {
-    case NOISE: return clamp(type, centre + random_between(-100, 100));
+    case NOISE:
+        return clamp(type, centre + random_between(-100, 100));
     case SMOOTH:
-        return clamp(type, centre + 60 * (sin(wave[0] * (double)p[0] + wave[3]) + sin(wave[1] * (double)p[1]) *
-                                                                                      cos(wave[2] * (double)p[2])));
-    case TIES: return clamp(type, floor(centre) + random_below(4));
-    default: return extreme_value(type);
+        return clamp(type, centre + 60 * (sin(wave[0] * (double)p[0] + wave[3]) +
+                                          sin(wave[1] * (double)p[1]) * cos(wave[2] * (double)p[2])));
+    case TIES:
+        return clamp(type, floor(centre) + random_below(4));
+    default:
+        return extreme_value(type);
     }
 }
 
@@ -82,10 +85,14 @@ static double isovalue_choose(field_kind kind, tc_type type, int64_t count) {
     double a = sample_get(memory, type, random_below((uint32_t)count));
     double b = sample_get(memory, type, random_below((uint32_t)count));
     switch (kind == EXTREMES ? random_below(2) : random_below(4)) {
-    case 0: return a;
-    case 1: return 0.5 * a + 0.5 * b;
-    case 2: return a + random_between(-1.5, 1.5);
-    default: return floor(b) + 0.5;
+    case 0:
+        return a;
+    case 1:
+        return 0.5 * a + 0.5 * b;
+    case 2:
+        return a + random_between(-1.5, 1.5);
+    default:
+        return floor(b) + 0.5;
     }
 }
 
@@ -118,13 +125,13 @@ static void grid_choose(tc_grid_options *grid, tc_extract_options *how) {
     for (int64_t z = 0; z < grid->dims[2]; z++)
         for (int64_t y = 0; y < grid->dims[1]; y++)
             for (int64_t x = 0; x < grid->dims[0]; x++)
-                sample_set(memory, grid->type, count++,
-                           field_value(kind, grid->type, wave, (int64_t[3]){x, y, z}));
+                sample_set(memory, grid->type, count++, field_value(kind, grid->type, wave, (int64_t[3]){x, y, z}));
     how->isovalue = isovalue_choose(kind, grid->type, count);
     samples_remove(grid, count);
     /* combinations of type, missing samples and normals that are built anyway */
     bool missing = grid->has_nodata || type_is_floating(grid->type);
-    how->normals = missing ? random_below(2) || !type_is_floating(grid->type) : random_below(3) == 0 && grid->type == TC_U8;
+    how->normals =
+        missing ? random_below(2) || !type_is_floating(grid->type) : random_below(3) == 0 && grid->type == TC_U8;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- runs */

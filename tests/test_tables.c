@@ -1,9 +1,9 @@
 /*
  * test_tables.c - every table derived again from geometry
  *
- * The split: five tetrahedra fill the cube (volumes 1/3 and 4 x 1/6, positive orientation, no point in two), are those of
- * split.h, and neighbours share face diagonals all over a 3 x 3 x 3 block. The cases: tetrahedra of random shape with a
- * random linear function, whose level set is a plane, so that winding is exact. Cube tables: all patterns, both
+ * The split: five tetrahedra fill the cube (volumes 1/3 and 4 x 1/6, positive orientation, no point in two), are those
+ * of split.h, and neighbours share face diagonals all over a 3 x 3 x 3 block. The cases: tetrahedra of random shape
+ * with a random linear function, whose level set is a plane, so that winding is exact. Cube tables: all patterns, both
  * parities, both windings.
  */
 #include "expect.h"
@@ -28,9 +28,7 @@ static vector cross(vector a, vector b) {
 }
 
 /* Six times the signed volume. */
-static double volume6(const vector p[4]) {
-    return dot(cross(minus(p[1], p[0]), minus(p[2], p[0])), minus(p[3], p[0]));
-}
+static double volume6(const vector p[4]) { return dot(cross(minus(p[1], p[0]), minus(p[2], p[0])), minus(p[3], p[0])); }
 
 static vector corner_position(unsigned c) { return (vector){c & 1, c >> 1 & 1, c >> 2}; }
 
@@ -56,8 +54,7 @@ static unsigned tetrahedra_around(unsigned parity, vector point) {
         unsigned sides = 0;
         for (unsigned n = 0; n < 4; n++) {
             vector p[4];
-            for (unsigned m = 0; m < 4; m++)
-                p[m] = m == n ? point : corner_position(tetrahedron_corners[parity][t][m]);
+            for (unsigned m = 0; m < 4; m++) p[m] = m == n ? point : corner_position(tetrahedron_corners[parity][t][m]);
             sides += volume6(p) > 0;
         }
         count += sides == 4;
@@ -132,7 +129,8 @@ static void test_edges_of_a_tetrahedron(void) {
         EXPECT(tetrahedron_edges[e][0] < tetrahedron_edges[e][1], "edge %u joins its ends in falling order", e);
         seen |= 1u << (4 * tetrahedron_edges[e][0] + tetrahedron_edges[e][1]);
     }
-    EXPECT(seen == (1u << 1 | 1u << 2 | 1u << 3 | 1u << 6 | 1u << 7 | 1u << 11), "edges %x are not all six pairs", seen);
+    EXPECT(seen == (1u << 1 | 1u << 2 | 1u << 3 | 1u << 6 | 1u << 7 | 1u << 11), "edges %x are not all six pairs",
+           seen);
 }
 
 static bool edge_differs(unsigned pattern, unsigned edge) {

@@ -58,7 +58,8 @@ static bool triangle_is_bad(const uint32_t *t, uint64_t vertex_count) {
 static uint64_t edges_count(const side *sides, uint64_t side_count, uint32_t *parents, topology *result) {
     uint64_t edges = 0;
     for (uint64_t n = 0, end; n < side_count; n = end, edges++) {
-        for (end = n + 1; end < side_count && !side_compare(&sides[n], &sides[end]); end++) {}
+        for (end = n + 1; end < side_count && !side_compare(&sides[n], &sides[end]); end++) {
+        }
         if (end - n == 1) result->boundary_edges++;
         if (end - n > 2 || (end - n == 2 && sides[n].forward == sides[n + 1].forward)) result->bad_edges++;
         if (end - n == 2) sides_join(parents, &sides[n], &sides[n + 1]);

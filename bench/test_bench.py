@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""test_bench.py - tetracubes-bench from outside: its JSON, its turns, its dump, its statuses
+
+Known counts come from the definition: the corner lattice of a 17^3 sphere is small enough to count crossed edges here.
+Standard library only.
+"""
+
+import json
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+
+BENCH = sys.argv[1]
+SPREADS = ["classify_ms", "emit_ms", "extract_ms", "extract_warm_ms", "reference_ms"]
+CASE_KEYS = {"field", "dims", "type", "iso", "method", "vertices", "triangles", "hash", "limit_ms", "limit_ratio",
+             *SPREADS}
+checks = failures = 0
+
+
+def expect(condition, text):
+    global checks, failures
+    checks += 1
+    if not condition:
+        failures += 1
+        print(f"FAILED: {text}")
+
+
+def bench(*arguments, text=""):
+    return subprocess.run([BENCH, *arguments], input=text, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          timeout=300, check=False)
+
+
+def expect_case(case, label):
+    expect(set(case) == CASE_KEYS, f"{label}: keys {sorted(case)}")
+    expect(case["method"] == "tetra", f"{label}: method {case['method']}")
+    expect(len(case["hash"]) == 16 and int(case["hash"], 16) >= 0, f"{label}: hash {case['hash']}")
+    for key in SPREADS:
+        times = case[key]
+        expect(set(times) == {"median", "min", "max"}, f"{label}: {key} has {sorted(times)}")
+        expect(0 <= times["min"] <= times["median"] <= times["max"], f"{label}: {key} {times}")
+    expect(case["limit_ms"] > 0, f"{label}: limit_ms {case['limit_ms']}")
+    ratio = case["extract_warm_ms"]["median"] / case["limit_ms"]
+    expect(abs(case["limit_ratio"] / ratio - 1) < 0.05, f"{label}: limit_ratio {case['limit_ratio']}, not {ratio}")
+
+
+def expect_limits(report):
+    expect(list(report) == ["device", "driver", "read_gbps", "write_gbps", "cases"], f"keys {list(report)}")
+    expect(report["device"] and report["driver"], "device and driver are named")
+    expect(report["read_gbps"] > 0.1 and report["write_gbps"] > 0.1, f"limits {report['read_gbps']}")
+
+
+def crossed_edges(dims, values, iso):
+    """Vertices of the surface: edges of the split, along axes and one diagonal per face, whose ends differ."""
+    steps = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    planes = [(0, 1), (0, 2), (1, 2)]
+
+    def inside(point):
+        return values[point[0] + dims[0] * (point[1] + dims[1] * point[2])] >= iso
+
+    def edges(point):
+        for step in steps:
+            yield point, tuple(map(sum, zip(point, step)))
+        for a, b in planes:
+            at_a, at_b = (tuple(c + (axis == e) for axis, c in enumerate(point)) for e in (a, b))
+            both = tuple(c + (axis in (a, b)) for axis, c in enumerate(point))
+            yield (point, both) if sum(point) % 2 == 0 else (at_a, at_b)
+
+    points = [(x, y, z) for z in range(dims[2]) for y in range(dims[1]) for x in range(dims[0])]
+    count = 0
+    for point in points:
+        for ends in edges(point):
+            if all(c < n for end in ends for c, n in zip(end, dims)):
+                count += inside(ends[0]) != inside(ends[1])
+    return count
+
+
+def test_json():
+    done = bench("--field", "sphere", "--field", "gyroid", "--dims", "17", "--dims=20,9,33", "--type", "u8", "--type",
+                 "f32", "--repeat", "3", "--json")
+    expect(done.returncode == 0, f"a run ends with {done.returncode}: {done.stderr}")
+    report = json.loads(done.stdout)
+    expect_limits(report)
+    names = [(case["field"], case["dims"], case["type"]) for case in report["cases"]]
+    wanted = [(field, dims, kind) for field in ("sphere", "gyroid") for kind in ("u8", "f32")
+              for dims in ([17, 17, 17], [20, 9, 33])]
+    expect(names == wanted, f"cases {names}")
+    for case in report["cases"]:
+        expect_case(case, f"{case['field']} {case['dims']} {case['type']}")
+    return report["cases"][0]
+
+
+def test_dump_and_turns(made, folder):
+    path = os.path.join(folder, "sphere.raw")
+    done = bench("--field", "sphere", "--dims", "17", "--type", "u8", "--dump", path)
+    expect(done.returncode == 0 and json.loads(done.stdout) == {"dims": [17, 17, 17], "type": "u8"},
+           f"--dump: {done.returncode} {done.stdout}")
+    with open(path, "rb") as file:
+        values = struct.unpack(f"{17 ** 3}B", file.read())
+    count = crossed_edges([17, 17, 17], values, 127.5)
+    expect(made["vertices"] == count, f"{made['vertices']} vertices, {count} crossed edges")
+
+    done = bench("--input", path, "--dims", "17", "--type", "u8", "--iso", "127.5", "--turns", text="\n\n\n")
+    lines = done.stdout.split("\n", 4)
+    expect(done.returncode == 0 and lines[0] == "ready", f"--turns: {done.returncode} {lines[:1]}")
+    times = sorted(float(line) for line in lines[1:4])
+    report = json.loads(lines[4])
+    expect_limits(report)
+    case = report["cases"][0]
+    expect_case(case, "--turns")
+    expect(case["field"] == "sphere.raw" and case["triangles"] == made["triangles"], f"--turns: {case['field']}")
+    told = [case["extract_ms"][key] for key in ("min", "median", "max")]
+    expect(all(abs(a - b) < 1e-3 for a, b in zip(told, times)), f"--turns: {told} of {times}")
+
+
+def test_statuses(folder):
+    missing = os.path.join(folder, "none.nrrd")
+    for status, words, arguments in [
+            (2, "--field", ["--feild", "sphere"]), (2, "sphere", ["--field", "spher"]), (2, "--dims", ["--dims", "1"]),
+            (2, "--dims", ["--dims", "5,5"]), (2, "--dims", ["--dims", "64,"]), (2, "--type", ["--type", "u9"]),
+            (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "hybrid"]),
+            (2, "--json", ["--json=1"]), (2, "needs a value", ["--dims"]), (2, "--turns", ["--turns"]),
+            (2, "isovalue", ["--input", missing]), (2, "--input", ["--input", missing, "--field", "sphere"]),
+            (4, "none.nrrd", ["--input", missing, "--iso", "1"]), (1, "nonesuch", ["--device", "nonesuch"]),
+            (1, "--dump", ["--field", "sphere", "--dims", "9", "--type", "u8", "--dump", os.path.join(missing, "x")])]:
+        done = bench(*arguments)
+        expect(done.returncode == status, f"{arguments}: status {done.returncode}, not {status}")
+        expect(words in done.stderr and not done.stdout, f"{arguments}: says {done.stderr!r}, prints {done.stdout!r}")
+    done = bench("--help")
+    expect(done.returncode == 0 and "--repeat" in done.stdout, "--help")
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="tetracubes-bench-test-") as folder:
+        made = test_json()
+        test_dump_and_turns(made, folder)
+        test_statuses(folder)
+    print(f"{checks} checks, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

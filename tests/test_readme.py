@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""The README says what is so: options and fields are those of --help, its two commands those of .ci/run.
+
+    test_readme.py SOURCE TOOL
+
+Its C example is compiled and run by test_install.py.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+failures = 0
+
+
+def expect(condition, text):
+    global failures
+    if not condition:
+        failures += 1
+        print(f"FAILED: {text}")
+
+
+def section(readme, begin, end):
+    """Text between two marks; both have to be there."""
+    found = re.search(re.escape(begin) + "(.*?)" + re.escape(end), readme, re.DOTALL)
+    expect(found, f"README.md: no text between '{begin}' and '{end}'")
+    return found.group(1) if found else ""
+
+
+def help_of(tool, command):
+    return subprocess.run([tool, command, "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def test_options(readme, tool):
+    table = section(readme, "Options of `extract`:", "Exit status:")
+    documented = set(re.findall(r"`(--[a-z-]+)|`(-o) ", table))
+    documented = {long or "--output" for long, _ in documented}
+    known = set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", help_of(tool, "extract"), re.MULTILINE)) - {"--help"}
+    unstated = {"--method"}  # has but one value
+    expect(len(known) > 10, f"extract --help: only {len(known)} options found")
+    expect(documented - known == set(), f"README.md: not options of extract: {sorted(documented - known)}")
+    expect(known - documented == unstated, f"README.md: options left out: {sorted(known - documented - unstated)}")
+
+
+def test_fields(readme, tool):
+    """The same fields, defined in the same words."""
+    table = section(readme, "| field | value |", "\n## ")
+    rows = dict(re.findall(r"^\| `([a-z-]+)` \| (.*) \|$", table, re.MULTILINE))
+    listed = section(help_of(tool, "generate"), "Fields,", "\n\n")
+    known = dict(re.findall(r"^  ([a-z-]+) +(.*)$", listed, re.MULTILINE))
+    expect(len(known) >= 6, f"generate --help: only {len(known)} fields found")
+    expect(rows.keys() == known.keys(), f"README.md: fields {sorted(rows)}, generate --help: {sorted(known)}")
+    for name in rows.keys() & known.keys():
+        stated = rows[name].replace("`", "")
+        expect(stated == known[name], f"README.md: {name} is '{stated}', in generate --help '{known[name]}'")
+
+
+def test_commands(readme, source):
+    commands = re.findall(r"^    (bash tests/\w+)", section(readme, "## The two commands", "\n## "), re.MULTILINE)
+    expect(len(commands) == 2, f"README.md: two commands expected, found {commands}")
+    ci = (source / ".ci" / "run").read_text(encoding="utf-8")
+    expect(re.findall(r"^bash .*$", ci, re.MULTILINE) == commands, f".ci/run does not run {commands}")
+    for link in re.findall(r"\]\(([^)#]+)\)", readme):
+        expect("://" in link or (source / link).exists(), f"README.md: {link} is not there")
+
+
+def main():
+    source, tool = Path(sys.argv[1]), sys.argv[2]
+    readme = (source / "README.md").read_text(encoding="utf-8")
+    test_options(readme, tool)
+    test_fields(readme, tool)
+    test_commands(readme, source)
+    print(f"{failures} failed")
+    return failures > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
