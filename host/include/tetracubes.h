@@ -64,22 +64,22 @@ TC_API const char *tc_version(void);
 
 /* What matters here about one OpenCL device. */
 typedef struct tc_device_info {
-    size_t struct_size;          /* set by the caller: sizeof(tc_device_info) */
-    int platform_index;          /* first number of the specification "platform:device" */
-    int device_index;            /* second number */
+    size_t struct_size; /* set by the caller: sizeof(tc_device_info) */
+    int platform_index; /* first number of the specification "platform:device" */
+    int device_index;   /* second number */
     char platform[128];
     char name[128];
-    char version[128];           /* CL_DEVICE_VERSION */
-    char driver[128];            /* CL_DRIVER_VERSION */
-    char type[16];               /* "cpu", "gpu", "accelerator" or "other" */
+    char version[128]; /* CL_DEVICE_VERSION */
+    char driver[128];  /* CL_DRIVER_VERSION */
+    char type[16];     /* "cpu", "gpu", "accelerator" or "other" */
     uint32_t compute_units;
     uint64_t max_work_group_size;
     uint64_t global_memory_bytes;
-    uint64_t max_buffer_bytes;   /* volumes with larger buffers are processed in slabs */
+    uint64_t max_buffer_bytes; /* volumes with larger buffers are processed in slabs */
     uint64_t local_memory_bytes;
-    int shares_host_memory;      /* aligned samples are used in place, not copied */
-    int has_fp64;                /* without it, vertices of u32, i32 and f64 samples are made on the host */
-    int rounds_division;         /* correctly rounded f32 division built in; else the kernels correct it */
+    int shares_host_memory; /* aligned samples are used in place, not copied */
+    int has_fp64;           /* without it, vertices of u32, i32 and f64 samples are made on the host */
+    int rounds_division;    /* correctly rounded f32 division built in; else the kernels correct it */
 } tc_device_info;
 
 /* The number of devices of all platforms, in the order that indices of a specification count in. Fails with
@@ -104,20 +104,20 @@ struct _cl_context;
 struct _cl_command_queue;
 
 typedef struct tc_context_options {
-    size_t struct_size;          /* set by tc_context_options_init; a caller built against an older header still works */
+    size_t struct_size; /* set by tc_context_options_init; a caller built against an older header still works */
     tc_engine engine;
-    const char *device;          /* an index, "platform:device", "cpu", "gpu" or part of a name; NULL: the environment's
-                                    TETRACUBES_DEVICE, else the first CPU or other device found */
+    const char *device; /* an index, "platform:device", "cpu", "gpu" or part of a name; NULL: the environment's
+                           TETRACUBES_DEVICE, else the first CPU or other device found */
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
-    uint64_t max_memory_bytes;   /* bound on device buffers, mesh and samples included; 0: what the device allows.
-                                    Less memory means smaller slabs, never other results */
-    uint32_t work_items;         /* per work-group; 0: the device's default. Never changes results */
-    uint32_t work_groups;        /* launched at once; 0: the device's default. Never changes results */
-    uint32_t tile_bricks;        /* at least so many bricks per tile of the scan; 0: default. Never changes results */
-    uint32_t spin_limit;         /* polls of an unfinished tile before its sum is recomputed; 0: default */
-    int division;                /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
-    tc_progress progress;        /* NULL: none */
+    uint64_t max_memory_bytes; /* bound on device buffers, mesh and samples included; 0: what the device allows.
+                                  Less memory means smaller slabs, never other results */
+    uint32_t work_items;       /* per work-group; 0: the device's default. Never changes results */
+    uint32_t work_groups;      /* launched at once; 0: the device's default. Never changes results */
+    uint32_t tile_bricks;      /* at least so many bricks per tile of the scan; 0: default. Never changes results */
+    uint32_t spin_limit;       /* polls of an unfinished tile before its sum is recomputed; 0: default */
+    int division;              /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
+    tc_progress progress;      /* NULL: none */
     void *progress_user;
 } tc_context_options;
 
@@ -154,16 +154,16 @@ TC_API const char *tc_type_name(tc_type type);
 
 typedef struct tc_grid_options {
     size_t struct_size;
-    int64_t dims[3];        /* samples along x, y, z; each at least 2 */
-    int64_t first[3];       /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
-                               and the index space of positions count from it. |first| + dims at most 2^24 */
-    tc_type type;           /* native byte order */
-    const void *samples;    /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
-                               tc_grid_destroy, not copied where the device shares the host's memory */
-    double matrix[3][4];    /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
-                               (triangles keep their outward side); default: identity. Used as float32 */
-    int has_nodata;         /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
-    double nodata;          /* missing corner is left out whole */
+    int64_t dims[3];     /* samples along x, y, z; each at least 2 */
+    int64_t first[3];    /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
+                            and the index space of positions count from it. |first| + dims at most 2^24 */
+    tc_type type;        /* native byte order */
+    const void *samples; /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
+                            tc_grid_destroy, not copied where the device shares the host's memory */
+    double matrix[3][4]; /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
+                            (triangles keep their outward side); default: identity. Used as float32 */
+    int has_nodata;      /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
+    double nodata;       /* missing corner is left out whole */
 } tc_grid_options;
 
 typedef struct tc_grid tc_grid;
@@ -180,8 +180,8 @@ TC_API void tc_grid_destroy(tc_grid *grid);
 
 typedef struct tc_extract_options {
     size_t struct_size;
-    double isovalue;        /* finite; inside means sample >= isovalue, exactly */
-    int normals;            /* nonzero: a unit normal per vertex, the negated gradient (zero where that vanishes) */
+    double isovalue; /* finite; inside means sample >= isovalue, exactly */
+    int normals;     /* nonzero: a unit normal per vertex, the negated gradient (zero where that vanishes) */
 } tc_extract_options;
 
 /* What classification alone tells. */
@@ -196,10 +196,10 @@ typedef struct tc_counts {
 
 /* Milliseconds of the last extraction into a mesh, by the host's clock. */
 typedef struct tc_timings {
-    double classify_ms;     /* kernel 1 over all slabs, reading of totals included */
-    double emit_ms;         /* allocation of the mesh, kernel 2 over all slabs */
-    double readback_ms;     /* copy to the host; 0 where memory is shared */
-    double total_ms;        /* first launch to mesh complete where the device left it */
+    double classify_ms; /* kernel 1 over all slabs, reading of totals included */
+    double emit_ms;     /* allocation of the mesh, kernel 2 over all slabs */
+    double readback_ms; /* copy to the host; 0 where memory is shared */
+    double total_ms;    /* first launch to mesh complete where the device left it */
 } tc_timings;
 
 /* The mesh in host memory. Triangles wind counter-clockwise seen from outside (the lower values) in world space. The
@@ -209,10 +209,10 @@ typedef struct tc_mesh_data {
     uint64_t vertex_count;
     uint64_t triangle_count;
     uint64_t active_cell_count;
-    const float *positions;     /* 3 per vertex, world space */
-    const float *normals;       /* 3 per vertex, or NULL */
-    const uint32_t *triangles;  /* 3 vertex indices per triangle */
-    uint32_t slab_count;        /* 1 where the grid was processed whole */
+    const float *positions;    /* 3 per vertex, world space */
+    const float *normals;      /* 3 per vertex, or NULL */
+    const uint32_t *triangles; /* 3 vertex indices per triangle */
+    uint32_t slab_count;       /* 1 where the grid was processed whole */
     tc_timings timings;
 } tc_mesh_data;
 
@@ -228,7 +228,8 @@ TC_API tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_c
  * overwritten and its memory used again. On failure a new mesh is not made, an old one is empty. */
 TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **mesh);
 
-/* Fills *data (its struct_size set by the caller). Pointers stay valid until the mesh is extracted into or destroyed. */
+/* Fills *data (its struct_size set by the caller). Pointers stay valid until the mesh is extracted into or destroyed.
+ */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
 

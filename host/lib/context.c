@@ -192,16 +192,21 @@ void tc_context_destroy(tc_context *context) {
 
 tc_status tc_context_device(const tc_context *context, tc_device_info *info) {
     if (!context || !info || info->struct_size < sizeof *info)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_device needs a context, and info with its struct_size set");
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "tc_context_device needs a context, and info with its struct_size set");
     if (context->options.engine == TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device");
     *info = context->info;
     return TC_OK;
 }
 
-struct _cl_context *tc_context_cl_context(const tc_context *context) { return context ? context->context : NULL; }
+struct _cl_context *tc_context_cl_context(const tc_context *context) {
+    return context ? context->context : NULL;
+}
 
-struct _cl_command_queue *tc_context_cl_queue(const tc_context *context) { return context ? context->queue : NULL; }
+struct _cl_command_queue *tc_context_cl_queue(const tc_context *context) {
+    return context ? context->queue : NULL;
+}
 
 uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak) {
     if (peak) *peak = context ? context->device_bytes_peak : 0;

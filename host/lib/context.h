@@ -29,8 +29,8 @@ typedef struct workspace {
     device_buffer words, offsets, triangle_offsets, bases, masks, active; /* per word or brick of the word window */
     device_buffer cells;                                                  /* grids with missing samples */
     device_buffer state, scratch;
-    device_buffer cases[2];                                               /* cube table; [1] for mirrored grids */
-    device_buffer samples, positions, normals, triangles;                 /* windows, on devices with own memory */
+    device_buffer cases[2];                               /* cube table; [1] for mirrored grids */
+    device_buffer samples, positions, normals, triangles; /* windows, on devices with own memory */
 } workspace;
 
 struct tc_context {

@@ -37,8 +37,9 @@ static tc_status device_list_make(device_list *list) {
             list->devices[list->count++] = (device_choice){platforms[p], devices[d], (int)p, (int)d};
     }
     if (list->count == 0)
-        return (tc_status)fail(TC_ERROR_DEVICE, "the %u OpenCL platform(s) installed have no device (for the CPU on "
-                                                "Debian: apt install pocl-opencl-icd); the reference engine needs none",
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "the %u OpenCL platform(s) installed have no device (for the CPU on "
+                               "Debian: apt install pocl-opencl-icd); the reference engine needs none",
                                platform_count);
     return TC_OK;
 }
@@ -128,8 +129,9 @@ tc_status device_choose(const char *specification, device_choice *choice) {
             return TC_OK;
         }
     if (specification && *specification)
-        return (tc_status)fail(TC_ERROR_DEVICE, "no device \"%s\" among the %d of this machine: give an index, "
-                                                "platform:device, cpu, gpu or part of a name",
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "no device \"%s\" among the %d of this machine: give an index, "
+                               "platform:device, cpu, gpu or part of a name",
                                specification, list.count);
     *choice = list.devices[0];
     return TC_OK;

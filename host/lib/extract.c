@@ -15,7 +15,8 @@ void tc_extract_options_init(tc_extract_options *options) {
 
 tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
     tc_grid_options o;
-    if (!out || !context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
+    if (!out || !context)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
     *out = NULL;
     tc_grid_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "grid options");

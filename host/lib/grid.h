@@ -18,9 +18,9 @@ struct tc_grid {
     const void *samples;
     bool has_nodata;
     double nodata;
-    float matrix[12];        /* rows of the index-to-world map: m0 m1 m2 o */
-    float normal_matrix[9];  /* inverse transposed, scaled by a positive number: index gradients to world directions */
-    bool mirrored;           /* negative determinant */
+    float matrix[12];       /* rows of the index-to-world map: m0 m1 m2 o */
+    float normal_matrix[9]; /* inverse transposed, scaled by a positive number: index gradients to world directions */
+    bool mirrored;          /* negative determinant */
     struct device_grid *device; /* NULL under the reference engine */
 };
 

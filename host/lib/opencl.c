@@ -34,14 +34,16 @@ static void load(void) {
 tc_status opencl_load(void) {
     pthread_once(&load_once, load);
     if (cl) return TC_OK;
-    return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL: the loader libOpenCL.so.1 is not installed (Debian: apt install "
-                                            "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
+    return (tc_status)fail(TC_ERROR_DEVICE,
+                           "no OpenCL: the loader libOpenCL.so.1 is not installed (Debian: apt install "
+                           "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
 }
 
 static const char *error_name(cl_int error) {
     switch (error) {
 #define NAME(code)                                                                                                     \
-    case code: return #code;
+    case code:                                                                                                         \
+        return #code;
         NAME(CL_DEVICE_NOT_FOUND)
         NAME(CL_DEVICE_NOT_AVAILABLE)
         NAME(CL_COMPILER_NOT_AVAILABLE)
@@ -72,7 +74,8 @@ static const char *error_name(cl_int error) {
         NAME(CL_INVALID_BUFFER_SIZE)
         NAME(CL_INVALID_GLOBAL_WORK_SIZE)
 #undef NAME
-    default: return "unknown error";
+    default:
+        return "unknown error";
     }
 }
 

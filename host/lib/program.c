@@ -17,10 +17,10 @@ typedef struct type_text {
 } type_text;
 
 static const type_text type_texts[] = {
-    [TC_U8] = {"uchar", 0, "(float)(b)"},          [TC_I8] = {"uchar", 0, "(float)as_char(b)"},
-    [TC_U16] = {"ushort", 0, "(float)(b)"},        [TC_I16] = {"ushort", 0, "(float)as_short(b)"},
-    [TC_U32] = {"uint", 0, "(double)(b)"},         [TC_I32] = {"uint", 0, "(double)as_int(b)"},
-    [TC_F32] = {"uint", 32, "as_float(b)"},        [TC_F64] = {"ulong", 64, "as_double(b)"},
+    [TC_U8] = {"uchar", 0, "(float)(b)"},   [TC_I8] = {"uchar", 0, "(float)as_char(b)"},
+    [TC_U16] = {"ushort", 0, "(float)(b)"}, [TC_I16] = {"ushort", 0, "(float)as_short(b)"},
+    [TC_U32] = {"uint", 0, "(double)(b)"},  [TC_I32] = {"uint", 0, "(double)as_int(b)"},
+    [TC_F32] = {"uint", 32, "as_float(b)"}, [TC_F64] = {"ulong", 64, "as_double(b)"},
 };
 
 static int options_write(const tc_context *context, const program *p, char *out, size_t bytes) {
@@ -30,8 +30,11 @@ static int options_write(const tc_context *context, const program *p, char *out,
                     "-cl-std=CL1.2 %s-DBITS=%s -DFLOATING=%d -DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DMISSING=%d "
                     "-DNORMALS=%d -DWORK_ITEMS=%u -DDIVISION=%d %s",
                     context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", t->bits,
-                    t->floating, wide, vertices ? "-DREAL=" : "", !vertices ? "" : wide ? "double" : "float", t->value,
-                    p->missing, p->normals, context->options.work_items, context->options.division,
+                    t->floating, wide, vertices ? "-DREAL=" : "",
+                    !vertices ? ""
+                    : wide    ? "double"
+                              : "float",
+                    t->value, p->missing, p->normals, context->options.work_items, context->options.division,
                     context->info.has_fp64 ? "-DFP64=1" : "");
 }
 
@@ -58,8 +61,8 @@ static tc_status program_build(const tc_context *context, program *p) {
     char options[512];
     cl_int error;
     options_write(context, p, options, sizeof options);
-    p->program = cl->CreateProgramWithSource(context->context, kernel_source_count, (const char **)(size_t)kernel_sources,
-                                             NULL, &error);
+    p->program = cl->CreateProgramWithSource(context->context, kernel_source_count,
+                                             (const char **)(size_t)kernel_sources, NULL, &error);
     if (error) return opencl_fail("handing the kernels to the device", error);
     error = cl->BuildProgram(p->program, 1, &context->device, options, NULL, NULL);
     if (error) return build_fail(context, p, error);

@@ -1,6 +1,6 @@
 /*
- * Stages, as in the kernels: signs of the samples; vertices of a layer of bricks, numbered in canonical order; triangles
- * of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
+ * Stages, as in the kernels: signs of the samples; vertices of a layer of bricks, numbered in canonical order;
+ * triangles of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
  * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order.
@@ -37,14 +37,22 @@ static int64_t sample_index(const reference *r, const int64_t p[3]) {
 
 static double value_at(const tc_grid *grid, int64_t n) {
     switch (grid->type) {
-    case TC_U8: return ((const uint8_t *)grid->samples)[n];
-    case TC_I8: return ((const int8_t *)grid->samples)[n];
-    case TC_U16: return ((const uint16_t *)grid->samples)[n];
-    case TC_I16: return ((const int16_t *)grid->samples)[n];
-    case TC_U32: return ((const uint32_t *)grid->samples)[n];
-    case TC_I32: return ((const int32_t *)grid->samples)[n];
-    case TC_F32: return (double)((const float *)grid->samples)[n];
-    default: return ((const double *)grid->samples)[n];
+    case TC_U8:
+        return ((const uint8_t *)grid->samples)[n];
+    case TC_I8:
+        return ((const int8_t *)grid->samples)[n];
+    case TC_U16:
+        return ((const uint16_t *)grid->samples)[n];
+    case TC_I16:
+        return ((const int16_t *)grid->samples)[n];
+    case TC_U32:
+        return ((const uint32_t *)grid->samples)[n];
+    case TC_I32:
+        return ((const int32_t *)grid->samples)[n];
+    case TC_F32:
+        return (double)((const float *)grid->samples)[n];
+    default:
+        return ((const double *)grid->samples)[n];
     }
 }
 

@@ -8,7 +8,9 @@ static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
 
 static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
-uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index) { return slab_index * plan->slab_layers * BRICK_PLANES; }
+uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index) {
+    return slab_index * plan->slab_layers * BRICK_PLANES;
+}
 
 uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
     return (uint32_t)min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES, (uint64_t)grid->dims[2]);
@@ -54,8 +56,9 @@ static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_pla
 }
 
 static uint64_t samples_bytes(const slab_plan *plan, const tc_grid *grid) {
-    uint64_t planes = plan->samples_whole ? (uint64_t)grid->dims[2]
-                                          : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
+    uint64_t planes = plan->samples_whole
+                          ? (uint64_t)grid->dims[2]
+                          : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
     return planes * (uint64_t)(grid->dims[0] * grid->dims[1]) * tc_type_bytes(grid->type);
 }
 
@@ -118,8 +121,9 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_pl
         uint32_t layers = layers_fit(context, grid, plan, most, budget / 2);
         if (layers == 0) {
             plan_fits(context, grid, plan, 1, budget, &bytes);
-            return (tc_status)fail(TC_ERROR_MEMORY, "a layer of this grid needs %llu bytes of device memory beside its "
-                                                    "mesh; allow %llu or more",
+            return (tc_status)fail(TC_ERROR_MEMORY,
+                                   "a layer of this grid needs %llu bytes of device memory beside its "
+                                   "mesh; allow %llu or more",
                                    (unsigned long long)bytes, (unsigned long long)bytes * 2);
         }
         plan_fits(context, grid, plan, layers, budget, &bytes);

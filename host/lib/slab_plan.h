@@ -2,8 +2,9 @@
  * slab_plan.h - how a grid is cut into slabs and tiles so that counts and buffers fit the device
  *
  * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
- * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a slab
- * with one plane before and two after (gradients and missing cells reach that far), sign words with one layer after.
+ * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a
+ * slab with one plane before and two after (gradients and missing cells reach that far), sign words with one layer
+ * after.
  */
 #ifndef SLAB_PLAN_H
 #define SLAB_PLAN_H

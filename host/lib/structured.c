@@ -47,14 +47,15 @@ static tc_status workspace_reserve(run *r) {
         device_buffer *buffer;
         uint64_t bytes;
         const char *name;
-    } buffers[] = {{&w->words, 8 * words + WORDS_READ_PAST, "sign words"},
-                   {&w->offsets, 8 * words, "vertex offsets"},
-                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
-                   {&w->bases, 8 * bricks, "brick offsets"},
-                   {&w->masks, 4 * bricks, "brick masks"},
-                   {&w->active, 4 * bricks, "active bricks"},
-                   {&w->state, state_bytes(r), "the scan"},
-                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups + WORDS_READ_PAST, "halos"}};
+    } buffers[] = {
+        {&w->words, 8 * words + WORDS_READ_PAST, "sign words"},
+        {&w->offsets, 8 * words, "vertex offsets"},
+        {&w->triangle_offsets, 2 * words, "triangle offsets"},
+        {&w->bases, 8 * bricks, "brick offsets"},
+        {&w->masks, 4 * bricks, "brick masks"},
+        {&w->active, 4 * bricks, "active bricks"},
+        {&w->state, state_bytes(r), "the scan"},
+        {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups + WORDS_READ_PAST, "halos"}};
     tc_status status = TC_OK;
     for (size_t n = 0; n < sizeof buffers / sizeof *buffers && !status; n++)
         status = buffer_reserve(r->context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
@@ -80,7 +81,8 @@ static void run_end(run *r) {
     free(r->heads);
 }
 
-/* ---------------------------------------------------------------------------------------------------- classification */
+/* ---------------------------------------------------------------------------------------------------- classification
+ */
 
 static tc_status slab_classify(run *r, uint32_t slab_index) {
     workspace *w = &r->context->work;
@@ -88,11 +90,17 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     tc_status status = slab_prepare(r, slab_index, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
-    const kernel_argument arguments[] = {ARGUMENT(s), ARGUMENT(r->samples->memory), ARGUMENT(w->cells.memory),
-                                         ARGUMENT(w->words.memory), ARGUMENT(w->offsets.memory),
-                                         ARGUMENT(w->triangle_offsets.memory), ARGUMENT(w->bases.memory),
-                                         ARGUMENT(w->masks.memory), ARGUMENT(w->active.memory),
-                                         ARGUMENT(w->state.memory), ARGUMENT(w->scratch.memory),
+    const kernel_argument arguments[] = {ARGUMENT(s),
+                                         ARGUMENT(r->samples->memory),
+                                         ARGUMENT(w->cells.memory),
+                                         ARGUMENT(w->words.memory),
+                                         ARGUMENT(w->offsets.memory),
+                                         ARGUMENT(w->triangle_offsets.memory),
+                                         ARGUMENT(w->bases.memory),
+                                         ARGUMENT(w->masks.memory),
+                                         ARGUMENT(w->active.memory),
+                                         ARGUMENT(w->state.memory),
+                                         ARGUMENT(w->scratch.memory),
                                          ARGUMENT(scratch_words)};
     status = kernel_launch(r, r->program->classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
     return status ? status : slab_save(r, slab_index);
@@ -128,8 +136,8 @@ static tc_status slabs_classify(run *r) {
     return status ? status : totals_read(r);
 }
 
-/* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with missing
- * cells, and remembered as such. */
+/* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with
+ * missing cells, and remembered as such. */
 static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside) {
     tc_status status = run_begin(r, grid, options, inside);
     if (status) return status;
@@ -141,7 +149,8 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     return status ? status : slabs_classify(r);
 }
 
-/* -------------------------------------------------------------------------------------------------------- extraction */
+/* -------------------------------------------------------------------------------------------------------- extraction
+ */
 
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);

@@ -1,6 +1,7 @@
 /*
- * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one after
- * the other, each a run of whole layers. On devices that share the host's memory a window lies in the mesh itself.
+ * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
+ * after the other, each a run of whole layers. On devices that share the host's memory a window lies in the mesh
+ * itself.
  */
 #include "structured_run.h"
 
@@ -47,8 +48,8 @@ static tc_status part_close(run *r, device_buffer *buffer, const host_block *blo
         error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, end - first, (char *)block->memory + first, 0,
                                       NULL, NULL);
     } else if (first < end) {
-        void *mapped = cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL,
-                                            &error);
+        void *mapped =
+            cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
         if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
     }
     if (r->context->info.shares_host_memory) buffer_release(r->context, buffer);
@@ -84,8 +85,8 @@ static tc_status cases_provide(run *r, device_buffer **out) {
     tc_status status = buffer_reserve(r->context, buffer, sizeof cases, "the case table");
     if (status) return status;
     cube_cases_derive(cases, r->grid->mirrored);
-    cl_int error = cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL,
-                                          NULL);
+    cl_int error =
+        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
     return error ? opencl_fail("uploading the case table", error) : TC_OK;
 }
 
@@ -103,12 +104,20 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
     s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
     s.position_offset = w->position_offset;
     s.triangle_offset = w->triangle_offset;
-    const kernel_argument arguments[] = {
-        ARGUMENT(s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory), ARGUMENT(work->words.memory),
-        ARGUMENT(work->offsets.memory), ARGUMENT(work->triangle_offsets.memory), ARGUMENT(work->bases.memory),
-        ARGUMENT(work->masks.memory), ARGUMENT(work->active.memory), ARGUMENT(work->state.memory),
-        ARGUMENT(cases->memory), ARGUMENT(work->positions.memory), ARGUMENT(work->normals.memory),
-        ARGUMENT(work->triangles.memory)};
+    const kernel_argument arguments[] = {ARGUMENT(s),
+                                         ARGUMENT(r->samples->memory),
+                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(work->words.memory),
+                                         ARGUMENT(work->offsets.memory),
+                                         ARGUMENT(work->triangle_offsets.memory),
+                                         ARGUMENT(work->bases.memory),
+                                         ARGUMENT(work->masks.memory),
+                                         ARGUMENT(work->active.memory),
+                                         ARGUMENT(work->state.memory),
+                                         ARGUMENT(cases->memory),
+                                         ARGUMENT(work->positions.memory),
+                                         ARGUMENT(work->normals.memory),
+                                         ARGUMENT(work->triangles.memory)};
     return kernel_launch(r, r->program->emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
@@ -138,12 +147,17 @@ static tc_status slab_emit_windows(run *r, tc_mesh *mesh, const slab *s, const u
     for (uint32_t from = 0, to; from < layer_count && !status; from = to) {
         for (to = from + 1; to < layer_count; to++)
             if (!window_fits(r, begins[to + 1][0] - begins[from][0], begins[to + 1][1] - begins[from][1])) break;
-        mesh_window w = {first[0] + begins[from][0], first[0] + begins[to][0], first[1] + begins[from][1],
-                         first[1] + begins[to][1], 0, 0};
+        mesh_window w = {first[0] + begins[from][0],
+                         first[0] + begins[to][0],
+                         first[1] + begins[from][1],
+                         first[1] + begins[to][1],
+                         0,
+                         0};
         if (!window_fits(r, w.vertex1 - w.vertex0, w.triangle1 - w.triangle0)) {
             uint64_t bytes = window_bytes(r, w.vertex1 - w.vertex0, w.triangle1 - w.triangle0);
-            status = (tc_status)fail(TC_ERROR_MEMORY, "a layer of this surface has %llu bytes, more than the memory "
-                                                      "budget leaves (%llu) or a buffer may have (%llu)",
+            status = (tc_status)fail(TC_ERROR_MEMORY,
+                                     "a layer of this surface has %llu bytes, more than the memory "
+                                     "budget leaves (%llu) or a buffer may have (%llu)",
                                      (unsigned long long)bytes, (unsigned long long)r->plan->mesh_bytes,
                                      (unsigned long long)r->context->info.max_buffer_bytes);
             break;

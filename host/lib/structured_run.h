@@ -15,7 +15,7 @@ struct device_grid {
     slab_plan plan;
     device_buffer samples; /* the whole grid, where plan.samples_whole */
     uint64_t sample_offset;
-    bool missing;          /* some sample is missing: known from the start with nodata, else found by kernel 1 */
+    bool missing; /* some sample is missing: known from the start with nodata, else found by kernel 1 */
 };
 
 /* Kernel 1's results kept on the host while the device holds only a window of them. */
@@ -29,8 +29,8 @@ typedef struct run {
     const slab_plan *plan;
     const program *program;
     bool normals;
-    slab base;             /* what all slabs have in common */
-    uint32_t *heads;       /* per slab: STATE_WORDS words, after classification */
+    slab base;       /* what all slabs have in common */
+    uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
     device_buffer *samples; /* whole, or the window of the slab at hand */
     uint64_t vertex_count, triangle_count, active_cell_count;
@@ -57,6 +57,7 @@ typedef struct kernel_argument {
 tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const kernel_argument *arguments,
                         cl_uint argument_count);
 
-#define ARGUMENT(x) {sizeof(x), &(x)}
+#define ARGUMENT(x)                                                                                                    \
+    { sizeof(x), &(x) }
 
 #endif

@@ -17,15 +17,14 @@ tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const 
     cl_int error = CL_SUCCESS;
     for (cl_uint n = 0; n < argument_count && !error; n++)
         error = cl->SetKernelArg(kernel, n, arguments[n].bytes, arguments[n].value);
-    if (!error)
-        error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
+    if (!error) error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
     return error ? opencl_fail(name, error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- samples */
 
-/* Makes samples [first, first + count) available: in place where the device shares the host's memory (the buffer starts at
- * a page's boundary, *offset samples before the first), else by a copy that is only enqueued. */
+/* Makes samples [first, first + count) available: in place where the device shares the host's memory (the buffer starts
+ * at a page's boundary, *offset samples before the first), else by a copy that is only enqueued. */
 static tc_status samples_provide(tc_grid *grid, device_buffer *buffer, uint64_t first, uint64_t count,
                                  uint64_t *offset) {
     tc_context *context = grid->context;
@@ -39,8 +38,8 @@ static tc_status samples_provide(tc_grid *grid, device_buffer *buffer, uint64_t 
     *offset = 0;
     tc_status status = buffer_reserve(context, buffer, count * bytes, "samples");
     if (status) return status;
-    cl_int error = cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_FALSE, 0, count * bytes, start, 0, NULL,
-                                          NULL);
+    cl_int error =
+        cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_FALSE, 0, count * bytes, start, 0, NULL, NULL);
     return error ? opencl_fail("copying samples to the device", error) : TC_OK;
 }
 
@@ -91,8 +90,7 @@ tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
     s->sample_z = slab_samples_begin(r->plan, slab_index);
     s->head_offset = slab_index * STATE_WORDS;
     s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
-    s->active_offset =
-        (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
     s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
     uint64_t plane = (uint64_t)s->nx * s->ny;
@@ -140,8 +138,9 @@ void slab_store_release(slab_store *store) {
 static tc_status window_copy(run *r, device_buffer *buffer, uint8_t *host, uint64_t first, uint64_t count, bool save) {
     if (count == 0) return TC_OK;
     cl_command_queue queue = r->context->queue;
-    cl_int error = save ? cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL)
-                        : cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL);
+    cl_int error = save
+                       ? cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL)
+                       : cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL);
     return error ? opencl_fail(save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
 }
 

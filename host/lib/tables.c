@@ -27,16 +27,16 @@ const tetrahedron_case tetrahedron_cases[16] = {
 };
 
 const owned_edge cube_edges[CUBE_EDGES] = {
-    {0, 0, 0, EDGE_X}, {0, 0, 0, EDGE_Y},  {0, 0, 0, EDGE_Z},  {0, 0, 0, EDGE_XY}, {0, 0, 0, EDGE_XZ}, {0, 0, 0, EDGE_YZ},
-    {0, 1, 0, EDGE_X}, {0, 1, 0, EDGE_Z},  {0, 1, 0, EDGE_XZ}, /* row y + 1 */
-    {0, 0, 1, EDGE_X}, {0, 0, 1, EDGE_Y},  {0, 0, 1, EDGE_XY}, /* row z + 1 */
-    {0, 1, 1, EDGE_X},                                         /* row y + 1, z + 1 */
-    {1, 0, 0, EDGE_Y}, {1, 0, 0, EDGE_Z},  {1, 0, 0, EDGE_YZ}, {1, 1, 0, EDGE_Z},  {1, 0, 1, EDGE_Y}, /* at x + 1 */
+    {0, 0, 0, EDGE_X},  {0, 0, 0, EDGE_Y}, {0, 0, 0, EDGE_Z},  {0, 0, 0, EDGE_XY}, {0, 0, 0, EDGE_XZ},
+    {0, 0, 0, EDGE_YZ}, {0, 1, 0, EDGE_X}, {0, 1, 0, EDGE_Z},  {0, 1, 0, EDGE_XZ}, /* row y + 1 */
+    {0, 0, 1, EDGE_X},  {0, 0, 1, EDGE_Y}, {0, 0, 1, EDGE_XY},                     /* row z + 1 */
+    {0, 1, 1, EDGE_X},                                                             /* row y + 1, z + 1 */
+    {1, 0, 0, EDGE_Y},  {1, 0, 0, EDGE_Z}, {1, 0, 0, EDGE_YZ}, {1, 1, 0, EDGE_Z},  {1, 0, 1, EDGE_Y}, /* at x + 1 */
 };
 
 owned_edge edge_between(unsigned corner_a, unsigned corner_b) {
-    static const uint8_t type_of_axes[8] = {[1] = EDGE_X,  [2] = EDGE_Y,  [4] = EDGE_Z,
-                                            [3] = EDGE_XY, [5] = EDGE_XZ, [6] = EDGE_YZ};
+    static const uint8_t type_of_axes[8] = {
+        [1] = EDGE_X, [2] = EDGE_Y, [4] = EDGE_Z, [3] = EDGE_XY, [5] = EDGE_XZ, [6] = EDGE_YZ};
     unsigned low = corner_a & corner_b;
     return (owned_edge){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), type_of_axes[corner_a ^ corner_b]};
 }
