@@ -138,8 +138,8 @@ TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *in
 TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);
 TC_API struct _cl_command_queue *tc_context_cl_queue(const tc_context *context);
 
-/* Bytes of device buffers held at this moment and at most so far, samples and mesh included; memory of the host that
- * the device uses in place counts only with the mesh. */
+/* Bytes of device buffers held at this moment and at most so far, samples and mesh included, also where they lie in memory
+ * of the host that the device uses in place. */
 TC_API uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak);
 
 /* ------------------------------------------------------------------------------------------------------------ grid */

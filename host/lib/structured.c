@@ -66,6 +66,7 @@ static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *opti
     *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
     base_fill(r, inside, options->isovalue);
     tc_status status = program_get(r->context, grid->type, grid->device->missing, r->normals, &r->program);
+    r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);
     if (status) return status;
@@ -144,8 +145,10 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     bool missing = grid->device->missing;
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
+    double start = r->start_ms;
     run_end(r);
     status = run_begin(r, grid, options, inside);
+    r->start_ms = start;
     return status ? status : slabs_classify(r);
 }
 
@@ -154,21 +157,20 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
 
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
-    double start = clock_ms();
     run r;
     if (inside.uniform) return TC_OK;
     tc_status status = classify(&r, grid, options, inside);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
-    counts->classify_ms = clock_ms() - start;
+    counts->classify_ms = clock_ms() - r.start_ms;
     run_end(&r);
     return status;
 }
 
 tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
-    double start = clock_ms(), classified;
+    double classified;
     run r;
     if (inside.uniform) return TC_OK;
     tc_status status = classify(&r, grid, options, inside);
@@ -178,8 +180,8 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
     mesh->active_cell_count = r.active_cell_count;
     mesh->slab_count = r.plan->slab_count;
-    mesh->timings.classify_ms = classified - start;
-    mesh->timings.total_ms = clock_ms() - start - mesh->timings.readback_ms;
+    mesh->timings.classify_ms = classified - r.start_ms;
+    mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
     run_end(&r);
     return status;

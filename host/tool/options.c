@@ -76,7 +76,7 @@ static const option table[] = {
      "opencl (default), or reference: scalar C, needs no OpenCL, same bytes"},
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu or part of a name, see\n"
-     "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first"},
+     "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
     {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_SIZE, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024):\n"
      "less memory means smaller slabs, never another result"},
