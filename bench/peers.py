@@ -264,7 +264,7 @@ def parse_arguments():
     parser.add_argument("--device", metavar="SPEC", help="OpenCL device of Tetracubes")
     parser.add_argument("--threads", type=int, default=0, metavar="N", help="of VTK, default all cores")
     parser.add_argument("--skimage", action="store_true", help="time scikit-image too")
-    parser.add_argument("--bench", default=None, metavar="FILE", help="tetracubes-bench; default that of the last build")
+    parser.add_argument("--bench", metavar="FILE", help="tetracubes-bench; default that of the last build")
     parser.add_argument("--folder", metavar="DIR", help="for the samples (up to 512 MB), default a temporary one")
     parser.add_argument("--json", metavar="FILE", help="write the results here too")
     arguments = parser.parse_args()

@@ -50,17 +50,19 @@ def case_row(case):
 
 
 def cases_table(result):
-    return table(["samples", "triangles", "new mesh, ms", "kept mesh, ms", "GB/s", "M triangles/s", "limit, ms",
-                  "× limit", "scalar C, ms"], map(case_row, result["cases"]))
+    head = ["samples", "triangles", "new mesh, ms", "kept mesh, ms", "GB/s", "M triangles/s", "limit, ms", "× limit",
+            "scalar C, ms"]
+    return table(head, map(case_row, result["cases"]))
 
 
 def section(result):
     vtk = result["vtk"]
     return "\n\n".join([
         f"**{result['cpu']}, {result['cores']} cores**, OpenCL device {result['device']} (driver {result['driver']}), "
-        f"{result['date']}. The device reads {result['read_gbps']:.1f} GB/s and writes {result['write_gbps']:.1f} GB/s. "
-        f"A whole process on a 64³ file takes {result['startup_ms']['median']:.0f} ms; on a 512³ u8 file its memory "
-        f"peaks at {result['peak_extra_mb']:.0f} MB beyond file and mesh.",
+        f"{result['date']}. The device reads {result['read_gbps']:.1f} GB/s and writes "
+        f"{result['write_gbps']:.1f} GB/s. A whole process on a 64³ file takes "
+        f"{result['startup_ms']['median']:.0f} ms; on a 512³ u8 file its memory peaks at "
+        f"{result['peak_extra_mb']:.0f} MB beyond file and mesh.",
         f"Against vtkFlyingEdges3D of VTK {vtk['version']} ({vtk['threads']} threads, no normals), a new mesh on every "
         "repeat on both sides, in turns; medians (min-max):",
         peers_table(result),

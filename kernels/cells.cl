@@ -6,7 +6,7 @@
  */
 #if MISSING
 
-ulong word_present(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+inline_always ulong word_present(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
     ulong word = 0;
     for (uint part = 4 * w; part < 4 * w + 4 && 16 * part < s->nx; part++) {
         BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
@@ -16,7 +16,7 @@ ulong word_present(global const BITS *samples, const slab *s, uint y, uint z, ui
 }
 
 /* Present samples of a row, and those whose right-hand neighbour is present too. */
-ulong word_present_pair(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+inline_always ulong word_present_pair(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
     ulong word = word_present(samples, s, y, z, w);
     ulong next = 0;
     if (w + 1 < s->words_x) {
@@ -43,20 +43,20 @@ kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells, 
 }
 
 /* Present cubes of the row (y, z); none where that is outside the grid. */
-ulong cells_at(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+inline_always ulong cells_at(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
     if (y >= s->ny || z >= s->nz || z < s->cell_z) return 0; /* y and z wrap below 0 */
     return cells[((z - s->cell_z) * s->ny + y) * s->words_x + w];
 }
 
 /* Present cubes, or those at x - 1. */
-ulong cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+inline_always ulong cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
     ulong carry = w ? cells_at(s, cells, y, z, w - 1) >> 63 : 0;
     ulong word = cells_at(s, cells, y, z, w);
     return word | word << 1 | carry;
 }
 
 /* Keeps the crossings of edges that a present cube contains. */
-void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
+inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
     ulong here = cells_at(s, cells, y, z, w), low_y = cells_at(s, cells, y - 1, z, w);
     ulong low_z = cells_at(s, cells, y, z - 1, w), low_yz = cells_at(s, cells, y - 1, z - 1, w);
     ulong before = cells_before(s, cells, y, z, w);

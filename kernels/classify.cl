@@ -15,7 +15,7 @@ typedef struct tile {
     uint y0, y1, z0, z1; /* rows and planes of samples */
 } tile;
 
-tile tile_locate(const slab *s, uint n) {
+inline_always tile tile_locate(const slab *s, uint n) {
     tile t;
     uint groups_y = (s->bricks_y + s->tile_rows - 1) / s->tile_rows;
     t.y0 = n % groups_y * s->tile_rows * BRICK_ROWS;
@@ -27,14 +27,14 @@ tile tile_locate(const slab *s, uint n) {
 
 /* A row of sign words: the tile's own are in words; of the halo, the plane z1 comes first in scratch (rows y0 to y1),
  * then the rows y1 of the other planes. */
-global ulong *tile_row(const slab *s, tile t, uint y, uint z, global ulong *words, global ulong *scratch) {
+inline_always global ulong *tile_row(const slab *s, tile t, uint y, uint z, global ulong *words, global ulong *scratch) {
     if (z >= t.z1) return scratch + (y - t.y0) * s->words_x;
     if (y >= t.y1) return scratch + (t.y1 - t.y0 + 1 + z - t.z0) * s->words_x;
     return words + word_index(s, y, z, 0);
 }
 
 /* Sign words of the planes z0 <= z < z1 of the tile, halo rows included. */
-uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *samples, global ulong *words,
+inline_always uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *samples, global ulong *words,
                  global ulong *scratch) {
     uint rows = min(t.y1 + 1, s->ny) - t.y0;
     uint nonfinite = 0;
@@ -60,7 +60,7 @@ typedef struct emission {
 } emission;
 
 /* What one row of 64 cubes emits; *packed as offsets_pack makes it, for a row that comes first in its brick. */
-emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, global const ulong *cells, ulong *packed) {
+inline_always emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, global const ulong *cells, ulong *packed) {
     crossings k = crossings_owned(r);
     ulong active = cubes_active(r);
 #if MISSING
@@ -76,7 +76,7 @@ emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, glo
     return e;
 }
 
-emission tile_row_count(const slab *s, tile t, uint y, uint z, uint w, global ulong *words, global ulong *scratch,
+inline_always emission tile_row_count(const slab *s, tile t, uint y, uint z, uint w, global ulong *words, global ulong *scratch,
                         global const ulong *cells, ulong *packed) {
     cube_row r = cube_row_load(s, y, z, w, tile_row(s, t, y, z, words, scratch),
                                tile_row(s, t, y + 1, z, words, scratch), tile_row(s, t, y, z + 1, words, scratch),
@@ -89,18 +89,18 @@ typedef struct brick {
     uint w, y0;
 } brick;
 
-brick brick_locate(const slab *s, tile t, uint n) {
+inline_always brick brick_locate(const slab *s, tile t, uint n) {
     brick b = {n % s->words_x, t.y0 + n / s->words_x * BRICK_ROWS};
     return b;
 }
 
-uint layer_bricks(const slab *s, tile t) { return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x; }
+inline_always uint layer_bricks(const slab *s, tile t) { return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x; }
 
 #if WORK_ITEMS == 1
 
 /* Which of the eight bricks from w on have samples on both sides, neighbours included; the others emit nothing. Reads up to
  * eight words past the end of a row: buffers of words are that much longer. */
-ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
+inline_always ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
     const ulong8 column = w + (ulong8)(0, 1, 2, 3, 4, 5, 6, 7);
     const ulong8 has_next = as_ulong8(column + 1 < (ulong8)s->words_x);
     const ulong8 past_end = as_ulong8(column + 1 == (ulong8)s->words_x) & ~word_valid(s, s->words_x - 1);
@@ -116,7 +116,7 @@ ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulon
 }
 
 /* Counts a brick row by row, stores where in the brick each row's output begins and returns which rows emit. */
-uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch,
+inline_always uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch,
                  global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
     uint y1 = min(y0 + BRICK_ROWS, t.y1), z1 = min(z0 + BRICK_PLANES, t.z1), mask = 0;
     emission e = {0, 0, 0};
@@ -136,7 +136,7 @@ uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *
 }
 
 /* Counts a layer of the tile, brick by brick; *sums runs on from brick to brick. Stores bases within the tile. */
-void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
+inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
                  global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
                  emission *sums) {
     for (uint y0 = t.y0; y0 < t.y1; y0 += BRICK_ROWS)
@@ -159,7 +159,7 @@ void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulo
 
 /* The same with a work-item per row of a brick: each adds up the rows before its own. rows: emissions of the bricks at
  * hand; masks_local likewise. All work-items leave with the same sums. */
-void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
+inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
                  global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
                  emission *sums, local emission *rows) {
     uint lid = (uint)get_local_id(0), slot = lid / BRICK_WORDS, place = lid % BRICK_WORDS;
@@ -199,7 +199,7 @@ void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulo
 #endif
 
 /* The fallback of the scan: one work-item's share of a tile's sums, straight from the samples. */
-emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
+inline_always emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
     tile t = tile_locate(s, number);
     emission sums = {0, 0, 0};
     uint rows = t.y1 - t.y0, count = rows * (t.z1 - t.z0) * s->words_x, ignored = 0;
@@ -222,7 +222,7 @@ emission tile_recount(const slab *s, uint number, global const BITS *samples, gl
 }
 
 /* What all tiles before this one emit. Called by the whole group; shared: 5 words of local memory. */
-uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint *head,
+inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint *head,
                   global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
@@ -260,7 +260,7 @@ uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global
 }
 
 /* Turns bases within the tile into bases within the slab, and appends the bricks that emit something to the list. */
-void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, global const uint *masks, global uint *active,
+inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, global const uint *masks, global uint *active,
                  global uint *head, local uint *shared) {
     uint first = brick_index(s, t.y0, t.z0, 0);
     uint count = layer_bricks(s, t) * ((t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES);
@@ -280,7 +280,7 @@ void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, globa
 }
 
 /* Looks back for a tile whose sums are posted, posts its prefix and stores what follows from it. */
-void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint2 *bases,
+inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint2 *bases,
                  global const uint *masks, global uint *active, global uint *head, global uint *tiles,
                  local uint *shared) {
     uint2 prefix = tile_prefix(s, number, samples, cells, head, tiles, shared);

@@ -11,7 +11,7 @@
 #define CASE_BYTES 32
 #define RUN_BRICKS 8 /* active bricks that a group takes at once */
 
-uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); }
+inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); }
 
 typedef struct mesh_buffers {
     global float *positions;
@@ -50,7 +50,7 @@ inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BIT
 }
 
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
-void batch_flush(vertex_batch *batch, const slab *s, global const BITS *samples, mesh_buffers mesh) {
+inline_always void batch_flush(vertex_batch *batch, const slab *s, global const BITS *samples, mesh_buffers mesh) {
     const corner brick = batch->brick;
     for (uint first = 0; first < batch->count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
@@ -102,7 +102,7 @@ inline_always void edges_add(vertex_batch *batch, const slab *s, ulong crossed, 
 }
 
 /* All vertices of a row of 64 samples, in order. */
-void row_vertices(vertex_batch *batch, const slab *s, uint y, uint z, uint w, const crossings *k,
+inline_always void row_vertices(vertex_batch *batch, const slab *s, uint y, uint z, uint w, const crossings *k,
                   global const BITS *samples, mesh_buffers mesh) {
     ulong even = even_cubes(s, y, z), start = row_start(s, y, z) + 64ul * w, ny = s->nx, nz = (ulong)s->nx * s->ny;
     uint at = (y - batch->brick.y) << 7 | (z - batch->brick.z) << 11;
@@ -127,7 +127,7 @@ typedef struct owner {
     ulong packed;
 } owner;
 
-owner owner_of(const slab *s, uint y, uint z, uint w, global const ulong *offsets, global const uint2 *bases) {
+inline_always owner owner_of(const slab *s, uint y, uint z, uint w, global const ulong *offsets, global const uint2 *bases) {
     owner o;
     o.packed = offsets[word_index(s, y, z, w)];
     o.first = (z < s->z1 ? s->vertex_base : s->vertex_base_next) + bases[brick_index(s, y, z, w)].x;
@@ -178,7 +178,7 @@ inline_always void cube_vertices(const cube_numbers *n, uint bit, uint number[CU
 }
 
 /* Edges at x + 1 of the last cube of a row are the first of the next word. */
-void cube_vertices_next(const slab *s, uint y, uint z, uint w, uint number[CUBE_EDGES], global const ulong *offsets,
+inline_always void cube_vertices_next(const slab *s, uint y, uint z, uint w, uint number[CUBE_EDGES], global const ulong *offsets,
                         global const uint2 *bases) {
     owner a = owner_of(s, y, z, w, offsets, bases);
     number[13] = number_of(a, 1), number[14] = number_of(a, 2), number[15] = number_of(a, 5);
@@ -192,7 +192,7 @@ inline_always uint pattern_at(ulong8 corners, uint bit) {
     return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
 }
 
-void row_triangles(const slab *s, uint y, uint z, uint w, const cube_row *r, ulong active, const cube_numbers *numbers,
+inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cube_row *r, ulong active, const cube_numbers *numbers,
                    uint out, global const ulong *offsets, global const uint2 *bases, global const uchar *cases,
                    mesh_buffers mesh) {
     ulong8 corners = (ulong8)(r->a0, r->a1, r->b0, r->b1, r->c0, r->c1, r->d0, r->d1);
@@ -234,7 +234,7 @@ typedef struct row_results {
     global const uint2 *bases;
 } row_results; /* of kernel 1 */
 
-void row_emit(vertex_batch *batch, const slab *s, uint y, uint z, uint w, uint triangle_base,
+inline_always void row_emit(vertex_batch *batch, const slab *s, uint y, uint z, uint w, uint triangle_base,
               global const BITS *samples, row_results k1, global const uchar *cases, mesh_buffers mesh) {
     global const ulong *row = k1.words + word_index(s, y, z, 0);
     ulong plane = (ulong)s->ny * s->words_x;
@@ -265,7 +265,7 @@ void row_emit(vertex_batch *batch, const slab *s, uint y, uint z, uint w, uint t
 }
 
 /* The rows of brick `number` that are in mask. */
-void brick_emit(const slab *s, uint number, uint mask, vertex_batch *batch, global const BITS *samples, row_results k1,
+inline_always void brick_emit(const slab *s, uint number, uint mask, vertex_batch *batch, global const BITS *samples, row_results k1,
                 global const uchar *cases, mesh_buffers mesh) {
     uint w = number % s->words_x;
     corner brick = {64 * w, number / s->words_x % s->bricks_y * BRICK_ROWS,

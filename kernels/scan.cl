@@ -16,28 +16,28 @@
 #define SCAN_PREFIX 2u
 #define SCAN_VALUE  0x3fffffffu /* 30 bits: the host bounds a slab so that no sum passes them */
 
-uint scan_word(uint state, uint value) { return state << 30 | value; }
+inline_always uint scan_word(uint state, uint value) { return state << 30 | value; }
 
-volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) {
+inline_always volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) {
     return tiles + TILE_WORDS * tile + channel;
 }
 
-void scan_post_sum(global uint *tiles, uint tile, uint channel, uint sum) {
+inline_always void scan_post_sum(global uint *tiles, uint tile, uint channel, uint sum) {
     atomic_cmpxchg(scan_at(tiles, tile, channel), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
 }
 
 /* The sum that a group posted for a tile of its own. */
-uint scan_own_sum(global uint *tiles, uint tile, uint channel) {
+inline_always uint scan_own_sum(global uint *tiles, uint tile, uint channel) {
     return atomic_or(scan_at(tiles, tile, channel), 0u) & SCAN_VALUE;
 }
 
-void scan_post_prefix(global uint *tiles, uint tile, uint channel, uint prefix) {
+inline_always void scan_post_prefix(global uint *tiles, uint tile, uint channel, uint prefix) {
     atomic_xchg(scan_at(tiles, tile, channel), scan_word(SCAN_PREFIX, prefix));
 }
 
 /* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted nothing
  * within the limit of polls. */
-bool scan_look_back(global uint *tiles, uint channel, uint *tile, uint *sum, uint spin_limit) {
+inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, uint *sum, uint spin_limit) {
     uint polls = 0;
     while (*tile > 0 && polls <= spin_limit) {
         uint word = atomic_or(scan_at(tiles, *tile - 1, channel), 0u);

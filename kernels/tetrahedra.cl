@@ -13,16 +13,16 @@ typedef struct cube_row {
     ulong has_y, has_z; /* all or none */
 } cube_row;
 
-ulong word_shifted(ulong word, ulong next) { return word >> 1 | next << 63; }
+inline_always ulong word_shifted(ulong word, ulong next) { return word >> 1 | next << 63; }
 
-ulong even_cubes(const slab *s, uint y, uint z) {
+inline_always ulong even_cubes(const slab *s, uint y, uint z) {
     return (s->parity + y + z) & 1 ? 0xaaaaaaaaaaaaaaaaul : 0x5555555555555555ul;
 }
 
-ulong choose(ulong which, ulong yes, ulong no) { return no ^ (which & (yes ^ no)); }
+inline_always ulong choose(ulong which, ulong yes, ulong no) { return no ^ (which & (yes ^ no)); }
 
 /* word[n]: a, b, c, d at w and at w + 1; 0 where outside the grid. */
-cube_row cube_row_of(const slab *s, uint y, uint z, uint w, const ulong word[4][2]) {
+inline_always cube_row cube_row_of(const slab *s, uint y, uint z, uint w, const ulong word[4][2]) {
     cube_row r;
     ulong valid = word_valid(s, w);
     r.a0 = word[0][0], r.a1 = word_shifted(word[0][0], word[0][1]);
@@ -37,7 +37,7 @@ cube_row cube_row_of(const slab *s, uint y, uint z, uint w, const ulong word[4][
 }
 
 /* The same from rows of sign words; a row outside the grid may be any pointer. */
-cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong *a, global const ulong *b,
+inline_always cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong *a, global const ulong *b,
                        global const ulong *c, global const ulong *d) {
     bool next = w + 1 < s->words_x, y1 = y + 1 < s->ny, z1 = z + 1 < s->nz;
     ulong word[4][2] = {{a[w], next ? a[w + 1] : 0},
@@ -47,10 +47,10 @@ cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong
     return cube_row_of(s, y, z, w, word);
 }
 
-ulong cubes_in_grid(const cube_row *r) { return r->has_x & r->has_y & r->has_z; }
+inline_always ulong cubes_in_grid(const cube_row *r) { return r->has_x & r->has_y & r->has_z; }
 
 /* Cubes whose corners differ. */
-ulong cubes_active(const cube_row *r) {
+inline_always ulong cubes_active(const cube_row *r) {
     ulong any = r->a0 | r->a1 | r->b0 | r->b1 | r->c0 | r->c1 | r->d0 | r->d1;
     ulong all = r->a0 & r->a1 & r->b0 & r->b1 & r->c0 & r->c1 & r->d0 & r->d1;
     return any & ~all & cubes_in_grid(r);
@@ -61,7 +61,7 @@ typedef struct crossings {
     ulong type[6]; /* x, y, z, xy, xz, yz */
 } crossings;
 
-crossings crossings_owned(const cube_row *r) {
+inline_always crossings crossings_owned(const cube_row *r) {
     crossings k;
     k.type[0] = (r->a0 ^ r->a1) & r->has_x;
     k.type[1] = (r->a0 ^ r->b0) & r->has_y;
@@ -72,14 +72,14 @@ crossings crossings_owned(const cube_row *r) {
     return k;
 }
 
-void tetrahedron_count(ulong a, ulong b, ulong c, ulong d, ulong cubes, uint *triangles) {
+inline_always void tetrahedron_count(ulong a, ulong b, ulong c, ulong d, ulong cubes, uint *triangles) {
     ulong odd = a ^ b ^ c ^ d;
     ulong two = (a | b | c | d) & ~(a & b & c & d) & ~odd;
     *triangles += (uint)popcount(odd & cubes) + 2 * (uint)popcount(two & cubes);
 }
 
 /* Corner n of an even cube, corner n ^ 1 of an odd one. */
-uint triangles_count(const cube_row *r, ulong cubes) {
+inline_always uint triangles_count(const cube_row *r, ulong cubes) {
     ulong e = r->even;
     ulong p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
     ulong p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
@@ -96,7 +96,7 @@ uint triangles_count(const cube_row *r, ulong cubes) {
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
  * vertex in its brick: 14 bits, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
-ulong offsets_pack(const crossings *k, uint first, uint *vertex_count) {
+inline_always ulong offsets_pack(const crossings *k, uint first, uint *vertex_count) {
     uint y = (uint)popcount(k->type[0]);
     uint z = y + (uint)popcount(k->type[1]);
     uint xy = z + (uint)popcount(k->type[2]);

@@ -16,14 +16,14 @@ typedef struct corner {
 
 #if DIVISION == 1
 inline_always float divide(float a, float b) { return a / b; }
-float root(float a) { return sqrt(a); }
+inline_always float root(float a) { return sqrt(a); }
 #elif DIVISION == 2
 /* Rounding to double first changes nothing: 53 >= 2 * 24 + 2 bits. */
-float divide(float a, float b) { return (float)((double)a / (double)b); }
-float root(float a) { return (float)sqrt((double)a); }
+inline_always float divide(float a, float b) { return (float)((double)a / (double)b); }
+inline_always float root(float a) { return (float)sqrt((double)a); }
 #else
 /* value = *mantissa 2^*exponent with bit 23 of the mantissa set; a is finite and not 0. */
-void float_split(float a, uint *mantissa, int *exponent) {
+inline_always void float_split(float a, uint *mantissa, int *exponent) {
     uint bits = as_uint(a) & 0x7fffffff;
     uint field = bits >> 23;
     *mantissa = field ? (bits & 0x7fffff) | 0x800000 : bits;
@@ -34,7 +34,7 @@ void float_split(float a, uint *mantissa, int *exponent) {
 }
 
 /* Round to nearest even, by hand; a and b are finite, b is not 0, the quotient does not overflow. */
-float divide(float a, float b) {
+inline_always float divide(float a, float b) {
     uint sign = (as_uint(a) ^ as_uint(b)) & 0x80000000u;
     if ((as_uint(a) & 0x7fffffff) == 0) return as_float(sign);
     uint ma, mb;
@@ -57,7 +57,7 @@ float divide(float a, float b) {
 }
 
 /* For 1 <= a <= 4: a root of 25 bits, the last of which decides the rounding (no root lies half way). */
-float root(float a) {
+inline_always float root(float a) {
     uint mantissa;
     int exponent;
     float_split(a, &mantissa, &exponent);
@@ -107,7 +107,7 @@ inline_always void position_make(const slab *s, corner c, uint place, float t, f
 
 #if NORMALS
 
-bool sample_missing(global const BITS *samples, const slab *s, ulong n) {
+inline_always bool sample_missing(global const BITS *samples, const slab *s, ulong n) {
 #if MISSING
     BITS bits = samples[n];
     bool missing = s->has_nodata && (bits == (BITS)s->nodata_bits[0] || bits == (BITS)s->nodata_bits[1]);
@@ -122,7 +122,7 @@ bool sample_missing(global const BITS *samples, const slab *s, ulong n) {
 
 /* Along one axis: central, one-sided at borders and beside missing samples, 0 between two. Scaled by 1/16, so that
  * nothing below overflows. */
-REAL difference(global const BITS *samples, const slab *s, const uint p[3], uint axis) {
+inline_always REAL difference(global const BITS *samples, const slab *s, const uint p[3], uint axis) {
     const uint dims[3] = {s->nx, s->ny, s->nz};
     const ulong strides[3] = {1, s->nx, (ulong)s->nx * s->ny};
     ulong here = row_start(s, p[1], p[2]) + p[0];
@@ -135,7 +135,7 @@ REAL difference(global const BITS *samples, const slab *s, const uint p[3], uint
 }
 
 /* Unit length, towards lower values; zero where the gradient vanishes. */
-void normal_store(global const BITS *samples, const slab *s, corner c, uint place, float t, global float *out) {
+inline_always void normal_store(global const BITS *samples, const slab *s, corner c, uint place, float t, global float *out) {
     const float *m = s->normal_matrix;
     const uint a[3] = {c.x + (place & 0x7f), c.y + (place >> 7 & 0xf), c.z + (place >> 11 & 7)};
     const uint b[3] = {a[0] + (place >> 14 & 3) - 1, a[1] + (place >> 16 & 3) - 1, a[2] + (place >> 18 & 3) - 1};

@@ -35,7 +35,7 @@ inline_always char16 inside_mask(BITS16 bits, const slab *s) {
     return convert_char16((bits - (BITS)s->inside_low) <= (BITS16)(BITS)s->inside_span);
 }
 
-char16 missing_mask(BITS16 bits, const slab *s) {
+inline_always char16 missing_mask(BITS16 bits, const slab *s) {
     char16 missing = 0;
 #if FLOATING
     missing = convert_char16((bits & EXPONENT) == EXPONENT);
@@ -53,12 +53,12 @@ inline_always uint mask_pack(char16 mask) {
     return (uint)(bytes.x | bytes.y << 8);
 }
 
-ulong row_start(const slab *s, uint y, uint z) {
+inline_always ulong row_start(const slab *s, uint y, uint z) {
     return s->sample_offset + ((ulong)(z - s->sample_z) * s->ny + y) * s->nx;
 }
 
 /* 16 samples from n on, of which those from index `end` of the buffer on are read as 0. */
-BITS16 samples_load(global const BITS *samples, const slab *s, ulong n) {
+inline_always BITS16 samples_load(global const BITS *samples, const slab *s, ulong n) {
     ulong end = s->sample_offset + s->sample_count;
     if (n + 16 <= end) return vload16(0, samples + n);
     BITS last[16];
@@ -66,14 +66,14 @@ BITS16 samples_load(global const BITS *samples, const slab *s, ulong n) {
     return vload16(0, last);
 }
 
-ulong word_valid(const slab *s, uint w) {
+inline_always ulong word_valid(const slab *s, uint w) {
     uint left = s->nx - 64 * w;
     return left >= 64 ? ~0ul : (1ul << left) - 1;
 }
 
 /* 16 bits of a word. *nonfinite becomes not 0 where a sample is NaN or infinite; those read past the end of a row are
  * samples of the same grid. */
-uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint part, uint *nonfinite) {
+inline_always uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint part, uint *nonfinite) {
     if (16 * part >= s->nx) return 0;
     BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
 #if FLOATING && !MISSING
@@ -96,7 +96,7 @@ inline_always ulong word_full(global const BITS *samples, const slab *s, uint *n
     return as_ulong(convert_uchar8(bytes));
 }
 
-ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w, uint *nonfinite) {
+inline_always ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w, uint *nonfinite) {
     ulong start = row_start(s, y, z) + 64ul * w;
     if (start + 64 <= s->sample_offset + s->sample_count)
         return word_full(samples + start, s, nonfinite) & word_valid(s, w);
@@ -107,7 +107,7 @@ ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uin
 
 #if WORK_ITEMS == 1
 /* All words of a row. */
-void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row, uint *nonfinite) {
+inline_always void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row, uint *nonfinite) {
     ulong start = row_start(s, y, z);
     if (start + 64ul * s->words_x <= s->sample_offset + s->sample_count) {
         for (uint w = 0; w < s->words_x; w++) row[w] = word_full(samples + start + 64ul * w, s, nonfinite);
@@ -118,8 +118,8 @@ void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global 
 }
 #endif
 
-uint word_index(const slab *s, uint y, uint z, uint w) { return ((z - s->word_z) * s->ny + y) * s->words_x + w; }
+inline_always uint word_index(const slab *s, uint y, uint z, uint w) { return ((z - s->word_z) * s->ny + y) * s->words_x + w; }
 
-uint brick_index(const slab *s, uint y, uint z, uint w) {
+inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }

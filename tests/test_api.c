@@ -33,7 +33,7 @@ static void samples_fill(void) {
     do {                                                                                                               \
         tc_status status_ = (call);                                                                                    \
         EXPECT(status_ == (wanted), "%s: status %d, not %d (%s)", what, (int)status_, (int)(wanted), tc_message());    \
-        EXPECT(strlen(tc_message()) > 10, "%s: no message", what);                                                     \
+        EXPECT(*tc_message(), "%s: no message", what);                                                                 \
     } while (0)
 
 /* ------------------------------------------------------------------------------------------------------ small calls */

@@ -162,7 +162,7 @@ static void run(uint64_t seed) {
 
 int main(int argc, char **argv) {
     uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 1996;
-    uint64_t count = argc > 2 ? strtoull(argv[2], NULL, 0) : 400;
+    uint64_t count = argc > 2 ? strtoull(argv[2], NULL, 0) : 250;
     tc_context_options options;
     tc_context_options_init(&options);
     contexts[0] = reference_open();
