@@ -242,6 +242,9 @@ def main():
     arguments.source, arguments.build = arguments.source.resolve(), arguments.build.resolve()
     project = (arguments.source / "CMakeLists.txt").read_text(encoding="utf-8")
     arguments.version = re.search(r"project\(tetracubes VERSION (\S+)", project).group(1)
+    if cached(arguments.build, "TETRACUBES_SANITIZE"):
+        print("skipped: consumers would need the sanitizers of this build")
+        return 77
     arguments.cmake = cached(arguments.build, "CMAKE_COMMAND")
     arguments.cc = cached(arguments.build, "CMAKE_C_COMPILER")
     arguments.generator = cached(arguments.build, "CMAKE_GENERATOR")

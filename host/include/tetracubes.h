@@ -7,7 +7,7 @@
  * shared vertex. One kernel classifies and prefix-sums, a second emits. The result does not depend on the device, on
  * its tuning or on the engine: the scalar reference engine, plain C without OpenCL, makes the same bytes.
  *
- *     tc_context *context = NULL; tc_grid *grid = NULL; tc_mesh *mesh = NULL; tc_mesh_data data;
+ *     tc_context *context = NULL; tc_grid *grid = NULL; tc_mesh *mesh = NULL; tc_mesh_data data = {sizeof data};
  *     tc_context_options device; tc_context_options_init(&device);
  *     tc_grid_options volume;    tc_grid_options_init(&volume);
  *     tc_extract_options how;    tc_extract_options_init(&how);
@@ -138,8 +138,8 @@ TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *in
 TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);
 TC_API struct _cl_command_queue *tc_context_cl_queue(const tc_context *context);
 
-/* Bytes of device buffers held at this moment and at most so far, samples and mesh included, also where they lie in memory
- * of the host that the device uses in place. */
+/* Bytes of device buffers held at this moment and at most so far, samples and mesh included, also where they lie in
+ * memory of the host that the device uses in place. */
 TC_API uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak);
 
 /* ------------------------------------------------------------------------------------------------------------ grid */

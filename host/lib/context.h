@@ -15,14 +15,17 @@ typedef struct device_buffer {
     uint64_t bytes;
 } device_buffer;
 
-/* Kernels for one sample type, with or without missing samples and normals. */
+/* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
 typedef struct program {
-    tc_type type;
-    bool missing, normals;
+    char options[512];
     cl_program program;
-    cl_kernel classify, emit, cells;
+    cl_kernel kernel, cells;
     struct program *next;
 } program;
+
+typedef struct kernels {
+    cl_kernel classify, cells, emit;
+} kernels;
 
 /* What kernel 1 leaves for kernel 2, and what both need besides samples and mesh. */
 typedef struct workspace {
@@ -47,8 +50,9 @@ struct tc_context {
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
-/* The program for a grid, built when first asked for (program.c). */
-tc_status program_get(tc_context *context, tc_type type, bool missing, bool normals, const program **out);
+/* The kernels for a grid, built when first asked for, owned by the context (program.c). */
+tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out);
+tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out);
 void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */

@@ -1,14 +1,12 @@
-# cmake -DOUT=FILE.c -DFILES=a;b -P embed.cmake: the kernels as C strings, each starting with a #line that names its file
-set(text "/* Made from kernels/ by embed.cmake. */\n#include \"kernel_sources.h\"\n\nconst char *const kernel_sources[] = {\n")
-set(count 0)
+# cmake -DOUT=FILE.c -DFILES=a;b -P embed.cmake: each kernel file as a C string kernel_source_NAME that starts with a #line
+set(text "/* Made from kernels/ by embed.cmake. */\n#include \"kernel_sources.h\"\n")
 foreach(file IN LISTS FILES)
     get_filename_component(name "${file}" NAME)
+    get_filename_component(stem "${file}" NAME_WE)
     file(READ "${file}" source)
     string(REPLACE "\\" "\\\\" source "${source}")
     string(REPLACE "\"" "\\\"" source "${source}")
     string(REPLACE "\n" "\\n\"\n    \"" source "${source}")
-    string(APPEND text "    \"#line 1 \\\"${name}\\\"\\n\"\n    \"${source}\",\n")
-    math(EXPR count "${count} + 1")
+    string(APPEND text "\nconst char kernel_source_${stem}[] =\n    \"#line 1 \\\"${name}\\\"\\n\"\n    \"${source}\";\n")
 endforeach()
-string(APPEND text "};\n\nconst unsigned kernel_source_count = ${count};\n")
 file(WRITE "${OUT}" "${text}")

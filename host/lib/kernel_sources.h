@@ -2,7 +2,13 @@
 #ifndef KERNEL_SOURCES_H
 #define KERNEL_SOURCES_H
 
-extern const char *const kernel_sources[];
-extern const unsigned kernel_source_count;
+extern const char kernel_source_slab[];
+extern const char kernel_source_words[];
+extern const char kernel_source_tetrahedra[];
+extern const char kernel_source_cells[];
+extern const char kernel_source_scan[];
+extern const char kernel_source_classify[];
+extern const char kernel_source_vertex[];
+extern const char kernel_source_emit[];
 
 #endif

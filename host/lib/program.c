@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The kernels' names for a sample type: unsigned type of its width, width in bits where floating, value of a sample. */
 typedef struct type_text {
@@ -23,19 +24,24 @@ static const type_text type_texts[] = {
     [TC_F32] = {"uint", 32, "as_float(b)"}, [TC_F64] = {"ulong", 64, "as_double(b)"},
 };
 
-static int options_write(const tc_context *context, const program *p, char *out, size_t bytes) {
-    const type_text *t = &type_texts[p->type];
-    bool wide = type_is_wide(p->type), vertices = device_makes_vertices(context, p->type);
-    return snprintf(out, bytes,
-                    "-cl-std=CL1.2 %s-DBITS=%s -DFLOATING=%d -DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DMISSING=%d "
-                    "-DNORMALS=%d -DWORK_ITEMS=%u -DDIVISION=%d %s",
-                    context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", t->bits,
-                    t->floating, wide, vertices ? "-DREAL=" : "",
-                    !vertices ? ""
-                    : wide    ? "double"
-                              : "float",
-                    t->value, p->missing, p->normals, context->options.work_items, context->options.division,
-                    context->info.has_fp64 ? "-DFP64=1" : "");
+/* Kernel 1 sees samples as bit patterns, so types of one width share it. */
+static void classify_options_write(const tc_context *context, tc_type type, bool missing, char *out, size_t bytes) {
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u", type_texts[type].bits,
+             type_texts[type].floating, missing, context->options.work_items);
+}
+
+static void emit_options_write(const tc_context *context, tc_type type, bool missing, bool normals, char *out,
+                               size_t bytes) {
+    char common[128];
+    bool wide = type_is_wide(type), vertices = device_makes_vertices(context, type);
+    classify_options_write(context, type, missing, common, sizeof common);
+    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d%s", common,
+             context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
+             vertices ? "-DREAL=" : "",
+             !vertices ? ""
+             : wide    ? "double"
+                       : "float",
+             type_texts[type].value, normals, context->options.division, context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
 static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
@@ -47,8 +53,23 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
         !cl->GetProgramBuildInfo(p->program, context->device, CL_PROGRAM_BUILD_LOG, bytes, whole, NULL))
         snprintf(log, sizeof log, "%s", whole);
     free(whole);
-    return (tc_status)fail(TC_ERROR_DEVICE, "%s does not build the kernels for %s samples (%d): %s", context->info.name,
-                           tc_type_name(p->type), (int)error, log);
+    return (tc_status)fail(TC_ERROR_DEVICE, "%s does not build the kernels (%d) with %s: %s", context->info.name,
+                           (int)error, p->options, log);
+}
+
+static const char *const classify_sources[] = {kernel_source_slab,  kernel_source_words, kernel_source_tetrahedra,
+                                               kernel_source_cells, kernel_source_scan,  kernel_source_classify};
+static const char *const emit_sources[] = {kernel_source_slab,  kernel_source_words,  kernel_source_tetrahedra,
+                                           kernel_source_cells, kernel_source_vertex, kernel_source_emit};
+enum { SOURCE_COUNT = 6 };
+
+static tc_status program_build(const tc_context *context, program *p, const char *const sources[SOURCE_COUNT]) {
+    cl_int error;
+    p->program =
+        cl->CreateProgramWithSource(context->context, SOURCE_COUNT, (const char **)(size_t)sources, NULL, &error);
+    if (error) return opencl_fail("handing the kernels to the device", error);
+    error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
+    return error ? build_fail(context, p, error) : TC_OK;
 }
 
 static tc_status kernel_create(const program *p, const char *name, cl_kernel *kernel) {
@@ -57,41 +78,27 @@ static tc_status kernel_create(const program *p, const char *name, cl_kernel *ke
     return error ? opencl_fail(name, error) : TC_OK;
 }
 
-static tc_status program_build(const tc_context *context, program *p) {
-    char options[512];
-    cl_int error;
-    options_write(context, p, options, sizeof options);
-    p->program = cl->CreateProgramWithSource(context->context, kernel_source_count,
-                                             (const char **)(size_t)kernel_sources, NULL, &error);
-    if (error) return opencl_fail("handing the kernels to the device", error);
-    error = cl->BuildProgram(p->program, 1, &context->device, options, NULL, NULL);
-    if (error) return build_fail(context, p, error);
-    tc_status status = kernel_create(p, "classify", &p->classify);
-    if (!status) status = kernel_create(p, "emit", &p->emit);
-    if (!status && p->missing) status = kernel_create(p, "cells_mark", &p->cells);
-    return status;
-}
-
 static void program_release(program *p) {
-    if (p->classify) cl->ReleaseKernel(p->classify);
-    if (p->emit) cl->ReleaseKernel(p->emit);
+    if (p->kernel) cl->ReleaseKernel(p->kernel);
     if (p->cells) cl->ReleaseKernel(p->cells);
     if (p->program) cl->ReleaseProgram(p->program);
     free(p);
 }
 
-tc_status program_get(tc_context *context, tc_type type, bool missing, bool normals, const program **out) {
+/* The program with these options, built when first asked for. name: of its main kernel. */
+static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCE_COUNT],
+                             const char *name, bool cells, const program **out) {
     for (program *p = context->programs; p; p = p->next)
-        if (p->type == type && p->missing == missing && p->normals == normals) {
+        if (!strcmp(p->options, options)) {
             *out = p;
             return TC_OK;
         }
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
-    p->type = type;
-    p->missing = missing;
-    p->normals = normals;
-    tc_status status = program_build(context, p);
+    snprintf(p->options, sizeof p->options, "%s", options);
+    tc_status status = program_build(context, p, sources);
+    if (!status) status = kernel_create(p, name, &p->kernel);
+    if (!status && cells) status = kernel_create(p, "cells_mark", &p->cells);
     if (status) {
         program_release(p);
         return status;
@@ -99,6 +106,24 @@ tc_status program_get(tc_context *context, tc_type type, bool missing, bool norm
     p->next = context->programs;
     *out = context->programs = p;
     return TC_OK;
+}
+
+tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out) {
+    char options[sizeof context->programs->options];
+    const program *p;
+    classify_options_write(context, type, missing, options, sizeof options);
+    tc_status status = program_get(context, options, classify_sources, "classify", missing, &p);
+    if (!status) out->classify = p->kernel, out->cells = p->cells;
+    return status;
+}
+
+tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out) {
+    char options[sizeof context->programs->options];
+    const program *p;
+    emit_options_write(context, type, missing, normals, options, sizeof options);
+    tc_status status = program_get(context, options, emit_sources, "emit", false, &p);
+    if (!status) out->emit = p->kernel;
+    return status;
 }
 
 void programs_release(tc_context *context) {

@@ -2,6 +2,7 @@
 
 #include "failure.h"
 #include "slab.h"
+#include "tables.h"
 
 /* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan word counts to 2^30. */
 static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
@@ -73,9 +74,10 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t samples = samples_bytes(plan, grid);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
+    uint64_t fixed = 2 * sizeof(cube_case[2][256]) + 2 * WORDS_READ_PAST + 8 * 4096; /* and buffers from page to page */
     *largest = samples > words ? samples : words;
     return samples + words * 2 + words / 4 + (can_miss_samples(grid) ? words : 0) +
-           16 * layers * plan_bricks_per_layer(plan) + state + scratch;
+           16 * layers * plan_bricks_per_layer(plan) + state + scratch + fixed;
 }
 
 static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,

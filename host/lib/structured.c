@@ -62,10 +62,12 @@ static tc_status workspace_reserve(run *r) {
     return status;
 }
 
-static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside) {
+static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
     *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
     base_fill(r, inside, options->isovalue);
-    tc_status status = program_get(r->context, grid->type, grid->device->missing, r->normals, &r->program);
+    tc_status status = classify_kernels_get(r->context, grid->type, grid->device->missing, &r->kernels);
+    if (!status && emits)
+        status = emit_kernel_get(r->context, grid->type, grid->device->missing, r->normals, &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);
@@ -103,7 +105,7 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
                                          ARGUMENT(w->state.memory),
                                          ARGUMENT(w->scratch.memory),
                                          ARGUMENT(scratch_words)};
-    status = kernel_launch(r, r->program->classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
+    status = kernel_launch(r, r->kernels.classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
     return status ? status : slab_save(r, slab_index);
 }
 
@@ -139,15 +141,15 @@ static tc_status slabs_classify(run *r) {
 
 /* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with
  * missing cells, and remembered as such. */
-static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside) {
-    tc_status status = run_begin(r, grid, options, inside);
+static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+    tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
     bool missing = grid->device->missing;
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
     run_end(r);
-    status = run_begin(r, grid, options, inside);
+    status = run_begin(r, grid, options, inside, emits);
     r->start_ms = start;
     return status ? status : slabs_classify(r);
 }
@@ -159,7 +161,7 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_
     inside_range inside = inside_range_of(grid->type, options->isovalue);
     run r;
     if (inside.uniform) return TC_OK;
-    tc_status status = classify(&r, grid, options, inside);
+    tc_status status = classify(&r, grid, options, inside, false);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
@@ -173,7 +175,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     double classified;
     run r;
     if (inside.uniform) return TC_OK;
-    tc_status status = classify(&r, grid, options, inside);
+    tc_status status = classify(&r, grid, options, inside, true);
     classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
     if (!status && r.vertex_count) status = slabs_emit(&r, mesh);

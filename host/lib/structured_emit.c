@@ -118,7 +118,7 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
                                          ARGUMENT(work->positions.memory),
                                          ARGUMENT(work->normals.memory),
                                          ARGUMENT(work->triangles.memory)};
-    return kernel_launch(r, r->program->emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
+    return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
 /* Where the layers of a slab begin in it: layer_count + 1 pairs of vertices and triangles. */

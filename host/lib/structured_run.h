@@ -27,14 +27,14 @@ typedef struct run {
     tc_grid *grid;
     tc_context *context;
     const slab_plan *plan;
-    const program *program;
+    kernels kernels;
     bool normals;
     slab base;       /* what all slabs have in common */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
     device_buffer *samples; /* whole, or the window of the slab at hand */
     uint64_t vertex_count, triangle_count, active_cell_count;
-    double start_ms;       /* kernels are built by then */
+    double start_ms; /* kernels are built by then */
 } run;
 
 /* The slab's parameters; its samples and, with missing samples, its present cells are on their way to the device. */

@@ -76,7 +76,7 @@ static tc_status cells_make(run *r, const slab *s) {
     if (status) return status;
     const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory),
                                          ARGUMENT(planes)};
-    return kernel_launch(r, r->program->cells, "kernel cells_mark", arguments, 4);
+    return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, 4);
 }
 
 tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {

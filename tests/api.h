@@ -1,0 +1,35 @@
+/*
+ * api.h - what the tests of the public functions share: a small volume, and a call that has to be refused
+ */
+#ifndef API_H
+#define API_H
+
+#include "engines.h"
+
+#include <math.h>
+
+enum { SIZE = 12, SAMPLES = SIZE * SIZE * SIZE };
+
+static uint8_t samples[SAMPLES];
+
+static inline void grid_describe(tc_grid_options *grid) {
+    tc_grid_options_init(grid);
+    for (int axis = 0; axis < 3; axis++) grid->dims[axis] = SIZE;
+    grid->samples = samples;
+}
+
+static inline void samples_fill(void) {
+    for (int n = 0; n < SAMPLES; n++)
+        samples[n] =
+            (uint8_t)(127.5 + 50 * sin(0.7 * (n % SIZE)) + 50 * cos(0.6 * (n / SIZE % SIZE) + 0.3 * (n / SIZE / SIZE)));
+}
+
+/* The status, and a message that says something of it. */
+#define EXPECT_REFUSED(call, wanted, what)                                                                             \
+    do {                                                                                                               \
+        tc_status status_ = (call);                                                                                    \
+        EXPECT(status_ == (wanted), "%s: status %d, not %d (%s)", what, (int)status_, (int)(wanted), tc_message());    \
+        EXPECT(*tc_message(), "%s: no message", what);                                                                 \
+    } while (0)
+
+#endif
