@@ -10,7 +10,6 @@
 
 #include "exit_status.h"
 #include "failure.h"
-#include "kernel_sources.h"
 #include "progress.h"
 
 #include <CL/cl.h>
@@ -22,6 +21,8 @@
 #define PASS_MS      10.0
 #define LAUNCHES_MAX 64
 #define HOPELESS     2.0 /* a shape this many times slower than another is not timed */
+
+extern const char kernel_source_bandwidth[]; /* bandwidth.cl, embedded at build time */
 
 typedef struct shape {
     unsigned width; /* 32-bit words per access */
@@ -86,8 +87,8 @@ static cl_program program_build(const bench_memory *m, const shape *s) {
     cl_int error;
     snprintf(options, sizeof options, "-cl-std=CL1.2 -DVECTOR=uint%u -DWIDTH=%u%s", s->width, s->width,
              s->streaming ? " -DSTREAMING" : "");
-    cl_program program =
-        clCreateProgramWithSource(m->context, kernel_source_count, (const char **)kernel_sources, NULL, &error);
+    const char *source = kernel_source_bandwidth;
+    cl_program program = clCreateProgramWithSource(m->context, 1, &source, NULL, &error);
     if (error) return NULL;
     if (clBuildProgram(program, 1, &m->device, options, NULL, NULL) == CL_SUCCESS) return program;
     clReleaseProgram(program);

@@ -32,7 +32,9 @@ kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells, 
     for (uint row = (uint)get_group_id(0); row < row_count; row += (uint)get_num_groups(0)) {
         uint y = row % s.ny, z = s.cell_z + row / s.ny;
         bool last = y + 1 == s.ny || z + 1 == s.nz;
-        for (uint w = (uint)get_local_id(0); w < s.words_x; w += WORK_ITEMS) {
+        for (uint first = 0; first < s.words_x; first += WORK_ITEMS) {
+            uint w = first + (uint)get_local_id(0);
+            if (w >= s.words_x) continue;
             ulong present = last ? 0 : word_present_pair(samples, &s, y, z, w);
             if (present) present &= word_present_pair(samples, &s, y + 1, z, w);
             if (present) present &= word_present_pair(samples, &s, y, z + 1, w);

@@ -8,7 +8,8 @@
  *   row's output begins;
  *   posts the tile's sums and, now or after its other tiles, obtains what all tiles before it emit (scan.cl);
  *   stores where each brick's output begins, and appends the bricks that emit something to the list for kernel 2.
- * Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base.
+ * Loops over a group's items run equally often for all of them and test inside: PoCL 3.1 has been seen to run loops of
+ * unequal length too often. Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base.
  */
 
 typedef struct tile {
@@ -45,11 +46,11 @@ inline_always uint planes_sign(const slab *s, tile t, uint z0, uint z1, global c
 #else
     uint parts = 4 * s->words_x;
     uint count = (z1 - z0) * rows * parts;
-    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
-        uint row = n / parts, part = n % parts;
+    for (uint first = 0; first < count; first += WORK_ITEMS) {
+        uint n = first + (uint)get_local_id(0), row = n / parts, part = n % parts;
         uint y = t.y0 + row % rows, z = z0 + row / rows;
         global ushort *out = (global ushort *)tile_row(s, t, y, z, words, scratch);
-        out[part] = (ushort)word_part(samples, s, y, z, part, &nonfinite);
+        if (n < count) out[part] = (ushort)word_part(samples, s, y, z, part, &nonfinite);
     }
 #endif
     return nonfinite;
@@ -157,40 +158,55 @@ inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *wor
 
 #define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
 
-/* The same with a work-item per row of a brick: each adds up the rows before its own. rows: emissions of the bricks at
- * hand; masks_local likewise. All work-items leave with the same sums. */
-inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
-                 global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
-                 emission *sums, local emission *rows) {
-    uint lid = (uint)get_local_id(0), slot = lid / BRICK_WORDS, place = lid % BRICK_WORDS;
+/* What a work-item tells its group about the row that it counted. */
+typedef struct row_report {
+    ulong packed;
+    emission e;
+} row_report;
+
+/* The same with a work-item per row of a brick: each adds up the rows before its own. Nothing but the sums lives across a
+ * barrier, and work-items without a row count another one's, as compilers have gone wrong on either. All work-items leave
+ * with the same sums. */
+inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch,
+                               global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets,
+                               global uint2 *bases, global uint *masks, emission *sums, local row_report *rows) {
     uint count = layer_bricks(s, t);
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
-        brick b = brick_locate(s, t, n + slot);
-        uint y = b.y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
-        emission e = {0, 0, 0};
-        ulong packed = 0;
-        if (n + slot < count && y < t.y1 && z < t.z1)
-            e = tile_row_count(s, t, y, z, b.w, words, scratch, cells, &packed);
-        rows[lid] = e;
-        group_barrier();
-        emission before = {0, 0, 0}, total = *sums;
-        uint mask = 0;
-        for (uint m = 0; m < WORK_ITEMS; m++) {
-            emission row = rows[m];
-            if (m == slot * BRICK_WORDS && n + slot < count && place == 0)
-                bases[brick_index(s, b.y0, z0, b.w)] = (uint2)(total.vertices, total.triangles);
-            if (m / BRICK_WORDS == slot) {
-                if (m < lid) before.vertices += row.vertices, before.triangles += row.triangles;
-                mask |= (uint)(row.vertices + row.triangles > 0) << (m % BRICK_WORDS);
-            }
-            total.vertices += row.vertices, total.triangles += row.triangles, total.cells += row.cells;
+        {
+            uint lid = (uint)get_local_id(0), place = lid % BRICK_WORDS;
+            brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
+            uint y = b.y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+            bool mine = n + lid / BRICK_WORDS < count && y < t.y1 && z < t.z1;
+            row_report report;
+            report.e = tile_row_count(s, t, mine ? y : b.y0, mine ? z : z0, b.w, words, scratch, cells, &report.packed);
+            if (!mine) report.e.vertices = 0, report.e.triangles = 0, report.e.cells = 0;
+            rows[lid] = report;
         }
-        *sums = total;
-        if (n + slot < count && place == 0) masks[brick_index(s, b.y0, z0, b.w)] = mask;
-        if (e.vertices + e.triangles) {
-            uint index = word_index(s, y, z, b.w);
-            offsets[index] = packed + before.vertices;
-            triangle_offsets[index] = (ushort)before.triangles;
+        group_barrier();
+        {
+            uint lid = (uint)get_local_id(0), first = lid - lid % BRICK_WORDS;
+            emission total = *sums, before = {0, 0, 0}, own = rows[lid].e;
+            uint2 base = (uint2)(0, 0);
+            uint mask = 0;
+            for (uint m = 0; m < WORK_ITEMS; m++) {
+                emission row = rows[m].e;
+                if (m == first) base = (uint2)(total.vertices, total.triangles);
+                if (m >= first && m < lid) before.vertices += row.vertices, before.triangles += row.triangles;
+                if (m >= first && m < first + BRICK_WORDS && row.vertices + row.triangles > 0) mask |= 1u << (m - first);
+                total.vertices += row.vertices, total.triangles += row.triangles, total.cells += row.cells;
+            }
+            *sums = total;
+            brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
+            if (lid == first && n + lid / BRICK_WORDS < count) {
+                bases[brick_index(s, b.y0, z0, b.w)] = base;
+                masks[brick_index(s, b.y0, z0, b.w)] = mask;
+            }
+            if (own.vertices + own.triangles > 0) {
+                uint place = lid - first;
+                uint index = word_index(s, b.y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, b.w);
+                offsets[index] = rows[lid].packed + before.vertices;
+                triangle_offsets[index] = (ushort)before.triangles;
+            }
         }
         group_barrier();
     }
@@ -203,7 +219,9 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
     tile t = tile_locate(s, number);
     emission sums = {0, 0, 0};
     uint rows = t.y1 - t.y0, count = rows * (t.z1 - t.z0) * s->words_x, ignored = 0;
-    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+    for (uint first = 0; first < count; first += WORK_ITEMS) {
+        uint n = first + (uint)get_local_id(0);
+        if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows, z = t.z0 + n / s->words_x / rows;
         bool next = w + 1 < s->words_x;
         ulong word[4][2];
@@ -221,33 +239,35 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
     return sums;
 }
 
-/* What all tiles before this one emit. Called by the whole group; shared: 5 words of local memory. */
-inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint *head,
-                  global uint *tiles, local uint *shared) {
-    bool leader = get_local_id(0) == 0;
+/* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1 the
+ * tile before is always recomputed: that is how a test gets at the fallback. */
+inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
+                                global uint *head, global uint *tiles, local uint *shared) {
+    bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
-    bool complete = false;
     while (!complete) {
         group_barrier();
         if (leader) {
-            shared[0] = scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->spin_limit);
-            shared[1] = shared[0] && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->spin_limit);
-            shared[2] = shared[0] ? back[1] : back[0];
-            shared[3] = 0;
-            shared[4] = 0;
+            bool done = look && scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->spin_limit);
+            shared[0] = done && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->spin_limit);
+            shared[1] = done ? back[1] : back[0];
+            shared[2] = shared[3] = 0;
         }
         group_barrier();
-        complete = shared[1];
-        uint missing = shared[2] - 1;
+        complete = shared[0];
+        uint missing = shared[1] - 1;
+        look = true;
         if (!complete) {
             emission e = tile_recount(s, missing, samples, cells);
-            atomic_add(&shared[3], e.vertices);
-            atomic_add(&shared[4], e.triangles);
+            atomic_add(&shared[2], e.vertices);
+            atomic_add(&shared[3], e.triangles);
         }
         group_barrier();
         if (leader && !complete) {
-            scan_post_sum(tiles, missing, TILE_VERTICES, shared[3]);
-            scan_post_sum(tiles, missing, TILE_TRIANGLES, shared[4]);
+            for (uint channel = 0; channel < 2; channel++) {
+                scan_post_sum(tiles, missing, channel, shared[2 + channel]);
+                if (back[channel] == missing + 1) prefix[channel] += shared[2 + channel], back[channel] = missing;
+            }
             atomic_inc(&head[STATE_FALLBACKS]);
         }
     }
@@ -264,18 +284,19 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2
                  global uint *head, local uint *shared) {
     uint first = brick_index(s, t.y0, t.z0, 0);
     uint count = layer_bricks(s, t) * ((t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES);
-    uint emitting = 0;
+    uint lid = (uint)get_local_id(0);
     group_barrier();
-    if (get_local_id(0) == 0) shared[0] = 0;
+    if (lid == 0) shared[0] = 0;
     group_barrier();
-    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) emitting += masks[first + n] != 0;
-    atomic_add(&shared[0], emitting);
+    for (uint start = 0; start < count; start += WORK_ITEMS)
+        if (start + lid < count && masks[first + start + lid]) atomic_inc(&shared[0]);
     group_barrier();
-    if (get_local_id(0) == 0) shared[1] = shared[0] ? atomic_add(&head[STATE_ACTIVE_BRICKS], shared[0]) : 0;
+    if (lid == 0) shared[1] = shared[0] ? atomic_add(&head[STATE_ACTIVE_BRICKS], shared[0]) : 0;
     group_barrier();
-    for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
-        bases[first + n] += prefix;
-        if (masks[first + n]) active[atomic_inc(&shared[1])] = first + n;
+    for (uint start = 0; start < count; start += WORK_ITEMS) {
+        uint n = start + lid;
+        if (n < count) bases[first + n] += prefix;
+        if (n < count && masks[first + n]) active[atomic_inc(&shared[1])] = first + n;
     }
 }
 
@@ -298,9 +319,9 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
 kernel void classify(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
                      global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
                      global uint *active, global uint *state, global ulong *scratch, uint scratch_words) {
-    local uint shared[5];
+    local uint shared[4];
 #if WORK_ITEMS > 1
-    local emission rows[WORK_ITEMS];
+    local row_report rows[WORK_ITEMS];
 #endif
     global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
     active += s.active_offset;

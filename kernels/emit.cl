@@ -309,9 +309,9 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         group_barrier();
         run = shared[0];
         uint end = min(run + RUN_BRICKS, active_count);
-        for (uint n = run + lid / BRICK_WORDS; n < end; n += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
-            uint number = active[n];
-            if (number >= s.brick_first && number < s.brick_last)
+        for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
+            uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
+            if (n < end && number >= s.brick_first && number < s.brick_last)
                 brick_emit(&s, number, masks[number] & mine, &batch, samples, k1, cases, mesh);
         }
     }

@@ -16,7 +16,9 @@
 #define PASTE(a, b)  PASTE2(a, b)
 #define BITS16       PASTE(BITS, 16)
 
+#ifndef inline_always /* tools that run kernels unoptimised define it empty */
 #define inline_always static inline __attribute__((always_inline))
+#endif
 
 #if WORK_ITEMS == 1
 #define group_barrier()

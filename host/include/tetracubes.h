@@ -115,9 +115,10 @@ typedef struct tc_context_options {
     uint32_t work_items;       /* per work-group; 0: the device's default. Never changes results */
     uint32_t work_groups;      /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks;      /* at least so many bricks per tile of the scan; 0: default. Never changes results */
-    uint32_t spin_limit;       /* polls of an unfinished tile before its sum is recomputed; 0: default */
-    int division;              /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
-    tc_progress progress;      /* NULL: none */
+    uint32_t spin_limit;  /* polls of an unfinished tile before its sum is recomputed; 0: default; 1 also recomputes the
+                             tile  before each, which tests that path. Never changes results */
+    int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
+    tc_progress progress; /* NULL: none */
     void *progress_user;
 } tc_context_options;
 

@@ -30,8 +30,8 @@ static tc_status sizes_check(const tc_grid_options *o) {
         if (o->dims[axis] < 1)
             return (tc_status)fail(TC_ERROR_ARGUMENT, "%lld samples along %c: a grid needs two or more",
                                    (long long)o->dims[axis], 'x' + axis);
-        if (o->dims[axis] > index_limit || o->first[axis] < -index_limit ||
-            o->first[axis] > index_limit - o->dims[axis])
+        int64_t first = o->first[axis] < 0 ? -(o->first[axis] + 1) : o->first[axis];
+        if (o->dims[axis] > index_limit || first > index_limit - o->dims[axis])
             return (tc_status)fail(TC_ERROR_DATA,
                                    "%lld samples along %c from index %lld on: indices are limited to 2^24",
                                    (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);

@@ -51,7 +51,7 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
 void mesh_clear(tc_mesh *mesh) {
     mesh->vertex_count = mesh->triangle_count = mesh->active_cell_count = 0;
     mesh->has_normals = false;
-    mesh->slab_count = 0;
+    mesh->slab_count = 1;
     mesh->timings = (tc_timings){0};
 }
 
@@ -62,9 +62,9 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
                            .vertex_count = mesh->vertex_count,
                            .triangle_count = mesh->triangle_count,
                            .active_cell_count = mesh->active_cell_count,
-                           .positions = mesh->positions.memory,
-                           .normals = mesh->has_normals ? mesh->normals.memory : NULL,
-                           .triangles = mesh->triangles.memory,
+                           .positions = mesh->vertex_count ? mesh->positions.memory : NULL,
+                           .normals = mesh->vertex_count && mesh->has_normals ? mesh->normals.memory : NULL,
+                           .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
                            .slab_count = mesh->slab_count,
                            .timings = mesh->timings};
     return TC_OK;

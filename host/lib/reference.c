@@ -232,14 +232,16 @@ static void layer_run(reference *r, int64_t layer, row_stage *stage) {
                     stage(r, x0, x0 + BRICK_X < r->dims[0] ? x0 + BRICK_X : r->dims[0], y, z);
 }
 
-static tc_status layers_run(reference *r, const char *stage) {
+/* progress: where this stage begins in the whole call, and how much of it it is. */
+static tc_status layers_run(reference *r, const char *stage, double before, double share) {
     int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
     layer_run(r, 0, row_number);
     for (int64_t layer = 0; layer < layer_count; layer++) {
         if (layer + 1 < layer_count) layer_run(r, layer + 1, row_number);
         layer_run(r, layer, row_triangulate);
-        tc_status status = context_progress(r->grid->context, stage, (double)(layer + 1) / (double)layer_count);
+        tc_status status =
+            context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
         if (status) return status;
     }
     return TC_OK;
@@ -271,7 +273,7 @@ tc_status reference_count(const tc_grid *grid, const tc_extract_options *options
     reference r;
     double start = clock_ms();
     tc_status status = reference_begin(&r, grid, options);
-    if (!status) status = layers_run(&r, "classify");
+    if (!status) status = layers_run(&r, "classify", 0, 1);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
@@ -284,16 +286,15 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
     reference r;
     double start = clock_ms(), classified = start;
     tc_status status = reference_begin(&r, grid, options);
-    if (!status) status = layers_run(&r, "classify");
+    if (!status) status = layers_run(&r, "classify", 0, 0.5);
     if (status) goto cleanup;
     classified = clock_ms();
     status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
     if (!status) status = ids_allocate(&r);
     if (status) goto cleanup;
     r.mesh = mesh;
-    status = layers_run(&r, "emit");
+    status = layers_run(&r, "emit", 0.5, 0.5);
     mesh->active_cell_count = r.active_cell_count;
-    mesh->slab_count = 1;
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;
     mesh->timings.total_ms = clock_ms() - start;

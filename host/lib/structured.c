@@ -65,6 +65,7 @@ static tc_status workspace_reserve(run *r) {
 static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
     *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
     base_fill(r, inside, options->isovalue);
+    r->classify_share = emits ? 0.5 : 1;
     tc_status status = classify_kernels_get(r->context, grid->type, grid->device->missing, &r->kernels);
     if (!status && emits)
         status = emit_kernel_get(r->context, grid->type, grid->device->missing, r->normals, &r->kernels);
@@ -134,7 +135,8 @@ static tc_status slabs_classify(run *r) {
     tc_status status = TC_OK;
     for (uint32_t n = 0; n < r->plan->slab_count && !status; n++) {
         status = slab_classify(r, n);
-        if (!status) status = context_progress(r->context, "classify", (n + 1.0) / r->plan->slab_count);
+        if (!status)
+            status = context_progress(r->context, "classify", r->classify_share * (n + 1) / r->plan->slab_count);
     }
     return status ? status : totals_read(r);
 }

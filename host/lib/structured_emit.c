@@ -193,7 +193,7 @@ tc_status slabs_emit(run *r, tc_mesh *mesh) {
         }
         first[0] += head[STATE_VERTICES];
         first[1] += head[STATE_TRIANGLES];
-        if (!status) status = context_progress(r->context, "emit", (n + 1.0) / r->plan->slab_count);
+        if (!status) status = context_progress(r->context, "emit", 0.5 + 0.5 * (n + 1) / r->plan->slab_count);
     }
     cl_int error = cl->Finish(r->context->queue);
     if (!status && error) status = opencl_fail("kernel emit", error);

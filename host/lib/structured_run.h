@@ -34,7 +34,8 @@ typedef struct run {
     slab_store store;
     device_buffer *samples; /* whole, or the window of the slab at hand */
     uint64_t vertex_count, triangle_count, active_cell_count;
-    double start_ms; /* kernels are built by then */
+    double classify_share; /* of the whole call, for progress */
+    double start_ms;       /* kernels are built by then */
 } run;
 
 /* The slab's parameters; its samples and, with missing samples, its present cells are on their way to the device. */
