@@ -60,7 +60,7 @@ static const char *fault_of(walk *w, const char *what, uint64_t number, const in
     return w->fault;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- samples */
+/* --------------------------------------------------------------------------------------------------------- samples */
 
 static void samples_judge(walk *w) {
     const tc_grid_options *g = w->grid;
@@ -82,7 +82,7 @@ static bool cube_is_present(const walk *w, const int64_t p[3]) {
     return present;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ edges */
+/* ----------------------------------------------------------------------------------------------------------- edges */
 
 /* The ends of the edge that a sample owns, lower sample index first; a diagonal joins even samples. */
 static void edge_ends(const walk *w, const int64_t owner[3], unsigned type, int64_t a[3], int64_t b[3]) {
@@ -112,7 +112,7 @@ static bool edge_is_crossed(const walk *w, const int64_t owner[3], unsigned type
     return contained;
 }
 
-/* --------------------------------------------------------------------------------------------------------- vertices */
+/* -------------------------------------------------------------------------------------------------------- vertices */
 
 static long double value_at(const walk *w, const int64_t p[3]) {
     return (long double)sample_get(w->grid->samples, w->grid->type, index_of(w, p));
@@ -209,7 +209,7 @@ static const char *vertices_row(walk *w, int64_t x0, int64_t x1, int64_t y, int6
     return NULL;
 }
 
-/* -------------------------------------------------------------------------------------------------------- triangles */
+/* ------------------------------------------------------------------------------------------------------- triangles */
 
 static uint32_t id_between(const walk *w, const int64_t cube[3], unsigned c, unsigned d) {
     unsigned low = c & d, type = 0;
@@ -260,7 +260,7 @@ static const char *triangles_row(walk *w, int64_t x0, int64_t x1, int64_t y, int
     return fault;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ whole */
+/* ----------------------------------------------------------------------------------------------------------- whole */
 
 static const char *counts_compare(walk *w, const oracle_counts *should) {
     const tc_mesh_data *m = w->mesh;

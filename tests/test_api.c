@@ -6,7 +6,7 @@
  */
 #include "api.h"
 
-/* ------------------------------------------------------------------------------------------------------ small calls */
+/* ----------------------------------------------------------------------------------------------------- small calls */
 
 static void test_types_and_version(void) {
     static const char *const names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
@@ -127,7 +127,7 @@ static void test_context_options(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ grids */
+/* ----------------------------------------------------------------------------------------------------------- grids */
 
 static void expect_grid(tc_context *context, const tc_grid_options *options, tc_status status, const char *what) {
     tc_grid *grid = NULL;
@@ -202,7 +202,7 @@ static void test_grid_options(tc_context *context) {
     expect_grid(context, &options, TC_ERROR_ARGUMENT, "a matrix with equal rows");
 }
 
-/* ------------------------------------------------------------------------------------------------------- extraction */
+/* ------------------------------------------------------------------------------------------------------ extraction */
 
 static void test_isovalues(tc_grid *grid) {
     static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};

@@ -46,7 +46,7 @@ static void expect_topology(const char *name, const mesh_topology *is, const mes
            (unsigned long long)is->components, (unsigned long long)should->components);
 }
 
-/* ----------------------------------------------------------------------------------------------------- known meshes */
+/* ---------------------------------------------------------------------------------------------------- known meshes */
 
 /* Unit tetrahedra: one at the origin, one shifted; then single points for meshes that care for topology alone. */
 static const float points[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
@@ -179,7 +179,7 @@ static void test_area_and_volume(void) {
     EXPECT(isfinite(is.volume), "volume %.17g", is.volume);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- summary */
+/* --------------------------------------------------------------------------------------------------------- summary */
 
 static void test_summary(void) {
     enum { COUNT = 10 };
@@ -242,7 +242,7 @@ static void test_hash(void) {
     EXPECT(mesh_hash(points[0], 4, triangles[0], 4) != hash, "hash does not see the last index");
 }
 
-/* ---------------------------------------------------------------------------------------------- against brute force */
+/* --------------------------------------------------------------------------------------------- against brute force */
 
 enum { SMALL_VERTICES = 12, SMALL_TRIANGLES = 24 };
 
@@ -331,7 +331,7 @@ static void test_against_force(void) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- planted faults */
+/* -------------------------------------------------------------------------------------------------- planted faults */
 
 /* A torus of SIDE x SIDE quadrilaterals with shuffled vertices. */
 #ifndef TORUS_SIDE
@@ -459,7 +459,7 @@ static void test_planted_faults(void) {
     free(m.triangles);
 }
 
-/* --------------------------------------------------------------------------------------------------------- extremes */
+/* -------------------------------------------------------------------------------------------------------- extremes */
 
 /* One vertex in very many triangles: more edge ends than an insertion sort should see. */
 static void test_great_fan(void) {

@@ -74,7 +74,7 @@ static void test_devices(tc_context *device) {
            "the context does not tell its device");
 }
 
-/* --------------------------------------------------------------------------------------------------------- progress */
+/* -------------------------------------------------------------------------------------------------------- progress */
 
 typedef struct watch {
     int calls, cancel_at, wrong;
@@ -134,7 +134,7 @@ static void test_progress(tc_engine engine, const tc_mesh_data *expected) {
     tc_context_destroy(context);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- threads */
+/* --------------------------------------------------------------------------------------------------------- threads */
 
 typedef struct worker {
     pthread_t thread;

@@ -25,7 +25,7 @@ enum { WAVES, MISSING, EXTREMES, GENTLE, GENTLE_MISSING, SUBJECTS };
 
 static subject subjects[SUBJECTS];
 
-/* --------------------------------------------------------------------------------------------------------- subjects */
+/* -------------------------------------------------------------------------------------------------------- subjects */
 
 static double wave_at(const int64_t p[3]) {
     double x = 0.31 * (double)p[0], y = 0.27 * (double)p[1], z = 0.35 * (double)p[2];
@@ -104,7 +104,7 @@ static void expect_variation(const tc_context_options *options, const subject *s
     tc_context_destroy(context);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- work */
+/* ------------------------------------------------------------------------------------------------------------ work */
 
 static void test_work_shapes(void) {
     static const uint32_t items[] = {1, 32, 64, 256}, groups[] = {1, 2, 3, 16}, tiles[] = {1, 2, 7, 1000};
@@ -139,8 +139,7 @@ static void test_divisions(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ memory
- */
+/* ---------------------------------------------------------------------------------------------------------- memory */
 
 /* Same bytes at every budget that suffices, in one slab, in few, in many; the bound is kept. */
 static void test_memory_budgets(const subject *s) {
@@ -183,7 +182,7 @@ static void test_memory_budgets(const subject *s) {
            s->name, done, most, refused);
 }
 
-/* ---------------------------------------------------------------------------------------------------- world space */
+/* ----------------------------------------------------------------------------------------------------- world space */
 
 static void ball_make(uint8_t *samples, int64_t size) {
     double centre = 0.5 * (double)(size - 1);
@@ -235,7 +234,7 @@ static void test_world_space(tc_context *reference, tc_context *device) {
         }
 }
 
-/* ----------------------------------------------------------------------------------------------------- used again */
+/* ------------------------------------------------------------------------------------------------------ used again */
 
 /* One grid, one mesh, many isovalues; counts alone agree. Another mesh, made for each, is the measure. */
 static void test_reuse(tc_context *device) {

@@ -49,7 +49,7 @@ static void matrix_choose(double matrix[3][4]) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- the field */
+/* ------------------------------------------------------------------------------------------------------- the field */
 
 typedef enum field_kind { NOISE, SMOOTH, TIES, EXTREMES, FIELD_KINDS } field_kind;
 
@@ -134,7 +134,7 @@ static void grid_choose(tc_grid_options *grid, tc_extract_options *how) {
         missing ? random_below(2) || !type_is_floating(grid->type) : random_below(3) == 0 && grid->type == TC_U8;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- runs */
+/* ------------------------------------------------------------------------------------------------------------ runs */
 
 static void run(uint64_t seed) {
     tc_grid_options grid;

@@ -214,7 +214,7 @@ static void test_cases_wind_outward(void) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- cube tables */
+/* ----------------------------------------------------------------------------------------------------- cube tables */
 
 /* The corners that edge n of cube_edges joins, from its owner and type; diagonals join the cube's even samples. */
 static split_edge ends_of(unsigned n, unsigned parity) {

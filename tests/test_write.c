@@ -51,7 +51,7 @@ static void expect_mesh(const char *name, const tc_mesh_data *is, const tc_mesh_
         EXPECT(are_equal(is->normals, should->normals, 12 * is->vertex_count), "%s: normals differ", name);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- helpers */
+/* --------------------------------------------------------------------------------------------------------- helpers */
 
 static const char *path_of(const char *name) {
     static char path[512];
@@ -90,7 +90,7 @@ static int holds(const char *path, const char *text) {
     return same;
 }
 
-/* -------------------------------------------------------------------------------------------------------- read back */
+/* ------------------------------------------------------------------------------------------------------- read back */
 
 static const struct {
     const char *ending;
@@ -207,7 +207,7 @@ static void test_obj_text(void) {
     unlink(path_of("text.obj"));
 }
 
-/* --------------------------------------------------------------------------------------------------------- failures */
+/* -------------------------------------------------------------------------------------------------------- failures */
 
 static void test_formats_named(const tc_mesh_data *mesh) {
     static const char *const bad[] = {"mesh.xyz", "mesh", "ply", "", ".", "folder.ply/mesh", "mesh.", "mesh.ply.gz"};
@@ -335,7 +335,7 @@ static void test_full_disk(const tc_mesh_data *mesh) {
     signal(SIGXFSZ, SIG_DFL);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- targets */
+/* --------------------------------------------------------------------------------------------------------- targets */
 
 static mode_t mode_of(const char *path) {
     struct stat s;

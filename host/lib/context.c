@@ -40,7 +40,7 @@ tc_status context_progress(const tc_context *context, const char *stage, double 
     return (tc_status)fail(TC_ERROR_CANCELLED, "cancelled");
 }
 
-/* ---------------------------------------------------------------------------------------------------------- buffers */
+/* --------------------------------------------------------------------------------------------------------- buffers */
 
 static void bytes_count(tc_context *context, uint64_t bytes) {
     context->device_bytes += bytes;
@@ -85,7 +85,7 @@ static void workspace_release(tc_context *context) {
     for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- context */
+/* --------------------------------------------------------------------------------------------------------- context */
 
 void tc_context_options_init(tc_context_options *options) {
     *options = (tc_context_options){.struct_size = sizeof *options, .engine = TC_ENGINE_OPENCL};

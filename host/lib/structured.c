@@ -78,15 +78,17 @@ static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *opti
 }
 
 static void run_end(run *r) {
+    workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (!r->plan->samples_whole && r->context->info.shares_host_memory)
-        buffer_release(r->context, &r->context->work.samples);
+    if (r->context->info.shares_host_memory) { /* windows in memory that is not ours to keep */
+        device_buffer *windows[] = {&w->samples, &w->positions, &w->normals, &w->triangles};
+        for (int n = 0; n < 4; n++) buffer_release(r->context, windows[n]);
+    }
     slab_store_release(&r->store);
     free(r->heads);
 }
 
-/* ---------------------------------------------------------------------------------------------------- classification
- */
+/* -------------------------------------------------------------------------------------------------- classification */
 
 static tc_status slab_classify(run *r, uint32_t slab_index) {
     workspace *w = &r->context->work;
@@ -156,8 +158,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     return status ? status : slabs_classify(r);
 }
 
-/* -------------------------------------------------------------------------------------------------------- extraction
- */
+/* ------------------------------------------------------------------------------------------------------ extraction */
 
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
