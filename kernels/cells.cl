@@ -1,8 +1,9 @@
 /*
  * cells.cl - grids with missing samples: one bit per cube whose eight corners are present
  *
- * Made before kernel 1, only where a sample is missing (not finite, or equal to the missing value). The cells buffer holds
- * the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists only on an edge of a present cube.
+ * Made before kernel 1, only where a sample is missing (not finite, or equal to the missing value). The cells buffer
+ * holds the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists only on an edge of a present
+ * cube.
  */
 #if MISSING
 

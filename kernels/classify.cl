@@ -2,14 +2,16 @@
  * classify.cl - kernel 1: sign words, what each row of 64 cubes will emit, and its prefix sums
  *
  * A tile is a run of bricks: tile_rows rows of bricks in one layer, or tile_layers whole layers. Its group
- *   makes the sign words of the tile's samples, and of the halo: the next row and the next plane of samples, which
- *   others own, into scratch;
- *   counts the vertices and triangles of every brick that is not uniform, row by row, and stores where in the brick each
- *   row's output begins;
- *   posts the tile's sums and, now or after its other tiles, obtains what all tiles before it emit (scan.cl);
- *   stores where each brick's output begins, and appends the bricks that emit something to the list for kernel 2.
- * Loops over a group's items run equally often for all of them and test inside: PoCL 3.1 has been seen to run loops of
- * unequal length too often. Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base.
+ *
+ * 1. makes the sign words of the tile's samples, and of the halo: the next row and the next plane of samples, which
+ *    others own, into scratch;
+ * 2. counts the vertices and triangles of every brick that is not uniform, row by row, and stores where in the brick
+ *    each row's output begins;
+ * 3. posts the tile's sums and, now or after its other tiles, obtains what all tiles before it emit (scan.cl);
+ * 4. stores where each brick's output begins, and appends the bricks that emit something to the list for kernel 2.
+ *
+ * Groups stay and take tiles by ticket. Uniform bricks cost no stores but their base. Loops over a group's items run
+ * equally often for all of them and test inside: PoCL 3.1 has been seen to run loops of unequal length too often.
  */
 
 typedef struct tile {
@@ -28,7 +30,8 @@ inline_always tile tile_locate(const slab *s, uint n) {
 
 /* A row of sign words: the tile's own are in words; of the halo, the plane z1 comes first in scratch (rows y0 to y1),
  * then the rows y1 of the other planes. */
-inline_always global ulong *tile_row(const slab *s, tile t, uint y, uint z, global ulong *words, global ulong *scratch) {
+inline_always global ulong *tile_row(const slab *s, tile t, uint y, uint z, global ulong *words,
+                                     global ulong *scratch) {
     if (z >= t.z1) return scratch + (y - t.y0) * s->words_x;
     if (y >= t.y1) return scratch + (t.y1 - t.y0 + 1 + z - t.z0) * s->words_x;
     return words + word_index(s, y, z, 0);
@@ -36,7 +39,7 @@ inline_always global ulong *tile_row(const slab *s, tile t, uint y, uint z, glob
 
 /* Sign words of the planes z0 <= z < z1 of the tile, halo rows included. */
 inline_always uint planes_sign(const slab *s, tile t, uint z0, uint z1, global const BITS *samples, global ulong *words,
-                 global ulong *scratch) {
+                               global ulong *scratch) {
     uint rows = min(t.y1 + 1, s->ny) - t.y0;
     uint nonfinite = 0;
 #if WORK_ITEMS == 1
@@ -61,7 +64,8 @@ typedef struct emission {
 } emission;
 
 /* What one row of 64 cubes emits; *packed as offsets_pack makes it, for a row that comes first in its brick. */
-inline_always emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, global const ulong *cells, ulong *packed) {
+inline_always emission row_count(const slab *s, const cube_row *r, uint y, uint z, uint w, global const ulong *cells,
+                                 ulong *packed) {
     crossings k = crossings_owned(r);
     ulong active = cubes_active(r);
 #if MISSING
@@ -77,11 +81,11 @@ inline_always emission row_count(const slab *s, const cube_row *r, uint y, uint 
     return e;
 }
 
-inline_always emission tile_row_count(const slab *s, tile t, uint y, uint z, uint w, global ulong *words, global ulong *scratch,
-                        global const ulong *cells, ulong *packed) {
-    cube_row r = cube_row_load(s, y, z, w, tile_row(s, t, y, z, words, scratch),
-                               tile_row(s, t, y + 1, z, words, scratch), tile_row(s, t, y, z + 1, words, scratch),
-                               tile_row(s, t, y + 1, z + 1, words, scratch));
+inline_always emission tile_row_count(const slab *s, tile t, uint y, uint z, uint w, global ulong *words,
+                                      global ulong *scratch, global const ulong *cells, ulong *packed) {
+    cube_row r =
+        cube_row_load(s, y, z, w, tile_row(s, t, y, z, words, scratch), tile_row(s, t, y + 1, z, words, scratch),
+                      tile_row(s, t, y, z + 1, words, scratch), tile_row(s, t, y + 1, z + 1, words, scratch));
     return row_count(s, &r, y, z, w, cells, packed);
 }
 
@@ -95,13 +99,16 @@ inline_always brick brick_locate(const slab *s, tile t, uint n) {
     return b;
 }
 
-inline_always uint layer_bricks(const slab *s, tile t) { return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x; }
+inline_always uint layer_bricks(const slab *s, tile t) {
+    return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
+}
 
 #if WORK_ITEMS == 1
 
-/* Which of the eight bricks from w on have samples on both sides, neighbours included; the others emit nothing. Reads up to
- * eight words past the end of a row: buffers of words are that much longer. */
-inline_always ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch) {
+/* Which of the eight bricks from w on have samples on both sides, neighbours included; the others emit nothing. Reads
+ * up to eight words past the end of a row: buffers of words are that much longer. */
+inline_always ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words,
+                                  global ulong *scratch) {
     const ulong8 column = w + (ulong8)(0, 1, 2, 3, 4, 5, 6, 7);
     const ulong8 has_next = as_ulong8(column + 1 < (ulong8)s->words_x);
     const ulong8 past_end = as_ulong8(column + 1 == (ulong8)s->words_x) & ~word_valid(s, s->words_x - 1);
@@ -117,8 +124,9 @@ inline_always ulong8 bricks_mixed(const slab *s, tile t, uint y0, uint z0, uint 
 }
 
 /* Counts a brick row by row, stores where in the brick each row's output begins and returns which rows emit. */
-inline_always uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words, global ulong *scratch,
-                 global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
+inline_always uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, global ulong *words,
+                               global ulong *scratch, global const ulong *cells, global ulong *offsets,
+                               global ushort *triangle_offsets, emission *sums) {
     uint y1 = min(y0 + BRICK_ROWS, t.y1), z1 = min(z0 + BRICK_PLANES, t.z1), mask = 0;
     emission e = {0, 0, 0};
     for (uint z = z0; z < z1; z++)
@@ -137,9 +145,9 @@ inline_always uint brick_count(const slab *s, tile t, uint y0, uint z0, uint w, 
 }
 
 /* Counts a layer of the tile, brick by brick; *sums runs on from brick to brick. Stores bases within the tile. */
-inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch, global const ulong *cells,
-                 global ulong *offsets, global ushort *triangle_offsets, global uint2 *bases, global uint *masks,
-                 emission *sums) {
+inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch,
+                               global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets,
+                               global uint2 *bases, global uint *masks, emission *sums) {
     for (uint y0 = t.y0; y0 < t.y1; y0 += BRICK_ROWS)
         for (uint w0 = 0; w0 < s->words_x; w0 += 8) {
             ulong mixed[8];
@@ -147,9 +155,9 @@ inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *wor
             for (uint w = w0; w < min(w0 + 8, s->words_x); w++) {
                 uint index = brick_index(s, y0, z0, w);
                 bases[index] = (uint2)(sums->vertices, sums->triangles);
-                masks[index] = mixed[w - w0] ? brick_count(s, t, y0, z0, w, words, scratch, cells, offsets,
-                                                           triangle_offsets, sums)
-                                             : 0;
+                masks[index] =
+                    mixed[w - w0] ? brick_count(s, t, y0, z0, w, words, scratch, cells, offsets, triangle_offsets, sums)
+                                  : 0;
             }
         }
 }
@@ -164,9 +172,9 @@ typedef struct row_report {
     emission e;
 } row_report;
 
-/* The same with a work-item per row of a brick: each adds up the rows before its own. Nothing but the sums lives across a
- * barrier, and work-items without a row count another one's, as compilers have gone wrong on either. All work-items leave
- * with the same sums. */
+/* The same with a work-item per row of a brick: each adds up the rows before its own. Nothing but the sums lives across
+ * a barrier, and work-items without a row count another one's, as compilers have gone wrong on either. All work-items
+ * leave with the same sums. */
 inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *words, global ulong *scratch,
                                global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets,
                                global uint2 *bases, global uint *masks, emission *sums, local row_report *rows) {
@@ -192,7 +200,8 @@ inline_always void layer_count(const slab *s, tile t, uint z0, global ulong *wor
                 emission row = rows[m].e;
                 if (m == first) base = (uint2)(total.vertices, total.triangles);
                 if (m >= first && m < lid) before.vertices += row.vertices, before.triangles += row.triangles;
-                if (m >= first && m < first + BRICK_WORDS && row.vertices + row.triangles > 0) mask |= 1u << (m - first);
+                if (m >= first && m < first + BRICK_WORDS && row.vertices + row.triangles > 0)
+                    mask |= 1u << (m - first);
                 total.vertices += row.vertices, total.triangles += row.triangles, total.cells += row.cells;
             }
             *sums = total;
@@ -239,8 +248,8 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
     return sums;
 }
 
-/* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1 the
- * tile before is always recomputed: that is how a test gets at the fallback. */
+/* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1
+ * the tile before is always recomputed: that is how a test gets at the fallback. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 global uint *head, global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
@@ -280,8 +289,8 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
 }
 
 /* Turns bases within the tile into bases within the slab, and appends the bricks that emit something to the list. */
-inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, global const uint *masks, global uint *active,
-                 global uint *head, local uint *shared) {
+inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2 *bases, global const uint *masks,
+                               global uint *active, global uint *head, local uint *shared) {
     uint first = brick_index(s, t.y0, t.z0, 0);
     uint count = layer_bricks(s, t) * ((t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES);
     uint lid = (uint)get_local_id(0);
@@ -301,9 +310,9 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2
 }
 
 /* Looks back for a tile whose sums are posted, posts its prefix and stores what follows from it. */
-inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells, global uint2 *bases,
-                 global const uint *masks, global uint *active, global uint *head, global uint *tiles,
-                 local uint *shared) {
+inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
+                               global uint2 *bases, global const uint *masks, global uint *active, global uint *head,
+                               global uint *tiles, local uint *shared) {
     uint2 prefix = tile_prefix(s, number, samples, cells, head, tiles, shared);
     if (get_local_id(0) == 0) {
         uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
@@ -338,12 +347,13 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             emission sums = {0, 0, 0};
             nonfinite |= planes_sign(&s, t, t.z0, t.z0 + 1, samples, words, scratch);
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES) {
-                nonfinite |= planes_sign(&s, t, z + 1, min(z + BRICK_PLANES, min(t.z1, s.nz - 1)) + 1, samples, words,
-                                         scratch);
+                nonfinite |=
+                    planes_sign(&s, t, z + 1, min(z + BRICK_PLANES, min(t.z1, s.nz - 1)) + 1, samples, words, scratch);
                 group_barrier();
                 layer_count(&s, t, z, words, scratch, cells, offsets, triangle_offsets, bases, masks, &sums
 #if WORK_ITEMS > 1
-                            , rows
+                            ,
+                            rows
 #endif
                 );
             }

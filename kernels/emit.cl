@@ -1,9 +1,9 @@
 /*
  * emit.cl - kernel 2: vertices and triangles of the bricks that have any
  *
- * Runs over the list that kernel 1 left. A vertex's number is where its brick's output begins, plus where its row's does,
- * plus where its edge type's does, plus the crossed edges of that type at lower x: a population count. Triangles come
- * from the table of a cube (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron.
+ * Runs over the list that kernel 1 left. A vertex's number is where its brick's output begins, plus where its row's
+ * does, plus where its edge type's does, plus the crossed edges of that type at lower x: a population count. Triangles
+ * come from the table of a cube (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron.
  * Every row of 64 cubes needs the sign words of four rows of samples, and the numbers of edges that these rows own.
  */
 
@@ -21,8 +21,8 @@ typedef struct mesh_buffers {
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-/* Crossed edges of a brick in the order of their vertices: where they are, and the samples at their ends. A work-item with a
- * brick to itself collects them first, so that the arithmetic runs over arrays; others store at once. */
+/* Crossed edges of a brick in the order of their vertices: where they are, and the samples at their ends. A work-item
+ * with a brick to itself collects them first, so that the arithmetic runs over arrays; others store at once. */
 #define BATCH_EDGES 1024
 #define BATCH_STEP  16
 
@@ -41,8 +41,8 @@ typedef struct vertex_batch {
 
 #if WORK_ITEMS == 1
 
-inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b,
-                             global const BITS *samples, mesh_buffers mesh) {
+inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b, global const BITS *samples,
+                             mesh_buffers mesh) {
     batch->place[batch->count] = place;
     batch->a[batch->count] = a;
     batch->b[batch->count] = b;
@@ -75,8 +75,8 @@ inline_always void batch_flush(vertex_batch *batch, const slab *s, global const 
 
 #else
 
-inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b,
-                             global const BITS *samples, mesh_buffers mesh) {
+inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BITS a, BITS b, global const BITS *samples,
+                             mesh_buffers mesh) {
     float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
     position_make(s, batch->brick, place, t, position);
     for (uint n = 0; n < 3; n++) mesh.positions[3 * batch->out + n] = position[n];
@@ -88,8 +88,8 @@ inline_always void batch_add(vertex_batch *batch, const slab *s, uint place, BIT
 
 #endif
 
-/* The crossed edges of one type in a row. In even cubes the edge runs from the row's sample to the one `far` further on; in
- * odd ones a diagonal starts `near_odd` samples further on instead and ends at far_odd. */
+/* The crossed edges of one type in a row. In even cubes the edge runs from the row's sample to the one `far` further
+ * on; in odd ones a diagonal starts `near_odd` samples further on instead and ends at far_odd. */
 inline_always void edges_add(vertex_batch *batch, const slab *s, ulong crossed, ulong even, ulong start, ulong far,
                              uint place, ulong near_odd, ulong far_odd, uint place_odd, global const BITS *samples,
                              mesh_buffers mesh) {
@@ -103,7 +103,7 @@ inline_always void edges_add(vertex_batch *batch, const slab *s, ulong crossed, 
 
 /* All vertices of a row of 64 samples, in order. */
 inline_always void row_vertices(vertex_batch *batch, const slab *s, uint y, uint z, uint w, const crossings *k,
-                  global const BITS *samples, mesh_buffers mesh) {
+                                global const BITS *samples, mesh_buffers mesh) {
     ulong even = even_cubes(s, y, z), start = row_start(s, y, z) + 64ul * w, ny = s->nx, nz = (ulong)s->nx * s->ny;
     uint at = (y - batch->brick.y) << 7 | (z - batch->brick.z) << 11;
     edges_add(batch, s, k->type[0], ~0ul, start, 1, at + PLACE(0, 0, 0, 1, 0, 0), 0, 0, 0, samples, mesh);
@@ -127,7 +127,8 @@ typedef struct owner {
     ulong packed;
 } owner;
 
-inline_always owner owner_of(const slab *s, uint y, uint z, uint w, global const ulong *offsets, global const uint2 *bases) {
+inline_always owner owner_of(const slab *s, uint y, uint z, uint w, global const ulong *offsets,
+                             global const uint2 *bases) {
     owner o;
     o.packed = offsets[word_index(s, y, z, w)];
     o.first = (z < s->z1 ? s->vertex_base : s->vertex_base_next) + bases[brick_index(s, y, z, w)].x;
@@ -136,8 +137,8 @@ inline_always owner owner_of(const slab *s, uint y, uint z, uint w, global const
 
 inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
-/* A row of 64 cubes: the crossed edges of the four rows of samples and the numbers of their first vertices, in the order of
- * cube_edges (host/lib/tables.h): 13 of samples at x, 5 of samples at x + 1. */
+/* A row of 64 cubes: the crossed edges of the four rows of samples and the numbers of their first vertices, in the
+ * order of cube_edges (host/lib/tables.h): 13 of samples at x, 5 of samples at x + 1. */
 typedef struct cube_numbers {
     ulong8 crossed_a, crossed_b;
     ulong crossed_c[2];
@@ -145,11 +146,13 @@ typedef struct cube_numbers {
     uint base_c[2];
 } cube_numbers;
 
-inline_always cube_numbers cube_numbers_of(const crossings *a, const crossings *b, const crossings *c, const crossings *d,
-                                           const owner o[4]) {
+inline_always cube_numbers cube_numbers_of(const crossings *a, const crossings *b, const crossings *c,
+                                           const crossings *d, const owner o[4]) {
     cube_numbers n;
-    n.crossed_a = (ulong8)(a->type[0], a->type[1], a->type[2], a->type[3], a->type[4], a->type[5], b->type[0], b->type[2]);
-    n.crossed_b = (ulong8)(b->type[4], c->type[0], c->type[1], c->type[3], d->type[0], a->type[1], a->type[2], a->type[5]);
+    n.crossed_a =
+        (ulong8)(a->type[0], a->type[1], a->type[2], a->type[3], a->type[4], a->type[5], b->type[0], b->type[2]);
+    n.crossed_b =
+        (ulong8)(b->type[4], c->type[0], c->type[1], c->type[3], d->type[0], a->type[1], a->type[2], a->type[5]);
     n.crossed_c[0] = b->type[2], n.crossed_c[1] = c->type[1];
     n.base_a = (uint8)(number_of(o[0], 0), number_of(o[0], 1), number_of(o[0], 2), number_of(o[0], 3),
                        number_of(o[0], 4), number_of(o[0], 5), number_of(o[1], 0), number_of(o[1], 2));
@@ -178,8 +181,8 @@ inline_always void cube_vertices(const cube_numbers *n, uint bit, uint number[CU
 }
 
 /* Edges at x + 1 of the last cube of a row are the first of the next word. */
-inline_always void cube_vertices_next(const slab *s, uint y, uint z, uint w, uint number[CUBE_EDGES], global const ulong *offsets,
-                        global const uint2 *bases) {
+inline_always void cube_vertices_next(const slab *s, uint y, uint z, uint w, uint number[CUBE_EDGES],
+                                      global const ulong *offsets, global const uint2 *bases) {
     owner a = owner_of(s, y, z, w, offsets, bases);
     number[13] = number_of(a, 1), number[14] = number_of(a, 2), number[15] = number_of(a, 5);
     number[16] = number_of(owner_of(s, y + 1, z, w, offsets, bases), 2);
@@ -192,9 +195,9 @@ inline_always uint pattern_at(ulong8 corners, uint bit) {
     return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
 }
 
-inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cube_row *r, ulong active, const cube_numbers *numbers,
-                   uint out, global const ulong *offsets, global const uint2 *bases, global const uchar *cases,
-                   mesh_buffers mesh) {
+inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cube_row *r, ulong active,
+                                 const cube_numbers *numbers, uint out, global const ulong *offsets,
+                                 global const uint2 *bases, global const uchar *cases, mesh_buffers mesh) {
     ulong8 corners = (ulong8)(r->a0, r->a1, r->b0, r->b1, r->c0, r->c1, r->d0, r->d1);
     for (; active; active &= active - 1) {
         uint bit = lowest_bit(active), number[CUBE_EDGES];
@@ -216,8 +219,8 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cu
 
 /* ------------------------------------------------------------------------------------------------------------ rows */
 
-/* The crossings of the rows y + 1, z + 1 and both that a cube names, seen from their own samples: parity alternates from
- * row to row. */
+/* The crossings of the rows y + 1, z + 1 and both that a cube names, seen from their own samples: parity alternates
+ * from row to row. */
 inline_always void crossings_beside(const cube_row *r, crossings *b, crossings *c, crossings *d) {
     b->type[0] = r->b0 ^ r->b1;
     b->type[2] = r->b0 ^ r->d0;
@@ -235,7 +238,7 @@ typedef struct row_results {
 } row_results; /* of kernel 1 */
 
 inline_always void row_emit(vertex_batch *batch, const slab *s, uint y, uint z, uint w, uint triangle_base,
-              global const BITS *samples, row_results k1, global const uchar *cases, mesh_buffers mesh) {
+                            global const BITS *samples, row_results k1, global const uchar *cases, mesh_buffers mesh) {
     global const ulong *row = k1.words + word_index(s, y, z, 0);
     ulong plane = (ulong)s->ny * s->words_x;
     cube_row r = cube_row_load(s, y, z, w, row, row + s->words_x, row + plane, row + plane + s->words_x);
@@ -265,8 +268,8 @@ inline_always void row_emit(vertex_batch *batch, const slab *s, uint y, uint z, 
 }
 
 /* The rows of brick `number` that are in mask. */
-inline_always void brick_emit(const slab *s, uint number, uint mask, vertex_batch *batch, global const BITS *samples, row_results k1,
-                global const uchar *cases, mesh_buffers mesh) {
+inline_always void brick_emit(const slab *s, uint number, uint mask, vertex_batch *batch, global const BITS *samples,
+                              row_results k1, global const uchar *cases, mesh_buffers mesh) {
     uint w = number % s->words_x;
     corner brick = {64 * w, number / s->words_x % s->bricks_y * BRICK_ROWS,
                     s->word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};

@@ -1,11 +1,11 @@
 /*
  * scan.cl - single-pass chained scan with decoupled look-back and fallback
  *
- * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted, back
- * to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket, so all
- * earlier tiles have been started; a device that lets a started group starve is met by the fallback: after spin_limit
- * polls the waiting group recomputes the missing sum itself. Where a group is one thread of a CPU, which the system may take
- * away at any time, groups post the sums of all their tiles before they look back for any.
+ * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted,
+ * back to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket,
+ * so all earlier tiles have been started; a device that lets a started group starve is met by the fallback: after
+ * spin_limit polls the waiting group recomputes the missing sum itself. Where a group is one thread of a CPU, which the
+ * system may take away at any time, groups post the sums of all their tiles before they look back for any.
  *
  * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
  * Owens, "Decoupled Fallback" (2025).
@@ -35,8 +35,8 @@ inline_always void scan_post_prefix(global uint *tiles, uint tile, uint channel,
     atomic_xchg(scan_at(tiles, tile, channel), scan_word(SCAN_PREFIX, prefix));
 }
 
-/* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted nothing
- * within the limit of polls. */
+/* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted
+ * nothing within the limit of polls. */
 inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, uint *sum, uint spin_limit) {
     uint polls = 0;
     while (*tile > 0 && polls <= spin_limit) {

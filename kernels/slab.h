@@ -1,8 +1,9 @@
 /*
  * slab.h - what the host tells the kernels about a grid and one slab of it: read by both compilers
  *
- * A slab is the planes z0 <= z < z1, whole layers of bricks. Buffers may hold the whole grid or only what the slab needs:
- * samples from plane sample_z on; words, offsets and bricks from plane word_z on (a multiple of the brick's depth).
+ * A slab is the planes z0 <= z < z1, whole layers of bricks. Buffers may hold the whole grid or only what the slab
+ * needs: samples from plane sample_z on; words, offsets and bricks from plane word_z on (a multiple of the brick's
+ * depth).
  */
 #ifndef SLAB_H
 #define SLAB_H
@@ -28,14 +29,14 @@ enum { WORDS_READ_PAST = 128 };
 
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
-    STATE_TICKET,        /* next tile of kernel 1 */
-    STATE_EMIT_TICKET,   /* next run of active bricks of kernel 2 */
+    STATE_TICKET,      /* next tile of kernel 1 */
+    STATE_EMIT_TICKET, /* next run of active bricks of kernel 2 */
     STATE_ACTIVE_BRICKS,
     STATE_ACTIVE_CELLS,
-    STATE_NONFINITE,     /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
-    STATE_VERTICES,      /* totals of the slab */
+    STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
+    STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
-    STATE_FALLBACKS,     /* tiles whose sums were recomputed by another group */
+    STATE_FALLBACKS, /* tiles whose sums were recomputed by another group */
     STATE_WORDS
 };
 
@@ -43,34 +44,34 @@ enum {
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_NEXT, TILE_WORDS };
 
 typedef struct slab {
-    slab_u64 sample_offset;  /* of plane sample_z in the buffer, in samples */
-    slab_u64 sample_count;   /* samples in the buffer from there on */
-    slab_u64 inside_low;     /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
+    slab_u64 sample_offset; /* of plane sample_z in the buffer, in samples */
+    slab_u64 sample_count;  /* samples in the buffer from there on */
+    slab_u64 inside_low;    /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
     slab_u64 inside_span;
     slab_u64 nodata_bits[2]; /* patterns of the missing value; one twice where it has one pattern */
     slab_u32 nx, ny, nz;     /* samples of the whole grid */
     slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
     slab_u32 bricks_y;
-    slab_u32 parity;         /* of the cube at the grid's first sample */
-    slab_i32 first[3];       /* index of the grid's first sample */
+    slab_u32 parity;   /* of the cube at the grid's first sample */
+    slab_i32 first[3]; /* index of the grid's first sample */
     slab_u32 z0, z1;
     slab_u32 sample_z;
     slab_u32 word_z;
-    slab_u32 cell_z;         /* first plane of the cells buffer (grids with missing samples) */
-    slab_u32 tile_rows;      /* rows of bricks per tile and layer */
-    slab_u32 tile_layers;    /* more than 1 only where tile_rows covers a layer */
+    slab_u32 cell_z;      /* first plane of the cells buffer (grids with missing samples) */
+    slab_u32 tile_rows;   /* rows of bricks per tile and layer */
+    slab_u32 tile_layers; /* more than 1 only where tile_rows covers a layer */
     slab_u32 tile_count;
     slab_u32 spin_limit;
-    slab_u32 head_offset;    /* of the slab's head in the state buffer, in words */
-    slab_u32 tiles_offset;   /* of its tiles, TILE_WORDS words each */
-    slab_u32 active_offset;  /* of its list of active bricks */
+    slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
+    slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
+    slab_u32 active_offset; /* of its list of active bricks */
     slab_u32 has_nodata;
-    slab_u32 vertex_base;      /* number of the slab's first vertex */
-    slab_u32 vertex_base_next; /* of the next slab's first vertex */
-    slab_u32 vertex_window;    /* number of the vertex that the position buffer starts with */
-    slab_u32 triangle_window;  /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
-    slab_u32 position_offset;  /* floats in the position buffer before that vertex */
-    slab_u32 triangle_offset;  /* indices in the triangle buffer before that triangle */
+    slab_u32 vertex_base;             /* number of the slab's first vertex */
+    slab_u32 vertex_base_next;        /* of the next slab's first vertex */
+    slab_u32 vertex_window;           /* number of the vertex that the position buffer starts with */
+    slab_u32 triangle_window;         /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
+    slab_u32 position_offset;         /* floats in the position buffer before that vertex */
+    slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
     slab_u32 brick_first, brick_last; /* kernel 2 emits the active bricks among these */
     slab_f32 isovalue32;
     slab_f32 matrix[12];

@@ -3,7 +3,8 @@
  *
  * A cube row is 64 cubes along x between the rows of samples (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1), called
  * a, b, c, d here; suffix 1 is the row shifted to x + 1. In an even cube (bit set in `even`) the face diagonals join
- * corners 0 3, 0 5, 0 6 (000 to 110, 101, 011), in an odd one the other two corners of the faces; see host/lib/tables.h.
+ * corners 0 3, 0 5, 0 6 (000 to 110, 101, 011), in an odd one the other two corners of the faces; see
+ * host/lib/tables.h.
  */
 
 typedef struct cube_row {
@@ -37,8 +38,8 @@ inline_always cube_row cube_row_of(const slab *s, uint y, uint z, uint w, const 
 }
 
 /* The same from rows of sign words; a row outside the grid may be any pointer. */
-inline_always cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong *a, global const ulong *b,
-                       global const ulong *c, global const ulong *d) {
+inline_always cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong *a,
+                                     global const ulong *b, global const ulong *c, global const ulong *d) {
     bool next = w + 1 < s->words_x, y1 = y + 1 < s->ny, z1 = z + 1 < s->nz;
     ulong word[4][2] = {{a[w], next ? a[w + 1] : 0},
                         {y1 ? b[w] : 0, y1 && next ? b[w + 1] : 0},
@@ -109,11 +110,17 @@ inline_always ulong offsets_pack(const crossings *k, uint first, uint *vertex_co
 inline_always uint offset_of_type(ulong packed, uint type) {
     uint first = (uint)packed & 0x3fff;
     switch (type) {
-    case 0: return first;
-    case 1: return first + ((uint)(packed >> 14) & 0x7f);
-    case 2: return first + ((uint)(packed >> 21) & 0xff);
-    case 3: return first + ((uint)(packed >> 29) & 0xff);
-    case 4: return first + ((uint)(packed >> 37) & 0x1ff);
-    default: return first + ((uint)(packed >> 46) & 0x1ff);
+    case 0:
+        return first;
+    case 1:
+        return first + ((uint)(packed >> 14) & 0x7f);
+    case 2:
+        return first + ((uint)(packed >> 21) & 0xff);
+    case 3:
+        return first + ((uint)(packed >> 29) & 0xff);
+    case 4:
+        return first + ((uint)(packed >> 37) & 0x1ff);
+    default:
+        return first + ((uint)(packed >> 46) & 0x1ff);
     }
 }

@@ -4,8 +4,8 @@
  * One formula, one direction (from the lower to the higher sample index), one order of operations, no contraction, and
  * division rounded correctly: the same bits on every device.
  *
- * From the build: REAL (float for u8 i8 u16 i16 f32, double for u32 i32 f64), SAMPLE_VALUE(bits), DIVISION (1: built in;
- * 2: through double; 3: in integers), NORMALS.
+ * From the build: REAL (float for u8 i8 u16 i16 f32, double for u32 i32 f64), SAMPLE_VALUE(bits), DIVISION (1: built
+ * in; 2: through double; 3: in integers), NORMALS.
  */
 /* The first sample of a brick: its position in the grid. */
 typedef struct corner {
@@ -87,8 +87,8 @@ inline_always float crossing(REAL a, REAL b, REAL iso) {
     return (float)DIVIDE(iso - a, b - a);
 }
 
-/* Where an edge begins and which way it goes, in one word: offsets of its first end from the first sample of the brick's
- * row of bits 0-6 x, 7-10 y, 11-13 z, then a step of -1, 0 or 1 along each axis, plus 1, two bits each. */
+/* Where an edge begins and which way it goes, in one word: offsets of its first end from the first sample of the
+ * brick's row of bits 0-6 x, 7-10 y, 11-13 z, then a step of -1, 0 or 1 along each axis, plus 1, two bits each. */
 #define PLACE(x, y, z, step_x, step_y, step_z)                                                                         \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
      (uint)((step_z) + 1) << 18)
@@ -135,7 +135,8 @@ inline_always REAL difference(global const BITS *samples, const slab *s, const u
 }
 
 /* Unit length, towards lower values; zero where the gradient vanishes. */
-inline_always void normal_store(global const BITS *samples, const slab *s, corner c, uint place, float t, global float *out) {
+inline_always void normal_store(global const BITS *samples, const slab *s, corner c, uint place, float t,
+                                global float *out) {
     const float *m = s->normal_matrix;
     const uint a[3] = {c.x + (place & 0x7f), c.y + (place >> 7 & 0xf), c.z + (place >> 11 & 7)};
     const uint b[3] = {a[0] + (place >> 14 & 3) - 1, a[1] + (place >> 16 & 3) - 1, a[2] + (place >> 18 & 3) - 1};

@@ -92,8 +92,8 @@ inline_always ulong word_full(global const BITS *samples, const slab *s, uint *n
     *nonfinite |= any(convert_char16((b0 & EXPONENT) == EXPONENT) | convert_char16((b1 & EXPONENT) == EXPONENT) |
                       convert_char16((b2 & EXPONENT) == EXPONENT) | convert_char16((b3 & EXPONENT) == EXPONENT));
 #endif
-    ulong8 mask = (ulong8)(as_ulong2(inside_mask(b0, s)), as_ulong2(inside_mask(b1, s)),
-                           as_ulong2(inside_mask(b2, s)), as_ulong2(inside_mask(b3, s)));
+    ulong8 mask = (ulong8)(as_ulong2(inside_mask(b0, s)), as_ulong2(inside_mask(b1, s)), as_ulong2(inside_mask(b2, s)),
+                           as_ulong2(inside_mask(b3, s)));
     ulong8 bytes = ((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56;
     return as_ulong(convert_uchar8(bytes));
 }
@@ -109,7 +109,8 @@ inline_always ulong word_inside(global const BITS *samples, const slab *s, uint 
 
 #if WORK_ITEMS == 1
 /* All words of a row. */
-inline_always void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row, uint *nonfinite) {
+inline_always void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row,
+                            uint *nonfinite) {
     ulong start = row_start(s, y, z);
     if (start + 64ul * s->words_x <= s->sample_offset + s->sample_count) {
         for (uint w = 0; w < s->words_x; w++) row[w] = word_full(samples + start + 64ul * w, s, nonfinite);
@@ -120,7 +121,9 @@ inline_always void row_sign(global const BITS *samples, const slab *s, uint y, u
 }
 #endif
 
-inline_always uint word_index(const slab *s, uint y, uint z, uint w) { return ((z - s->word_z) * s->ny + y) * s->words_x + w; }
+inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
+    return ((z - s->word_z) * s->ny + y) * s->words_x + w;
+}
 
 inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
