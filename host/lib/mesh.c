@@ -7,13 +7,15 @@
 
 static const size_t page_bytes = 4096;
 static const size_t huge_page_bytes = 2 << 20;
+static const size_t huge_from_bytes = 256
+                                      << 10; /* faults of small pages cost more than clearing a huge one from here on */
 
 tc_status host_block_reserve(host_block *block, uint64_t bytes) {
     if (bytes <= block->bytes) return TC_OK;
     host_block_release(block);
     if (bytes > SIZE_MAX / 2) return (tc_status)fail(TC_ERROR_MEMORY, "the mesh does not fit the address space");
-    size_t alignment = bytes < huge_page_bytes ? page_bytes : huge_page_bytes;
-    size_t rounded = ((size_t)bytes + page_bytes - 1) & ~(page_bytes - 1);
+    size_t alignment = bytes < huge_from_bytes ? page_bytes : huge_page_bytes;
+    size_t rounded = ((size_t)bytes + alignment - 1) & ~(alignment - 1);
     size_t mapped = rounded + alignment - page_bytes;
     char *start = mmap(NULL, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (start == MAP_FAILED)
