@@ -63,20 +63,32 @@ static tc_status buffer_create(tc_context *context, device_buffer *buffer, uint6
     return TC_OK;
 }
 
-tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
-    if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
-    return buffer_create(context, buffer, bytes ? bytes : 1, CL_MEM_READ_WRITE, NULL, name);
-}
-
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name) {
     return buffer_create(context, buffer, bytes, access | CL_MEM_USE_HOST_PTR, memory, name);
+}
+
+tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
+    if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
+    if (!bytes) bytes = 1;
+    if (!context->info.shares_host_memory) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
+    host_block block = {0};
+    buffer_release(context, buffer);
+    tc_status status = host_block_reserve(&block, bytes);
+    if (status) return status;
+    status = buffer_wrap(context, buffer, block.memory, bytes, CL_MEM_READ_WRITE, name);
+    if (status)
+        host_block_release(&block);
+    else
+        buffer->block = block;
+    return status;
 }
 
 void buffer_release(tc_context *context, device_buffer *buffer) {
     if (!buffer->memory) return;
     cl->ReleaseMemObject(buffer->memory);
     context->device_bytes -= buffer->bytes;
+    host_block_release(&buffer->block);
     *buffer = (device_buffer){0};
 }
 

@@ -4,6 +4,7 @@
 #ifndef CONTEXT_H
 #define CONTEXT_H
 
+#include "host_block.h"
 #include "opencl.h"
 #include "tetracubes.h"
 
@@ -13,6 +14,7 @@
 typedef struct device_buffer {
     cl_mem memory;
     uint64_t bytes;
+    host_block block; /* where it lies, on devices that share the host's memory */
 } device_buffer;
 
 /* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */

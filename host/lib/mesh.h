@@ -1,24 +1,13 @@
 /*
- * mesh.h - the mesh that both engines fill, and the host memory that it lives in
- *
- * New memory costs a page fault per page, which at these speeds is much of the run: blocks are kept between
- * extractions, start at a huge page's boundary and ask for huge pages.
+ * mesh.h - the mesh that both engines fill, in host memory that is kept between extractions
  */
 #ifndef MESH_H
 #define MESH_H
 
+#include "host_block.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>
-
-typedef struct host_block {
-    void *memory;
-    size_t bytes; /* a multiple of 4096 */
-} host_block;
-
-/* Makes the block at least so large; its content is lost where it has to grow. Returns 0 or TC_ERROR_MEMORY. */
-tc_status host_block_reserve(host_block *block, uint64_t bytes);
-void host_block_release(host_block *block);
 
 struct tc_mesh {
     uint64_t vertex_count;
