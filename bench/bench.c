@@ -12,7 +12,10 @@
 #include "progress.h"
 #include "report.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Cold extractions, one per line on standard input, until its end. */
 static int take_turns(measurement *m, case_result *result) {
@@ -112,6 +115,8 @@ int main(int argc, char **argv) {
         status = o.dump ? dump_run(&o) : measure_run(&o);
         progress_clear();
     }
+    if (!status && (fflush(stdout) || ferror(stdout)))
+        status = fail(STATUS_FAILED, "standard output cannot be written: %s", strerror(errno));
     if (status) fprintf(stderr, "tetracubes-bench: %s\n", failure_text());
     return status;
 }

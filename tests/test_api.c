@@ -99,6 +99,7 @@ static void test_context_options(void) {
     } cases[] = {
         {3, 0, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
         {33, 0, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
+        {2048, 0, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
         {UINT32_MAX, 0, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
         {1u << 31, 0, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
         {0, -1, TC_ENGINE_OPENCL, NULL, TC_ERROR_ARGUMENT},
@@ -200,6 +201,9 @@ static void test_grid_options(tc_context *context) {
     grid_describe(&options);
     memcpy(options.matrix[1], options.matrix[0], sizeof options.matrix[0]);
     expect_grid(context, &options, TC_ERROR_ARGUMENT, "a matrix with equal rows");
+    grid_describe(&options);
+    options.matrix[0][0] = 3e38;
+    expect_grid(context, &options, TC_ERROR_ARGUMENT, "a far corner beyond float32");
 }
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
@@ -230,6 +234,10 @@ static void test_isovalues(tc_grid *grid) {
                "isovalue %g, beyond all samples, has %llu vertices", how.isovalue,
                (unsigned long long)data.vertex_count);
     }
+    how.isovalue = 1e300;
+    EXPECT(tc_extract(grid, &how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK && data.slab_count == 1,
+           "a new empty mesh was made in %u slabs", data.slab_count);
+    tc_mesh_destroy(mesh);
     tc_mesh_destroy(kept);
 }
 

@@ -191,6 +191,25 @@ class Files(Case):
                              self.path("a.ply"))
             self.expect(0, "info", raw, "--dims", dims, "--type", "u8")
 
+    def test_far_corner_beyond_float32(self):
+        raw = self.generate("sphere", "far.raw", "8,8,8")
+        self.refuses(2, "extract", raw, "--dims", "8,8,8", "--type", "u8", "--iso", "100", "--spacing", "3e38,1,1",
+                     "--engine", "reference", "-o", self.path("a.ply"), says="beyond float32")
+
+    def test_output_is_the_input(self):
+        volume = self.generate("sphere", "a.nrrd")
+        os.link(volume, self.path("same.ply"))
+        for output in (volume, self.path("same.ply")):
+            self.refuses(2, "extract", volume, "--iso", "127.5", "--format", "ply", "-o", output, says="input itself")
+
+    def test_json_of_a_name_that_is_no_utf8(self):
+        volume = self.generate("sphere", "a.nrrd")
+        strange = os.fsencode(self.path("a")) + b"\xff.nrrd"
+        os.rename(volume, strange)
+        for arguments in (["info"], ["extract", "--iso", "127.5", "--engine", "reference"]):
+            report = json.loads(self.expect(0, *arguments, os.fsdecode(strange), "--json").stdout)
+            self.assertTrue(report["input"].endswith("a?.nrrd"), report["input"])
+
     def test_unwritable_output(self):
         volume = self.generate("sphere", "a.nrrd")
         extract = ["extract", volume, "--iso", "127.5", "--engine", "reference"]
@@ -416,7 +435,8 @@ class Devices(Case):
         for spec in ("no such device", "99", "99:0", "-1"):
             self.refuses(1, "extract", volume, "--iso", "127.5", "--device", spec, "-o", self.path("a.ply"))
             self.refuses(1, "selftest", "--device", spec)
-        self.refuses(1, "extract", volume, "--iso", "127.5", env={"TETRACUBES_DEVICE": "no such device"})
+        self.refuses(1, "extract", volume, "--iso", "127.5", env={"TETRACUBES_DEVICE": "no such device"},
+                     says="TETRACUBES_DEVICE")
 
     def test_devices(self):
         if not HAS_DEVICE:

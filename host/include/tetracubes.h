@@ -110,11 +110,11 @@ typedef struct tc_context_options {
                            TETRACUBES_DEVICE, else the first CPU or other device found */
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
-    uint64_t max_memory_bytes; /* bound on device buffers, mesh and samples included; 0: what the device allows.
-                                  Less memory means smaller slabs, never other results */
-    uint32_t work_items;       /* per work-group; 0: the device's default. Never changes results */
-    uint32_t work_groups;      /* launched at once; 0: the device's default. Never changes results */
-    uint32_t tile_bricks;      /* at least so many bricks per tile of the scan; 0: default. Never changes results */
+    uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
+                                  0: what the device allows. Less memory means smaller slabs, never other results */
+    uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. Never changes results */
+    uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
+    uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results */
     uint32_t spin_limit;  /* polls of an unfinished tile before its sum is recomputed; 0: default; 1 also recomputes the
                              tile  before each, which tests that path. Never changes results */
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */

@@ -138,6 +138,8 @@ static tc_status device_open(tc_context *context, const char *specification) {
     return status;
 }
 
+static const uint64_t work_items_most = 1024; /* CPUs keep the variables of all work-items of a group on one stack */
+
 /* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
 static tc_status tuning_default(tc_context *context) {
     tc_context_options *o = &context->options;
@@ -146,9 +148,11 @@ static tc_status tuning_default(tc_context *context) {
     if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
     if (!o->spin_limit) o->spin_limit = 1u << 14;
     if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
-    if ((o->work_items != 1 && o->work_items % 32) || o->work_items > context->info.max_work_group_size)
+    uint64_t most =
+        context->info.max_work_group_size < work_items_most ? context->info.max_work_group_size : work_items_most;
+    if ((o->work_items != 1 && o->work_items % 32) || o->work_items > most)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %llu on this device",
-                               o->work_items, (unsigned long long)context->info.max_work_group_size);
+                               o->work_items, (unsigned long long)most);
     if (o->division < 1 || o->division > 3 || (o->division == 1 && !context->info.rounds_division) ||
         (o->division == 2 && !context->info.has_fp64))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", o->division);

@@ -121,6 +121,7 @@ tc_status device_choose(const char *specification, device_choice *choice) {
     device_list list;
     tc_status status = device_list_make(&list);
     if (status) return status;
+    const char *origin = specification ? "" : " (from TETRACUBES_DEVICE)";
     if (!specification) specification = getenv("TETRACUBES_DEVICE");
     const char *wanted = specification && *specification ? specification : "cpu";
     for (int n = 0; n < list.count; n++)
@@ -130,9 +131,9 @@ tc_status device_choose(const char *specification, device_choice *choice) {
         }
     if (specification && *specification)
         return (tc_status)fail(TC_ERROR_DEVICE,
-                               "no device \"%s\" among the %d of this machine: give an index, "
+                               "no device \"%s\"%s among the %d of this machine: give an index, "
                                "platform:device, cpu, gpu or part of a name",
-                               specification, list.count);
+                               specification, origin, list.count);
     *choice = list.devices[0];
     return TC_OK;
 }

@@ -68,6 +68,7 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     if (!grid || !out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract needs a grid and a place for the mesh");
     tc_mesh *mesh = *out ? *out : calloc(1, sizeof *mesh);
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
+    mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
     if (!status) status = grid->device ? structured_extract(grid, &o, mesh) : reference_extract(grid, &o, mesh);
     if (status) mesh_clear(mesh);

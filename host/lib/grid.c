@@ -2,6 +2,7 @@
 
 #include "failure.h"
 
+#include <float.h>
 #include <math.h>
 
 static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
@@ -68,6 +69,15 @@ static tc_status matrix_take(const double matrix[3][4], tc_grid *grid) {
             grid->matrix[4 * r + c] = value;
             if (c < 3) largest = fmax(largest, fabs((double)value));
         }
+    for (int r = 0; r < 3; r++) {
+        double reach = fabs(matrix[r][3]);
+        for (int c = 0; c < 3; c++)
+            reach +=
+                fabs(matrix[r][c]) * fmax(fabs((double)grid->first[c]), fabs((double)(grid->first[c] + grid->dims[c])));
+        if (reach > FLT_MAX)
+            return (tc_status)fail(TC_ERROR_ARGUMENT,
+                                   "spacing and origin put the grid's far corner at %g, beyond float32", reach);
+    }
     if (largest == 0) largest = 1;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) m[r][c] = grid->matrix[4 * r + c] / largest;

@@ -27,6 +27,7 @@
     X(ReleaseProgram)                                                                                                  \
     X(CreateKernel)                                                                                                    \
     X(ReleaseKernel)                                                                                                   \
+    X(GetKernelWorkGroupInfo)                                                                                          \
     X(SetKernelArg)                                                                                                    \
     X(CreateBuffer)                                                                                                    \
     X(ReleaseMemObject)                                                                                                \

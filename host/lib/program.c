@@ -72,10 +72,18 @@ static tc_status program_build(const tc_context *context, program *p, const char
     return error ? build_fail(context, p, error) : TC_OK;
 }
 
-static tc_status kernel_create(const program *p, const char *name, cl_kernel *kernel) {
+static tc_status kernel_create(const tc_context *context, const program *p, const char *name, cl_kernel *kernel) {
     cl_int error;
+    size_t most = 0;
     *kernel = cl->CreateKernel(p->program, name, &error);
-    return error ? opencl_fail(name, error) : TC_OK;
+    if (!error)
+        error =
+            cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
+    if (error) return opencl_fail(name, error);
+    if (context->options.work_items > most)
+        return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
+                               context->info.name, name, most, context->options.work_items);
+    return TC_OK;
 }
 
 static void program_release(program *p) {
@@ -97,8 +105,8 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
     snprintf(p->options, sizeof p->options, "%s", options);
     tc_status status = program_build(context, p, sources);
-    if (!status) status = kernel_create(p, name, &p->kernel);
-    if (!status && cells) status = kernel_create(p, "cells_mark", &p->cells);
+    if (!status) status = kernel_create(context, p, name, &p->kernel);
+    if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells);
     if (status) {
         program_release(p);
         return status;

@@ -197,11 +197,10 @@ tc_status slabs_emit(run *r, tc_mesh *mesh) {
     }
     cl_int error = cl->Finish(r->context->queue);
     if (!status && error) status = opencl_fail("kernel emit", error);
-    if (one_window) {
+    if (one_window && !status) {
         readback = clock_ms();
-        tc_status closed = window_close(r, mesh, &whole);
+        status = window_close(r, mesh, &whole);
         error = cl->Finish(r->context->queue);
-        if (!status) status = closed;
         if (!status && error) status = opencl_fail("reading the mesh back", error);
         mesh->timings.readback_ms = r->context->info.shares_host_memory ? 0 : clock_ms() - readback;
     }

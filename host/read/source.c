@@ -126,7 +126,7 @@ static int read_text(const char *path, const unsigned char *text, size_t size, i
 static void notice_rest(const char *path, uint64_t rest, volume *out) {
     if (rest && !*out->notice)
         snprintf(out->notice, sizeof out->notice,
-                 "%.160s: holds more data than its header asks for; the rest is not used", path);
+                 "%.160s holds more data than its header asks for; the rest is not used", path);
 }
 
 /* Checks one file and, where `to` is given, brings its part of the stored array. */

@@ -16,6 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* One engine and what it holds. */
 typedef struct engine {
@@ -49,6 +50,14 @@ static char *output_path(const options *o, const typed_isovalue *iso) {
     return path;
 }
 
+/* The mesh must not replace the volume that it is made from. */
+static int check_overwrite(const options *o, const char *path) {
+    struct stat input, output;
+    if (stat(o->operands[0], &input) || stat(path, &output)) return 0;
+    if (input.st_dev != output.st_dev || input.st_ino != output.st_ino || !S_ISREG(input.st_mode)) return 0;
+    return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
+}
+
 static int check_output(const options *o) {
     const mesh_write_options how = {o->format, o->soup};
     if (o->isovalue_count > 1 && !strchr(o->output, '%'))
@@ -59,7 +68,13 @@ static int check_output(const options *o) {
             if (strcmp(o->isovalues[a].text, o->isovalues[b].text) == 0)
                 return fail(STATUS_USAGE, "--iso: %s is given twice and both would be written to one file",
                             o->isovalues[a].text);
-    return mesh_write_check(o->output, &how);
+    int status = mesh_write_check(o->output, &how);
+    for (size_t n = 0; n < o->isovalue_count && !status; n++) {
+        char *path = output_path(o, &o->isovalues[n]);
+        status = path ? check_overwrite(o, path) : fail(STATUS_FAILED, "out of memory for the name of the output");
+        free(path);
+    }
+    return status;
 }
 
 static int check_usage(const options *o) {

@@ -52,7 +52,7 @@ static int print_json(const char *path, const volume *v, const statistics *s) {
     double spacing[3];
     spacing_of(v, spacing);
     json_t *object = json_object();
-    json_object_set_new(object, "input", json_string(path));
+    json_object_set_new(object, "input", report_string(path));
     json_object_set_new(object, "format", json_string(v->format));
     json_object_set_new(object, "dims", integers_json(v->dims));
     json_object_set_new(object, "first", integers_json(v->first));
@@ -61,8 +61,8 @@ static int print_json(const char *path, const volume *v, const statistics *s) {
     json_object_set_new(object, "matrix",
                         json_pack("[o, o, o]", report_reals(v->matrix[0], 4), report_reals(v->matrix[1], 4),
                                   report_reals(v->matrix[2], 4)));
-    json_object_set_new(object, "space", json_string(v->space));
-    json_object_set_new(object, "notice", json_string(v->notice));
+    json_object_set_new(object, "space", report_string(v->space));
+    json_object_set_new(object, "notice", report_string(v->notice));
     json_object_set_new(object, "range",
                         s->finite_count ? report_reals((double[]){s->minimum, s->maximum}, 2) : json_null());
     json_object_set_new(object, "nonfinite", json_integer((json_int_t)s->nonfinite_count));

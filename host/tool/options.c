@@ -65,7 +65,7 @@ static const option table[] = {
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
      "ply, stl or obj, whatever FILE ends in"},
     {"--normals", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(normals), NULL,
-     "write a unit normal per vertex, from the gradient of the samples"},
+     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ)"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,

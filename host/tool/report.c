@@ -89,6 +89,16 @@ static json_t *timings_json(const extract_report *r) {
                      ms_json(r->write_ms), "total", ms_json(r->total_ms));
 }
 
+json_t *report_string(const char *text) {
+    char readable[4096];
+    json_t *string = json_string(text);
+    if (string) return string;
+    snprintf(readable, sizeof readable, "%s", text);
+    for (char *c = readable; *c; c++)
+        if (*c & 0x80) *c = '?';
+    return json_string(readable);
+}
+
 int report_extract_json(const extract_report *r) {
     const int64_t *dims = r->v->dims;
     int digits = 15;
@@ -98,8 +108,8 @@ int report_extract_json(const extract_report *r) {
         if (needed > digits) digits = needed;
         json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
     }
-    json_object_set_new(object, "input", json_string(r->o->operands[0]));
-    json_object_set_new(object, "device", r->device[0] ? json_string(r->device) : json_null());
+    json_object_set_new(object, "input", report_string(r->o->operands[0]));
+    json_object_set_new(object, "device", r->device[0] ? report_string(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->o->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "method", json_string("tetra"));
     json_object_set_new(object, "dims",

@@ -43,6 +43,9 @@ typedef struct extract_report {
 int report_extract_json(const extract_report *report);
 void report_extract_text(const extract_report *report);
 
+/* A path or name as a JSON string; bytes that are no UTF-8 become ?. */
+json_t *report_string(const char *text);
+
 /* A number, or null where it is not finite. */
 json_t *report_real(double value);
 

@@ -37,8 +37,8 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl or obj", options->format);
     return fail(STATUS_USAGE,
-                "%s: its ending names no known format: let it end in .ply, .stl or .obj, or name the format (ply, stl, "
-                "obj)",
+                "%s: its ending names no known format: let it end in .ply, .stl or .obj, or name the format by "
+                "--format",
                 path);
 }
 
