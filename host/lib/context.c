@@ -73,6 +73,7 @@ tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t by
     if (!bytes) bytes = 1;
     if (!context->info.shares_host_memory) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
     host_block block = {0};
+    if (buffer->memory) cl->Finish(context->queue); /* commands under way may use the memory that goes */
     buffer_release(context, buffer);
     tc_status status = host_block_reserve(&block, bytes);
     if (status) return status;

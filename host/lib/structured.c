@@ -43,6 +43,7 @@ static tc_status workspace_reserve(run *r) {
     uint64_t layers = plan_window_layers(plan);
     uint64_t words = layers * BRICK_PLANES * plan_words_per_plane(plan, r->grid);
     uint64_t bricks = layers * plan_bricks_per_layer(plan);
+    uint64_t cells = (plan->slab_layers * (uint64_t)BRICK_PLANES + 2) * plan_words_per_plane(plan, r->grid);
     const struct {
         device_buffer *buffer;
         uint64_t bytes;
@@ -54,6 +55,7 @@ static tc_status workspace_reserve(run *r) {
         {&w->bases, 8 * bricks, "brick offsets"},
         {&w->masks, 4 * bricks, "brick masks"},
         {&w->active, 4 * bricks, "active bricks"},
+        {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
         {&w->state, state_bytes(r), "the scan"},
         {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups + WORDS_READ_PAST, "halos"}};
     tc_status status = TC_OK;

@@ -71,9 +71,6 @@ void structured_grid_destroy(tc_grid *grid) {
 static tc_status cells_make(run *r, const slab *s) {
     workspace *work = &r->context->work;
     const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
-    uint64_t bytes = 8ull * planes * plan_words_per_plane(r->plan, r->grid);
-    tc_status status = buffer_reserve(r->context, &work->cells, bytes, "present cells");
-    if (status) return status;
     const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory),
                                          ARGUMENT(planes)};
     return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, 4);
