@@ -325,6 +325,42 @@ static void test_sphere_converges(tc_context *device) {
     EXPECT(volume_errors[2] < 0.005 * volume, "volume is off by %g", volume_errors[2]);
 }
 
+/* What the README promises of a device's memory beyond samples and mesh, with what small buffers come to beside it. */
+static void test_memory_per_sample(void) {
+    const int64_t dims[3] = {256, 160, 160};
+    const double promised[2] = {0.285, 0.41}, fixed = 200e3;
+    size_t count = (size_t)(dims[0] * dims[1] * dims[2]);
+    uint8_t *samples = malloc(count);
+    for (size_t n = 0; n < count; n++) samples[n] = (uint8_t)(n % 251 * 255 / 250);
+    for (int missing = 0; missing < 2; missing++) {
+        tc_context_options options;
+        tc_grid_options grid;
+        tc_extract_options how;
+        tc_mesh *mesh = NULL;
+        tc_mesh_data data;
+        uint64_t peak = 0;
+        tc_context_options_init(&options);
+        tc_grid_options_init(&grid);
+        tc_extract_options_init(&how);
+        memcpy(grid.dims, dims, sizeof dims);
+        grid.samples = samples;
+        grid.has_nodata = missing;
+        grid.nodata = 3;
+        how.isovalue = 250;
+        tc_context *context = context_open(&options);
+        if (extract(context, &grid, &how, &mesh, &data)) {
+            tc_context_device_bytes(context, &peak);
+            double mesh_bytes = 12 * (double)(data.vertex_count + data.triangle_count);
+            double beyond = (double)peak - (double)count - mesh_bytes;
+            EXPECT(beyond <= promised[missing] * (double)count + fixed, "%g bytes per sample beyond samples and mesh%s",
+                   beyond / (double)count, missing ? ", with missing samples" : "");
+        }
+        tc_mesh_destroy(mesh);
+        tc_context_destroy(context);
+    }
+    free(samples);
+}
+
 int main(void) {
     if (!device_exists()) return SKIPPED;
     tc_context_options options;
@@ -343,6 +379,7 @@ int main(void) {
     test_world_space(reference, device);
     test_reuse(device);
     test_sphere_converges(device);
+    test_memory_per_sample();
     tc_context_destroy(reference);
     tc_context_destroy(device);
     for (int n = 0; n < SUBJECTS; n++) subject_close(&subjects[n]);
