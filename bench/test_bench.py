@@ -127,6 +127,10 @@ def test_statuses(folder):
         done = bench(*arguments)
         expect(done.returncode == status, f"{arguments}: status {done.returncode}, not {status}")
         expect(words in done.stderr and not done.stdout, f"{arguments}: says {done.stderr!r}, prints {done.stdout!r}")
+    if os.path.exists("/dev/full") and not os.path.isfile("/dev/full"):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([BENCH, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+        expect(done.returncode == 1 and "standard output" in done.stderr, f"full disk: {done.returncode} {done.stderr!r}")
     done = bench("--help")
     expect(done.returncode == 0 and "--repeat" in done.stdout, "--help")
 
