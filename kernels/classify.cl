@@ -251,7 +251,7 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
 /* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1
  * the tile before is always recomputed: that is how a test gets at the fallback. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
-                                global uint *head, global uint *tiles, local uint *shared) {
+                                global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
     while (!complete) {
@@ -277,7 +277,6 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
                 scan_post_sum(tiles, missing, channel, shared[2 + channel]);
                 if (back[channel] == missing + 1) prefix[channel] += shared[2 + channel], back[channel] = missing;
             }
-            atomic_inc(&head[STATE_FALLBACKS]);
         }
     }
     if (leader) {
@@ -313,7 +312,7 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global uint2
 inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                global uint2 *bases, global const uint *masks, global uint *active, global uint *head,
                                global uint *tiles, local uint *shared) {
-    uint2 prefix = tile_prefix(s, number, samples, cells, head, tiles, shared);
+    uint2 prefix = tile_prefix(s, number, samples, cells, tiles, shared);
     if (get_local_id(0) == 0) {
         uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
         uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);

@@ -36,7 +36,6 @@ enum {
     STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
     STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
-    STATE_FALLBACKS, /* tiles whose sums were recomputed by another group */
     STATE_WORDS
 };
 
