@@ -51,18 +51,28 @@ inline_always ulong cells_at(const slab *s, global const ulong *cells, uint y, u
     return cells[((z - s->cell_z) * s->ny + y) * s->words_x + w];
 }
 
+/* Present cubes of LANES rows from y on. */
+inline_always lanes cells_rows(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+#if LANES == 8
+    return (lanes)(cells_at(s, cells, y, z, w), cells_at(s, cells, y + 1, z, w), cells_at(s, cells, y + 2, z, w),
+                   cells_at(s, cells, y + 3, z, w), cells_at(s, cells, y + 4, z, w), cells_at(s, cells, y + 5, z, w),
+                   cells_at(s, cells, y + 6, z, w), cells_at(s, cells, y + 7, z, w));
+#else
+    return cells_at(s, cells, y, z, w);
+#endif
+}
+
 /* Present cubes, or those at x - 1. */
-inline_always ulong cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
-    ulong carry = w ? cells_at(s, cells, y, z, w - 1) >> 63 : 0;
-    ulong word = cells_at(s, cells, y, z, w);
-    return word | word << 1 | carry;
+inline_always lanes cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+    lanes word = cells_rows(s, cells, y, z, w);
+    return word | word << 1 | (w ? cells_rows(s, cells, y, z, w - 1) >> 63 : (lanes)0);
 }
 
 /* Keeps the crossings of edges that a present cube contains. */
 inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
-    ulong here = cells_at(s, cells, y, z, w), low_y = cells_at(s, cells, y - 1, z, w);
-    ulong low_z = cells_at(s, cells, y, z - 1, w), low_yz = cells_at(s, cells, y - 1, z - 1, w);
-    ulong before = cells_before(s, cells, y, z, w);
+    lanes here = cells_rows(s, cells, y, z, w), low_y = cells_rows(s, cells, y - 1, z, w);
+    lanes low_z = cells_rows(s, cells, y, z - 1, w), low_yz = cells_rows(s, cells, y - 1, z - 1, w);
+    lanes before = cells_before(s, cells, y, z, w);
     k->type[0] &= here | low_y | low_z | low_yz;
     k->type[1] &= before | cells_before(s, cells, y, z - 1, w);
     k->type[2] &= before | cells_before(s, cells, y - 1, z, w);

@@ -21,11 +21,33 @@ typedef uint64_t slab_u64;
 typedef float slab_f32;
 #endif
 
-/* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word; a brick has 32 of them. */
+/* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word; a brick has 32 of them, in a buffer of
+ * words one after the other: place 8 z + y. */
 enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 
-/* Bytes that buffers of words have after their end, because kernel 1 reads words by eights. */
-enum { WORDS_READ_PAST = 128 };
+/* On which side a brick's samples are. Words of uniform bricks are not stored: two bricks of constant words at the
+ * start of the buffer stand for them. */
+enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
+
+/* What kernel 1 finds out about a brick. */
+typedef struct brick_state {
+    slab_u32 vertices, triangles; /* before it in the slab */
+    slab_u32 rows;                /* those that emit something, by place */
+    slab_u32 sign;
+} brick_state;
+
+/* Least and largest sample of a brick, as keys that order like the samples do; of 64-bit samples their upper half. Kept
+ * with a grid, so that later isovalues leave bricks unread. */
+typedef struct brick_range {
+    slab_u32 low, high;
+} brick_range;
+
+/* The table of cases for kernel 2, of 2 parities x 256 patterns: the number of triangles, then three edges for each. */
+enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
+
+/* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
+ * NUMBER_ROWS x NUMBER_PLANES rows for each of the six types of edges. */
+enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_TYPE = 65 * 9 * 5 };
 
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
@@ -47,6 +69,9 @@ typedef struct slab {
     slab_u64 sample_count;  /* samples in the buffer from there on */
     slab_u64 inside_low;    /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
     slab_u64 inside_span;
+    slab_u64 key_flip;    /* integers: key = bits ^ key_flip */
+    slab_u32 key_inside;  /* keys from here on are surely inside */
+    slab_u32 key_outside; /* keys below are surely outside */
     slab_u64 nodata_bits[2]; /* patterns of the missing value; one twice where it has one pattern */
     slab_u32 nx, ny, nz;     /* samples of the whole grid */
     slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
@@ -64,6 +89,8 @@ typedef struct slab {
     slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
     slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset; /* of its list of active bricks */
+    slab_u32 range_offset; /* of brick 0 of the slab's window in the buffer of ranges */
+    slab_u32 ranges_known;
     slab_u32 has_nodata;
     slab_u32 vertex_base;             /* number of the slab's first vertex */
     slab_u32 vertex_base_next;        /* of the next slab's first vertex */
@@ -75,7 +102,6 @@ typedef struct slab {
     slab_f32 isovalue32;
     slab_f32 matrix[12];
     slab_f32 normal_matrix[9];
-    slab_u32 padding;
     slab_u64 isovalue64; /* bits of the double */
 } slab;
 

@@ -1,18 +1,29 @@
 /*
- * tetrahedra.cl - 64 cubes at a time: which edges are crossed, how many triangles the tetrahedra emit
+ * tetrahedra.cl - 64 cubes at a time, in LANES rows at once: which edges are crossed, how many triangles are emitted
  *
  * A cube row is 64 cubes along x between the rows of samples (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1), called
  * a, b, c, d here; suffix 1 is the row shifted to x + 1. In an even cube (bit set in `even`) the face diagonals join
  * corners 0 3, 0 5, 0 6 (000 to 110, 101, 011), in an odd one the other two corners of the faces; see
- * host/lib/tables.h.
+ * host/lib/tables.h. Lanes follow each other in y.
  */
 
-typedef struct cube_row {
-    ulong a0, a1, b0, b1, c0, c1, d0, d1;
-    ulong even;
-    ulong has_x;        /* cubes with a sample at x + 1 */
-    ulong has_y, has_z; /* all or none */
-} cube_row;
+/* Sign words of LANES rows, and the same shifted to x + 1. */
+typedef struct sample_rows {
+    lanes at, next;
+} sample_rows;
+
+typedef struct cube_rows {
+    lanes a0, a1, b0, b1, c0, c1, d0, d1;
+    lanes even;
+    ulong has_x; /* cubes with a sample at x + 1 */
+    lanes has_y; /* all or none */
+    ulong has_z;
+} cube_rows;
+
+inline_always sample_rows rows_shifted(lanes word, lanes next) {
+    sample_rows r = {word, word >> 1 | next << 63};
+    return r;
+}
 
 inline_always ulong word_shifted(ulong word, ulong next) { return word >> 1 | next << 63; }
 
@@ -20,49 +31,77 @@ inline_always ulong even_cubes(const slab *s, uint y, uint z) {
     return (s->parity + y + z) & 1 ? 0xaaaaaaaaaaaaaaaaul : 0x5555555555555555ul;
 }
 
-inline_always ulong choose(ulong which, ulong yes, ulong no) { return no ^ (which & (yes ^ no)); }
+#if LANES == 8
+#define LANE_NUMBERS            ((ulong8)(0, 1, 2, 3, 4, 5, 6, 7))
+#define lanes_select(condition) as_ulong8(condition) /* all bits or none */
 
-/* word[n]: a, b, c, d at w and at w + 1; 0 where outside the grid. */
-inline_always cube_row cube_row_of(const slab *s, uint y, uint z, uint w, const ulong word[4][2]) {
-    cube_row r;
+/* popcount of a vector, in the form that compilers know: some built-in ones go element by element. */
+inline_always lanes lanes_popcount(lanes x) {
+    x -= (x >> 1) & 0x5555555555555555ul;
+    x = (x & 0x3333333333333333ul) + ((x >> 2) & 0x3333333333333333ul);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0ful;
+    return (x * 0x0101010101010101ul) >> 56;
+}
+
+inline_always ulong lanes_any(lanes x) {
+    ulong4 four = x.lo | x.hi;
+    ulong2 two = four.lo | four.hi;
+    return two.x | two.y;
+}
+
+inline_always ulong lanes_sum(lanes x) {
+    ulong4 four = x.lo + x.hi;
+    ulong2 two = four.lo + four.hi;
+    return two.x + two.y;
+}
+
+/* Bit n for a lane n that is not 0. */
+inline_always uint lanes_nonzero(lanes x) {
+    char8 mask = convert_char8(x != 0ul);
+    return (uint)(((as_ulong(mask) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
+}
+
+/* The lanes moved down by one, then row `last`. */
+inline_always lanes lanes_up(lanes x, ulong last) { return (lanes)(x.s1234, x.s567, last); }
+#else
+#define LANE_NUMBERS            0ul
+#define lanes_select(condition) ((condition) ? ~0ul : 0ul)
+#define lanes_popcount(x)       popcount(x)
+#define lanes_any(x)            (x)
+#define lanes_sum(x)            (x)
+#endif
+
+inline_always lanes even_rows(const slab *s, uint y, uint z) {
+    return even_cubes(s, y, z) ^ lanes_select((LANE_NUMBERS & 1ul) != 0ul);
+}
+
+inline_always lanes choose(lanes which, lanes yes, lanes no) { return no ^ (which & (yes ^ no)); }
+
+/* The cubes at w of the rows from y on in plane z. Samples outside the grid are 0. */
+inline_always cube_rows cube_rows_of(const slab *s, uint y, uint z, uint w, sample_rows a, sample_rows b, sample_rows c,
+                                     sample_rows d) {
     ulong valid = word_valid(s, w);
-    r.a0 = word[0][0], r.a1 = word_shifted(word[0][0], word[0][1]);
-    r.b0 = word[1][0], r.b1 = word_shifted(word[1][0], word[1][1]);
-    r.c0 = word[2][0], r.c1 = word_shifted(word[2][0], word[2][1]);
-    r.d0 = word[3][0], r.d1 = word_shifted(word[3][0], word[3][1]);
-    r.even = even_cubes(s, y, z);
+    cube_rows r = {a.at, a.next, b.at, b.next, c.at, c.next, d.at, d.next};
+    r.even = even_rows(s, y, z);
     r.has_x = w + 1 < s->words_x ? valid : valid >> 1;
-    r.has_y = y + 1 < s->ny ? ~0ul : 0;
+    r.has_y = lanes_select(LANE_NUMBERS + (y + 1) < (lanes)s->ny);
     r.has_z = z + 1 < s->nz ? ~0ul : 0;
     return r;
 }
 
-/* The same from rows of sign words; a row outside the grid may be any pointer. */
-inline_always cube_row cube_row_load(const slab *s, uint y, uint z, uint w, global const ulong *a,
-                                     global const ulong *b, global const ulong *c, global const ulong *d) {
-    bool next = w + 1 < s->words_x, y1 = y + 1 < s->ny, z1 = z + 1 < s->nz;
-    ulong word[4][2] = {{a[w], next ? a[w + 1] : 0},
-                        {y1 ? b[w] : 0, y1 && next ? b[w + 1] : 0},
-                        {z1 ? c[w] : 0, z1 && next ? c[w + 1] : 0},
-                        {y1 && z1 ? d[w] : 0, y1 && z1 && next ? d[w + 1] : 0}};
-    return cube_row_of(s, y, z, w, word);
-}
-
-inline_always ulong cubes_in_grid(const cube_row *r) { return r->has_x & r->has_y & r->has_z; }
-
 /* Cubes whose corners differ. */
-inline_always ulong cubes_active(const cube_row *r) {
-    ulong any = r->a0 | r->a1 | r->b0 | r->b1 | r->c0 | r->c1 | r->d0 | r->d1;
-    ulong all = r->a0 & r->a1 & r->b0 & r->b1 & r->c0 & r->c1 & r->d0 & r->d1;
-    return any & ~all & cubes_in_grid(r);
+inline_always lanes cubes_active(const cube_rows *r) {
+    lanes any = r->a0 | r->a1 | r->b0 | r->b1 | r->c0 | r->c1 | r->d0 | r->d1;
+    lanes all = r->a0 & r->a1 & r->b0 & r->b1 & r->c0 & r->c1 & r->d0 & r->d1;
+    return any & ~all & r->has_x & r->has_y & r->has_z;
 }
 
-/* Edges owned by the samples of row a whose ends differ, where both ends are in the grid. */
+/* Edges owned by the samples of rows a whose ends differ, where both ends are in the grid. */
 typedef struct crossings {
-    ulong type[6]; /* x, y, z, xy, xz, yz */
+    lanes type[6]; /* x, y, z, xy, xz, yz */
 } crossings;
 
-inline_always crossings crossings_owned(const cube_row *r) {
+inline_always crossings crossings_owned(const cube_rows *r) {
     crossings k;
     k.type[0] = (r->a0 ^ r->a1) & r->has_x;
     k.type[1] = (r->a0 ^ r->b0) & r->has_y;
@@ -73,38 +112,56 @@ inline_always crossings crossings_owned(const cube_row *r) {
     return k;
 }
 
-inline_always void tetrahedron_count(ulong a, ulong b, ulong c, ulong d, ulong cubes, uint *triangles) {
-    ulong odd = a ^ b ^ c ^ d;
-    ulong two = (a | b | c | d) & ~(a & b & c & d) & ~odd;
-    *triangles += (uint)popcount(odd & cubes) + 2 * (uint)popcount(two & cubes);
+inline_always lanes crossings_any(const crossings *k) {
+    return k->type[0] | k->type[1] | k->type[2] | k->type[3] | k->type[4] | k->type[5];
 }
 
-/* Corner n of an even cube, corner n ^ 1 of an odd one. */
-inline_always uint triangles_count(const cube_row *r, ulong cubes) {
-    ulong e = r->even;
-    ulong p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
-    ulong p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
-    ulong p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
-    ulong p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
-    uint triangles = 0;
-    tetrahedron_count(p0, p3, p5, p6, cubes, &triangles);
-    tetrahedron_count(p1, p0, p3, p5, cubes, &triangles);
-    tetrahedron_count(p2, p0, p3, p6, cubes, &triangles);
-    tetrahedron_count(p4, p0, p5, p6, cubes, &triangles);
-    tetrahedron_count(p7, p3, p5, p6, cubes, &triangles);
-    return triangles;
+/* Bit by bit a + b + c: the sum in *sum, what is carried returned. */
+inline_always lanes add_carry(lanes a, lanes b, lanes c, lanes *sum) {
+    *sum = a ^ b ^ c;
+    return (a & b) | (c & (a ^ b));
+}
+
+/* Cubes in which a tetrahedron emits one triangle; *two: those in which it emits two. */
+inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, lanes cubes, lanes *two) {
+    lanes odd = a ^ b ^ c ^ d;
+    *two = (a | b | c | d) & ~(a & b & c & d) & ~odd & cubes;
+    return odd & cubes;
+}
+
+/* Corner n of an even cube, corner n ^ 1 of an odd one. Ones and twos of the five tetrahedra are added bit by bit, so
+ * that four words are counted and not ten. */
+inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
+    lanes e = r->even;
+    lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
+    lanes p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
+    lanes p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
+    lanes p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
+    lanes one[5], two[5], ones, twos, fours;
+    one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &two[0]);
+    one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &two[1]);
+    one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &two[2]);
+    one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &two[3]);
+    one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &two[4]);
+    lanes carry0 = add_carry(one[0], one[1], one[2], &ones);
+    lanes carry1 = add_carry(ones, one[3], one[4], &ones);
+    lanes carry2 = add_carry(carry0, carry1, two[0], &twos);
+    lanes carry3 = add_carry(twos, two[1], two[2], &twos);
+    lanes carry4 = add_carry(twos, two[3], two[4], &twos);
+    lanes eights = add_carry(carry2, carry3, carry4, &fours);
+    return lanes_popcount(ones) + 2 * lanes_popcount(twos) + 4 * lanes_popcount(fours) + 8 * lanes_popcount(eights);
 }
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
- * vertex in its brick: 14 bits, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
-inline_always ulong offsets_pack(const crossings *k, uint first, uint *vertex_count) {
-    uint y = (uint)popcount(k->type[0]);
-    uint z = y + (uint)popcount(k->type[1]);
-    uint xy = z + (uint)popcount(k->type[2]);
-    uint xz = xy + (uint)popcount(k->type[3]);
-    uint yz = xz + (uint)popcount(k->type[4]);
-    *vertex_count = yz + (uint)popcount(k->type[5]);
-    return (ulong)first | (ulong)y << 14 | (ulong)z << 21 | (ulong)xy << 29 | (ulong)xz << 37 | (ulong)yz << 46;
+ * vertex in its brick: 14 bits, here 0, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
+inline_always lanes offsets_pack(const crossings *k, lanes *vertex_count) {
+    lanes y = lanes_popcount(k->type[0]);
+    lanes z = y + lanes_popcount(k->type[1]);
+    lanes xy = z + lanes_popcount(k->type[2]);
+    lanes xz = xy + lanes_popcount(k->type[3]);
+    lanes yz = xz + lanes_popcount(k->type[4]);
+    *vertex_count = yz + lanes_popcount(k->type[5]);
+    return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46;
 }
 
 inline_always uint offset_of_type(ulong packed, uint type) {

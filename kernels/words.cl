@@ -20,10 +20,16 @@
 #define inline_always static inline __attribute__((always_inline))
 #endif
 
+/* Bit-sliced code runs over LANES rows of 64 samples at once: the eight of a plane of a brick where a work-item has
+ * bricks to itself, one where it shares them. */
 #if WORK_ITEMS == 1
 #define group_barrier()
+#define LANES 8
+typedef ulong8 lanes;
 #else
 #define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+#define LANES           1
+typedef ulong lanes;
 #endif
 
 #if FLOATING == 32
@@ -73,58 +79,34 @@ inline_always ulong word_valid(const slab *s, uint w) {
     return left >= 64 ? ~0ul : (1ul << left) - 1;
 }
 
-/* 16 bits of a word. *nonfinite becomes not 0 where a sample is NaN or infinite; those read past the end of a row are
- * samples of the same grid. */
-inline_always uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint part, uint *nonfinite) {
+/* 16 bits of a word. */
+inline_always uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint part) {
     if (16 * part >= s->nx) return 0;
     BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
-#if FLOATING && !MISSING
-    *nonfinite |= any(convert_char16((bits & EXPONENT) == EXPONENT));
-#endif
     uint left = s->nx - 16 * part;
     return mask_pack(inside_mask(bits, s)) & (left >= 16 ? 0xffffu : (1u << left) - 1);
 }
 
-/* 64 samples at once, all of which the buffer has. Stays in registers: a detour through memory costs as much again. */
-inline_always ulong word_full(global const BITS *samples, const slab *s, uint *nonfinite) {
-    BITS16 b0 = vload16(0, samples), b1 = vload16(1, samples), b2 = vload16(2, samples), b3 = vload16(3, samples);
-#if FLOATING && !MISSING
-    *nonfinite |= any(convert_char16((b0 & EXPONENT) == EXPONENT) | convert_char16((b1 & EXPONENT) == EXPONENT) |
-                      convert_char16((b2 & EXPONENT) == EXPONENT) | convert_char16((b3 & EXPONENT) == EXPONENT));
-#endif
-    ulong8 mask = (ulong8)(as_ulong2(inside_mask(b0, s)), as_ulong2(inside_mask(b1, s)), as_ulong2(inside_mask(b2, s)),
-                           as_ulong2(inside_mask(b3, s)));
-    ulong8 bytes = ((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56;
-    return as_ulong(convert_uchar8(bytes));
-}
-
-inline_always ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w, uint *nonfinite) {
-    ulong start = row_start(s, y, z) + 64ul * w;
-    if (start + 64 <= s->sample_offset + s->sample_count)
-        return word_full(samples + start, s, nonfinite) & word_valid(s, w);
+inline_always ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
     ulong word = 0;
-    for (uint n = 0; n < 4; n++) word |= (ulong)word_part(samples, s, y, z, 4 * w + n, nonfinite) << (16 * n);
+    for (uint n = 0; n < 4; n++) word |= (ulong)word_part(samples, s, y, z, 4 * w + n) << (16 * n);
     return word;
-}
-
-#if WORK_ITEMS == 1
-/* All words of a row. */
-inline_always void row_sign(global const BITS *samples, const slab *s, uint y, uint z, global ulong *row,
-                            uint *nonfinite) {
-    ulong start = row_start(s, y, z);
-    if (start + 64ul * s->words_x <= s->sample_offset + s->sample_count) {
-        for (uint w = 0; w < s->words_x; w++) row[w] = word_full(samples + start + 64ul * w, s, nonfinite);
-        row[s->words_x - 1] &= word_valid(s, s->words_x - 1);
-    } else {
-        for (uint w = 0; w < s->words_x; w++) row[w] = word_inside(samples, s, y, z, w, nonfinite);
-    }
-}
-#endif
-
-inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
-    return ((z - s->word_z) * s->ny + y) * s->words_x + w;
 }
 
 inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
+}
+
+/* Where in its brick a row is. */
+inline_always uint row_place(const slab *s, uint y, uint z) {
+    return (z - s->word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
+}
+
+inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
+    return BRICK_WORDS * brick_index(s, y, z, w) + row_place(s, y, z);
+}
+
+/* The 32 words of brick `number`. Where they are constant, they are set past the ends of rows and of the grid too. */
+inline_always global const ulong *brick_words(uint number, uint sign, global const ulong *words) {
+    return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)number : (long)sign - UNIFORM_BRICKS);
 }

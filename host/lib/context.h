@@ -31,8 +31,8 @@ typedef struct kernels {
 
 /* What kernel 1 leaves for kernel 2, and what both need besides samples and mesh. */
 typedef struct workspace {
-    device_buffer words, offsets, triangle_offsets, bases, masks, active; /* per word or brick of the word window */
-    device_buffer cells;                                                  /* grids with missing samples */
+    device_buffer words, offsets, triangle_offsets, bricks, active; /* per word or brick of the word window */
+    device_buffer cells;                                            /* grids with missing samples */
     device_buffer state, scratch;
     device_buffer cases[2];                               /* cube table; [1] for mirrored grids */
     device_buffer samples, positions, normals, triangles; /* windows, on devices with own memory */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static uint64_t bits_of_f32(float value) {
+static uint32_t bits_of_f32(float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     return bits;
@@ -19,21 +19,26 @@ static uint64_t bits_of_f64(double value) {
 static inside_range integer_range(double isovalue, double least, double most) {
     double threshold = ceil(isovalue);
     if (threshold <= least || threshold > most) return (inside_range){.uniform = true};
-    return (inside_range){false, (uint64_t)(int64_t)threshold, (uint64_t)(most - threshold)};
+    uint64_t flip = least < 0 ? (uint64_t)(int64_t)least : 0; /* the sign bit, and above it what keys do not have */
+    uint32_t key = (uint32_t)((uint64_t)(int64_t)threshold - (uint64_t)(int64_t)least);
+    return (inside_range){false, (uint64_t)(int64_t)threshold, (uint64_t)(most - threshold), flip, key, key};
 }
 
 static inside_range f32_range(double isovalue) {
     float threshold = (float)isovalue;
     if ((double)threshold < isovalue) threshold = nextafterf(threshold, INFINITY);
     if (threshold <= -FLT_MAX || threshold > FLT_MAX) return (inside_range){.uniform = true};
-    if (threshold > 0) return (inside_range){false, bits_of_f32(threshold), 0x7fffffff - bits_of_f32(threshold)};
-    return (inside_range){false, 0, 0x80000000 | bits_of_f32(threshold)};
+    uint32_t bits = bits_of_f32(threshold), sign = 0x80000000, key = threshold > 0 ? bits | sign : ~(bits | sign);
+    if (threshold > 0) return (inside_range){false, bits, 0x7fffffff - bits, 0, key, key};
+    return (inside_range){false, 0, sign | bits, 0, key, key};
 }
 
 static inside_range f64_range(double isovalue) {
     if (isovalue <= -DBL_MAX) return (inside_range){.uniform = true};
-    if (isovalue > 0) return (inside_range){false, bits_of_f64(isovalue), INT64_MAX - bits_of_f64(isovalue)};
-    return (inside_range){false, 0, UINT64_C(1) << 63 | bits_of_f64(isovalue)};
+    uint64_t bits = bits_of_f64(isovalue), sign = UINT64_C(1) << 63, key = isovalue > 0 ? bits | sign : ~(bits | sign);
+    uint32_t below = (uint32_t)(key >> 32), from = below + ((uint32_t)key != 0);
+    if (isovalue > 0) return (inside_range){false, bits, INT64_MAX - bits, 0, from, below};
+    return (inside_range){false, 0, sign | bits, 0, from, below};
 }
 
 inside_range inside_range_of(tc_type type, double isovalue) {

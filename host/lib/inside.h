@@ -16,6 +16,8 @@
 typedef struct inside_range {
     bool uniform; /* every sample of the type is on the same side: no surface */
     uint64_t low, span;
+    uint64_t key_flip;                /* of integers: see slab.h */
+    uint32_t key_inside, key_outside; /* ranges of bricks compare with them: see slab.h */
 } inside_range;
 
 inside_range inside_range_of(tc_type type, double isovalue);

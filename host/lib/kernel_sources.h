@@ -6,9 +6,14 @@ extern const char kernel_source_slab[];
 extern const char kernel_source_words[];
 extern const char kernel_source_tetrahedra[];
 extern const char kernel_source_cells[];
+extern const char kernel_source_sign[];
+extern const char kernel_source_count[];
 extern const char kernel_source_scan[];
 extern const char kernel_source_classify[];
 extern const char kernel_source_vertex[];
+extern const char kernel_source_mesh[];
+extern const char kernel_source_emit_brick[];
+extern const char kernel_source_emit_rows[];
 extern const char kernel_source_emit[];
 
 #endif

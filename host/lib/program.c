@@ -57,11 +57,15 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-static const char *const classify_sources[] = {kernel_source_slab,  kernel_source_words, kernel_source_tetrahedra,
-                                               kernel_source_cells, kernel_source_scan,  kernel_source_classify};
-static const char *const emit_sources[] = {kernel_source_slab,  kernel_source_words,  kernel_source_tetrahedra,
-                                           kernel_source_cells, kernel_source_vertex, kernel_source_emit};
-enum { SOURCE_COUNT = 6 };
+enum { SOURCE_COUNT = 9 };
+
+static const char *const classify_sources[SOURCE_COUNT] = {
+    kernel_source_slab,  kernel_source_words,    kernel_source_tetrahedra,
+    kernel_source_cells, kernel_source_sign,     kernel_source_count,
+    kernel_source_scan,  kernel_source_classify, ""};
+static const char *const emit_sources[SOURCE_COUNT] = {
+    kernel_source_slab, kernel_source_words,      kernel_source_tetrahedra, kernel_source_cells, kernel_source_vertex,
+    kernel_source_mesh, kernel_source_emit_brick, kernel_source_emit_rows,  kernel_source_emit};
 
 static tc_status program_build(const tc_context *context, program *p, const char *const sources[SOURCE_COUNT]) {
     cl_int error;

@@ -35,11 +35,13 @@ uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid) {
     return (uint64_t)plan->words_x * (uint64_t)grid->dims[1];
 }
 
+uint64_t plan_cell_planes(const slab_plan *plan) { return plan->slab_layers * (uint64_t)BRICK_PLANES + 2; }
+
 uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->words_x * plan->bricks_y; }
 
 /* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
  * samples. Never so large that groups run out of tiles. */
-static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+static void tiles_shape(const tc_context *context, slab_plan *plan) {
     uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
     uint64_t wanted = (context->options.tile_bricks + plan->words_x - 1ull) / plan->words_x;
     if (!context->options.tile_bricks)
@@ -50,10 +52,7 @@ static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_pla
     if (plan->tile_layers == 0) plan->tile_layers = 1;
     plan->slab_tiles = ((plan->bricks_y + plan->tile_rows - 1) / plan->tile_rows) *
                        ((plan->slab_layers + plan->tile_layers - 1) / plan->tile_layers);
-    plan->scratch_words =
-        (uint32_t)min_u64(plan->tile_rows * (uint64_t)BRICK_ROWS + 1 + plan->tile_layers * (uint64_t)BRICK_PLANES,
-                          (uint64_t)grid->dims[1] + plan->tile_layers * (uint64_t)BRICK_PLANES + 1) *
-        plan->words_x;
+    plan->scratch_words = (BRICK_ROWS * (plan->tile_rows + 1) + BRICK_PLANES * plan->tile_layers) * plan->words_x;
 }
 
 static uint64_t samples_bytes(const slab_plan *plan, const tc_grid *grid) {
@@ -70,14 +69,16 @@ static bool can_miss_samples(const tc_grid *grid) {
 /* Bytes of everything but the mesh; *largest: of the largest buffer. */
 static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
     uint64_t layers = plan_window_layers(plan);
-    uint64_t words = 8 * BRICK_PLANES * layers * plan_words_per_plane(plan, grid);
+    uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
     uint64_t samples = samples_bytes(plan, grid);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
-    uint64_t fixed = 2 * sizeof(cube_case[2][256]) + 2 * WORDS_READ_PAST + 8 * 4096; /* and buffers from page to page */
+    uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
+    uint64_t fixed = 2 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 8 * 4096; /* and buffers from page to page */
     *largest = samples > words ? samples : words;
-    return samples + words * 2 + words / 4 + (can_miss_samples(grid) ? words : 0) +
-           16 * layers * plan_bricks_per_layer(plan) + state + scratch + fixed;
+    uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
+    return samples + words * 2 + words / 4 + cells + (sizeof(brick_state) + 4) * bricks + ranges + state + scratch +
+           fixed;
 }
 
 static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,
@@ -85,7 +86,7 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     uint64_t largest;
     plan->slab_layers = slab_layers;
     plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
-    tiles_shape(context, grid, plan);
+    tiles_shape(context, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
     return *bytes <= budget && largest <= context->info.max_buffer_bytes;
 }

@@ -32,7 +32,8 @@ uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index);
 uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
 
 uint32_t plan_window_layers(const slab_plan *plan);
-uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid);
+uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid); /* without padding to bricks */
+uint64_t plan_cell_planes(const slab_plan *plan);
 uint64_t plan_bricks_per_layer(const slab_plan *plan);
 
 #endif

@@ -16,6 +16,10 @@ static void base_fill(run *r, inside_range inside, double isovalue) {
     slab *s = &r->base;
     s->inside_low = inside.low;
     s->inside_span = inside.span;
+    s->key_flip = inside.key_flip;
+    s->key_inside = inside.key_inside;
+    s->key_outside = inside.key_outside;
+    s->ranges_known = grid->device->ranges_known;
     s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
     s->nx = (uint32_t)grid->dims[0];
     s->ny = (uint32_t)grid->dims[1];
@@ -37,28 +41,39 @@ static uint64_t state_bytes(const run *r) {
     return 4ull * r->plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * r->plan->slab_tiles);
 }
 
+/* Sign words, the constant bricks before them. */
+static tc_status words_reserve(tc_context *context, uint64_t brick_count) {
+    device_buffer *words = &context->work.words;
+    const size_t brick_bytes = 8 * BRICK_WORDS;
+    uint64_t bytes = brick_bytes * (UNIFORM_BRICKS + brick_count);
+    if (words->memory && bytes <= words->bytes) return TC_OK;
+    tc_status status = buffer_reserve(context, words, bytes, "sign words");
+    for (size_t sign = 0; sign < UNIFORM_BRICKS && !status; sign++) {
+        const cl_ulong word = sign == SIGN_INSIDE ? UINT64_MAX : 0;
+        cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, sign * brick_bytes,
+                                             brick_bytes, 0, NULL, NULL);
+        if (error) status = opencl_fail("filling constant sign words", error);
+    }
+    return status;
+}
+
 static tc_status workspace_reserve(run *r) {
     workspace *w = &r->context->work;
     const slab_plan *plan = r->plan;
-    uint64_t layers = plan_window_layers(plan);
-    uint64_t words = layers * BRICK_PLANES * plan_words_per_plane(plan, r->grid);
-    uint64_t bricks = layers * plan_bricks_per_layer(plan);
-    uint64_t cells = (plan->slab_layers * (uint64_t)BRICK_PLANES + 2) * plan_words_per_plane(plan, r->grid);
+    uint64_t bricks = plan_window_layers(plan) * plan_bricks_per_layer(plan), words = BRICK_WORDS * bricks;
+    uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
     const struct {
         device_buffer *buffer;
         uint64_t bytes;
         const char *name;
-    } buffers[] = {
-        {&w->words, 8 * words + WORDS_READ_PAST, "sign words"},
-        {&w->offsets, 8 * words, "vertex offsets"},
-        {&w->triangle_offsets, 2 * words, "triangle offsets"},
-        {&w->bases, 8 * bricks, "brick offsets"},
-        {&w->masks, 4 * bricks, "brick masks"},
-        {&w->active, 4 * bricks, "active bricks"},
-        {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
-        {&w->state, state_bytes(r), "the scan"},
-        {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups + WORDS_READ_PAST, "halos"}};
-    tc_status status = TC_OK;
+    } buffers[] = {{&w->offsets, 8 * words, "vertex offsets"},
+                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
+                   {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
+                   {&w->active, 4 * bricks, "active bricks"},
+                   {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
+                   {&w->state, state_bytes(r), "the scan"},
+                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
+    tc_status status = words_reserve(r->context, bricks);
     for (size_t n = 0; n < sizeof buffers / sizeof *buffers && !status; n++)
         status = buffer_reserve(r->context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
     return status;
@@ -101,11 +116,11 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     const kernel_argument arguments[] = {ARGUMENT(s),
                                          ARGUMENT(r->samples->memory),
                                          ARGUMENT(w->cells.memory),
+                                         ARGUMENT(r->grid->device->ranges.memory),
                                          ARGUMENT(w->words.memory),
                                          ARGUMENT(w->offsets.memory),
                                          ARGUMENT(w->triangle_offsets.memory),
-                                         ARGUMENT(w->bases.memory),
-                                         ARGUMENT(w->masks.memory),
+                                         ARGUMENT(w->bricks.memory),
                                          ARGUMENT(w->active.memory),
                                          ARGUMENT(w->state.memory),
                                          ARGUMENT(w->scratch.memory),
@@ -128,6 +143,7 @@ static tc_status totals_read(run *r) {
         r->active_cell_count += head[STATE_ACTIVE_CELLS];
         if (head[STATE_NONFINITE]) r->grid->device->missing = true;
     }
+    r->grid->device->ranges_known = true;
     return TC_OK;
 }
 

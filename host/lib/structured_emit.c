@@ -9,6 +9,7 @@
 #include "tables.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const uint64_t page_bytes = 4096;
 
@@ -76,17 +77,39 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles) {
            triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes;
 }
 
+/* How kernel 2 finds the vertex on an edge of a cube: by its place in cube_edges, or, where a work-item has a brick to
+ * itself, in the brick's table of numbers, seen from the cube's. */
+static uint16_t edge_item(const run *r, uint8_t edge) {
+    const owned_edge e = cube_edges[edge];
+    if (r->context->options.work_items > 1) return edge;
+    return (uint16_t)(e.type * NUMBER_TYPE + (e.dz * NUMBER_ROWS + e.dy) * NUMBER_COLUMNS + e.dx);
+}
+
+/* Per case the number of triangles, then their edges; the rest is never used, but read. */
+static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
+    cube_case cases[2][256];
+    cube_cases_derive(cases, r->grid->mirrored);
+    memset(items, 0, CASES_BYTES);
+    for (int n = 0; n < 2 * 256; n++) {
+        const cube_case *c = &cases[n / 256][n % 256];
+        uint16_t *item = items[n / 256][n % 256];
+        *item++ = c->triangle_count;
+        for (int triangle = 0; triangle < c->triangle_count; triangle++)
+            for (int corner = 0; corner < 3; corner++) *item++ = edge_item(r, c->edges[triangle][corner]);
+    }
+}
+
 /* The cube table, uploaded once per context and winding. */
 static tc_status cases_provide(run *r, device_buffer **out) {
     device_buffer *buffer = &r->context->work.cases[r->grid->mirrored];
-    cube_case cases[2][256];
+    uint16_t items[2][256][CASE_ITEMS];
     *out = buffer;
     if (buffer->memory) return TC_OK;
-    tc_status status = buffer_reserve(r->context, buffer, sizeof cases, "the case table");
+    tc_status status = buffer_reserve(r->context, buffer, sizeof items, "the case table");
     if (status) return status;
-    cube_cases_derive(cases, r->grid->mirrored);
+    cases_write(r, items);
     cl_int error =
-        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
+        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof items, items, 0, NULL, NULL);
     return error ? opencl_fail("uploading the case table", error) : TC_OK;
 }
 
@@ -110,8 +133,7 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
                                          ARGUMENT(work->words.memory),
                                          ARGUMENT(work->offsets.memory),
                                          ARGUMENT(work->triangle_offsets.memory),
-                                         ARGUMENT(work->bases.memory),
-                                         ARGUMENT(work->masks.memory),
+                                         ARGUMENT(work->bricks.memory),
                                          ARGUMENT(work->active.memory),
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(cases->memory),
@@ -126,11 +148,11 @@ static tc_status layers_read(run *r, const slab *s, uint32_t layer_count, uint64
     uint64_t bricks = plan_bricks_per_layer(r->plan), first = (s->z0 - s->word_z) / BRICK_PLANES * bricks;
     const uint32_t *head = r->heads + s->head_offset;
     for (uint32_t n = 0; n < layer_count; n++) {
-        uint32_t pair[2];
-        cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.bases.memory, CL_TRUE,
-                                             8 * (first + n * bricks), sizeof pair, pair, 0, NULL, NULL);
+        brick_state brick;
+        cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.bricks.memory, CL_TRUE,
+                                             sizeof brick * (first + n * bricks), sizeof brick, &brick, 0, NULL, NULL);
         if (error) return opencl_fail("reading sums of layers", error);
-        begins[n][0] = pair[0], begins[n][1] = pair[1];
+        begins[n][0] = brick.vertices, begins[n][1] = brick.triangles;
     }
     begins[layer_count][0] = head[STATE_VERTICES];
     begins[layer_count][1] = head[STATE_TRIANGLES];

@@ -14,13 +14,15 @@
 struct device_grid {
     slab_plan plan;
     device_buffer samples; /* the whole grid, where plan.samples_whole */
+    device_buffer ranges;  /* of all bricks, made at the first visit */
+    bool ranges_known;
     uint64_t sample_offset;
     bool missing; /* some sample is missing: known from the start with nodata, else found by kernel 1 */
 };
 
 /* Kernel 1's results kept on the host while the device holds only a window of them. */
 typedef struct slab_store {
-    uint8_t *words, *offsets, *triangle_offsets, *bases, *masks, *active;
+    uint8_t *words, *offsets, *triangle_offsets, *bricks, *active;
 } slab_store;
 
 typedef struct run {

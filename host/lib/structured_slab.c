@@ -50,6 +50,9 @@ tc_status structured_grid_create(tc_grid *grid) {
     grid->device = device;
     device->missing = grid->has_nodata && sample_patterns(grid->type, grid->nodata, ignored);
     tc_status status = slab_plan_make(grid->context, grid, &device->plan);
+    uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
+    if (!status)
+        status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
     if (!status && device->plan.samples_whole) {
         status = samples_provide(grid, &device->samples, 0, (uint64_t)grid_sample_count(grid), &device->sample_offset);
         if (!status && !grid->context->info.shares_host_memory) {
@@ -63,6 +66,7 @@ tc_status structured_grid_create(tc_grid *grid) {
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
     buffer_release(grid->context, &grid->device->samples);
+    buffer_release(grid->context, &grid->device->ranges);
     free(grid->device);
     grid->device = NULL;
 }
@@ -83,6 +87,7 @@ tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
     s->z0 = slab_begin(r->plan, slab_index);
     s->z1 = slab_end(r->plan, r->grid, slab_index);
     s->word_z = r->plan->words_whole ? 0 : s->z0;
+    s->range_offset = (uint32_t)(s->word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     s->cell_z = s->z0 ? s->z0 - 1 : 0;
     s->sample_z = slab_samples_begin(r->plan, slab_index);
     s->head_offset = slab_index * STATE_WORDS;
@@ -108,16 +113,14 @@ tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
 
 tc_status slab_store_allocate(run *r) {
     if (r->plan->words_whole) return TC_OK;
-    uint64_t words = (uint64_t)r->grid->dims[2] * plan_words_per_plane(r->plan, r->grid);
-    uint64_t bricks = r->plan->layer_count * plan_bricks_per_layer(r->plan);
+    uint64_t bricks = r->plan->layer_count * plan_bricks_per_layer(r->plan), words = BRICK_WORDS * bricks;
     slab_store *s = &r->store;
     s->words = malloc(8 * words);
     s->offsets = malloc(8 * words);
     s->triangle_offsets = malloc(2 * words);
-    s->bases = malloc(8 * bricks);
-    s->masks = malloc(4 * bricks);
+    s->bricks = malloc(sizeof(brick_state) * bricks);
     s->active = malloc(4 * bricks);
-    if (s->words && s->offsets && s->triangle_offsets && s->bases && s->masks && s->active) return TC_OK;
+    if (s->words && s->offsets && s->triangle_offsets && s->bricks && s->active) return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to keep the sign words of all slabs");
 }
 
@@ -125,44 +128,45 @@ void slab_store_release(slab_store *store) {
     free(store->words);
     free(store->offsets);
     free(store->triangle_offsets);
-    free(store->bases);
-    free(store->masks);
+    free(store->bricks);
     free(store->active);
     *store = (slab_store){0};
 }
 
-/* Moves count bytes between the start of a window's buffer and byte `first` of an array of the store. */
-static tc_status window_copy(run *r, device_buffer *buffer, uint8_t *host, uint64_t first, uint64_t count, bool save) {
+/* Moves count bytes between byte `place` of a window's buffer and byte `first` of an array of the store. */
+static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint8_t *host, uint64_t first,
+                             uint64_t count, bool save) {
     if (count == 0) return TC_OK;
     cl_command_queue queue = r->context->queue;
-    cl_int error = save
-                       ? cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL)
-                       : cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, count, host + first, 0, NULL, NULL);
+    cl_mem memory = buffer->memory;
+    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL)
+                        : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL);
     return error ? opencl_fail(save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
 }
 
+/* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */
 static tc_status slab_move(run *r, uint32_t slab_index, bool save) {
     if (r->plan->words_whole) return TC_OK;
     workspace *work = &r->context->work;
-    uint64_t z0 = slab_begin(r->plan, slab_index), z1 = slab_end(r->plan, r->grid, slab_index);
-    uint64_t layer0 = z0 / BRICK_PLANES, layer1 = (z1 + BRICK_PLANES - 1) / BRICK_PLANES;
-    uint64_t plane_end = !save && z1 < (uint64_t)r->grid->dims[2] ? z1 + 1 : z1;
+    uint64_t layer0 = slab_begin(r->plan, slab_index) / BRICK_PLANES;
+    uint64_t layer1 = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
     uint64_t layer_end = !save && layer1 < r->plan->layer_count ? layer1 + 1 : layer1;
-    uint64_t words = plan_words_per_plane(r->plan, r->grid), bricks = plan_bricks_per_layer(r->plan);
+    uint64_t bricks = plan_bricks_per_layer(r->plan), constant = 8 * UNIFORM_BRICKS * BRICK_WORDS;
     const struct {
         device_buffer *buffer;
+        uint64_t place;
         uint8_t *host;
-        uint64_t first, end, unit;
-    } arrays[] = {{&work->words, r->store.words, z0, plane_end, 8 * words},
-                  {&work->offsets, r->store.offsets, z0, plane_end, 8 * words},
-                  {&work->triangle_offsets, r->store.triangle_offsets, z0, z1, 2 * words},
-                  {&work->bases, r->store.bases, layer0, layer_end, 8 * bricks},
-                  {&work->masks, r->store.masks, layer0, layer1, 4 * bricks},
-                  {&work->active, r->store.active, layer0, layer1, 4 * bricks}};
+        uint64_t end, brick_bytes;
+    } arrays[] = {{&work->words, constant, r->store.words, layer_end, 8 * BRICK_WORDS},
+                  {&work->offsets, 0, r->store.offsets, layer_end, 8 * BRICK_WORDS},
+                  {&work->triangle_offsets, 0, r->store.triangle_offsets, layer1, 2 * BRICK_WORDS},
+                  {&work->bricks, 0, r->store.bricks, layer_end, sizeof(brick_state)},
+                  {&work->active, 0, r->store.active, layer1, 4}};
     tc_status status = TC_OK;
     for (size_t n = 0; n < sizeof arrays / sizeof *arrays && !status; n++)
-        status = window_copy(r, arrays[n].buffer, arrays[n].host, arrays[n].first * arrays[n].unit,
-                             (arrays[n].end - arrays[n].first) * arrays[n].unit, save);
+        status =
+            window_copy(r, arrays[n].buffer, arrays[n].place, arrays[n].host, layer0 * bricks * arrays[n].brick_bytes,
+                        (arrays[n].end - layer0) * bricks * arrays[n].brick_bytes, save);
     return status;
 }
 

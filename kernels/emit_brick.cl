@@ -1,0 +1,370 @@
+/*
+ * emit_brick.cl - kernel 2 where a work-item has bricks to itself: a brick in passes over its 32 rows, eight at a time
+ *
+ * 1. The sign words of the brick and its neighbours' next rows and planes give all crossed edges and active cubes.
+ * 2. Crossed edges are listed, row by row, and numbered in a table with a place for every edge that a cube of the brick
+ *    has: its own and, from what kernel 1 left, its neighbours'. The table is never cleared: only crossed edges are
+ *    looked up.
+ * 3. Vertices are made of the list, in vector code.
+ * 4. Active cubes are listed; a cube copies from the table what its case names, as places in the table.
+ *
+ * Lists are filled and cases copied by fixed numbers of items, more than often needed, since a branch that cannot be
+ * foreseen costs more; what is too much is overwritten by what comes next.
+ */
+#if WORK_ITEMS == 1
+
+#define LIST_EDGES  (BRICK_WORDS * 64 * 6)
+#define LIST_CUBES  (BRICK_WORDS * 64)
+#define LIST_STEP   2 /* items stored at once */
+#define BATCH_EDGES 1024
+#define BATCH_STEP  16
+#define CASE_STEP   15 /* indices copied at once: most cubes emit up to five triangles */
+#define CASE_MOST   30
+#define CASE_EXACT  8 /* last cubes of a brick: what is too much of theirs would be another's */
+
+/* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
+typedef struct brick_signs {
+    sample_rows rows[2][NUMBER_PLANES];
+} brick_signs;
+
+typedef struct brick_work {
+    ulong crossed[BRICK_PLANES][6][BRICK_ROWS];
+    ulong active[BRICK_PLANES][BRICK_ROWS];
+    ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
+    uint number[6 * NUMBER_TYPE];
+    uint list[LIST_EDGES + LIST_STEP]; /* edges: bits as in PLACE, type from bit 14 on; cubes: see cubes_list */
+    ushort cases[LIST_CUBES];
+    ulong row_start[BRICK_PLANES * 16];
+#ifdef REAL
+    edge_way way[12];
+    uint place[BATCH_EDGES];
+    BITS a[BATCH_EDGES], b[BATCH_EDGES];
+#endif
+} brick_work;
+
+inline_always void brick_work_begin(const slab *s, brick_work *work) {
+#ifdef REAL
+    for (uint n = 0; n < 12; n++) work->way[n] = edge_way_of(s, n / 2, n % 2);
+#endif
+}
+
+/* ------------------------------------------------------------------------------------------------------------- signs
+ */
+
+/* The words of the brick that lies so many bricks further on. */
+inline_always global const ulong *words_beside(const slab *s, corner c, uint number, uint across, uint up, uint deep,
+                                               row_results k1) {
+    bool exists = c.x + 64 * across < s->nx && c.y + BRICK_ROWS * up < s->ny && c.z + BRICK_PLANES * deep < s->nz;
+    if (!exists) return brick_words(0, SIGN_OUTSIDE, k1.words);
+    number += (deep * s->bricks_y + up) * s->words_x + across;
+    return brick_words(number, k1.bricks[number].sign, k1.words);
+}
+
+inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
+    ulong valid = word_valid(s, c.x / 64);
+    for (uint up = 0; up < 2; up++) {
+        global const ulong *at = words_beside(s, c, number, 0, up, 0, k1);
+        global const ulong *next = words_beside(s, c, number, 1, up, 0, k1);
+        for (uint z = 0; z < BRICK_PLANES; z++)
+            signs->rows[up][z] = rows_shifted(vload8(z, at) & valid, vload8(z, next));
+        at = words_beside(s, c, number, 0, up, 1, k1), next = words_beside(s, c, number, 1, up, 1, k1);
+        signs->rows[up][BRICK_PLANES] = rows_shifted(vload8(0, at) & valid, vload8(0, next));
+    }
+}
+
+/* The rows of plane z that follow those of the brick by one. */
+inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
+    const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
+    sample_rows r = {lanes_up(here->at, up->at.s0), lanes_up(here->next, up->next.s0)};
+    return r;
+}
+
+/* What cubes_list needs to tell a cube's case. */
+inline_always void corners_store(const brick_signs *signs, brick_work *work) {
+    for (uint z = 0; z < NUMBER_PLANES; z++) {
+        ulong16 both;
+        both.even = signs->rows[0][z].at, both.odd = signs->rows[0][z].next;
+        vstore16(both, 0, work->corners[z]);
+        work->corners[z][2 * BRICK_ROWS] = signs->rows[1][z].at.s0;
+        work->corners[z][2 * BRICK_ROWS + 1] = signs->rows[1][z].next.s0;
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- vertex numbers */
+
+inline_always uint number_place(uint type, uint y, uint z) {
+    return type * NUMBER_TYPE + (z * NUMBER_ROWS + y) * NUMBER_COLUMNS;
+}
+
+/* Numbers the crossed edges of a row of another brick. */
+inline_always void row_number(uint *number, ulong crossed, uint first) {
+    while (crossed) {
+        for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) number[lowest_bit(crossed)] = first++;
+    }
+}
+
+/* Lists and numbers the brick's own vertices; returns how many there are. */
+inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, brick_work *work) {
+    uint count = 0;
+    for (; mask; mask &= mask - 1) {
+        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, code = y << 7 | z << 11;
+        work->row_start[code >> 7] = row_start(s, c.y + y, c.z + z) + c.x;
+        for (uint type = 0; type < 6; type++) {
+            ulong crossed = work->crossed[z][type][y];
+            uint *number = work->number + number_place(type, y, z), end = count + (uint)popcount(crossed);
+            for (; count < end; count += LIST_STEP)
+                for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) {
+                    uint bit = lowest_bit(crossed);
+                    work->list[count + n] = code + (type << 14) + bit;
+                    number[bit] = first + count + n;
+                }
+            count = end;
+        }
+    }
+    return count;
+}
+
+/* Numbers what the rows from y on in plane z cross of one type, seen from the brick that they are in. */
+inline_always void rows_number(const slab *s, uint y, uint z, uint w, uint type, const crossings *k, corner c,
+                               row_results k1, brick_work *work) {
+    ulong crossed[BRICK_ROWS];
+    vstore8(k->type[type], 0, crossed);
+    for (uint rows = lanes_nonzero(k->type[type]); rows; rows &= rows - 1) {
+        uint n = lowest_bit(rows), first = number_of(owner_of(s, y + n, z, w, k1), type);
+        uint *number = work->number + number_place(type, y + n - c.y, z - c.z);
+        if (64 * w == c.x)
+            row_number(number, crossed[n], first);
+        else
+            number[64] = first; /* the only one there */
+    }
+}
+
+/* Crossings of the next plane that the brick's cubes have. */
+inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+    const uint z = c.z + BRICK_PLANES, w = c.x / 64;
+    const sample_rows none = rows_shifted((lanes)0, (lanes)0);
+    if (z >= s->nz) return;
+    cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
+    crossings k = crossings_owned(&r);
+#if MISSING
+    crossings_keep(s, k1.cells, c.y, z, w, &k);
+#endif
+    rows_number(s, c.y, z, w, 0, &k, c, k1, work);
+    rows_number(s, c.y, z, w, 1, &k, c, k1, work);
+    rows_number(s, c.y, z, w, 3, &k, c, k1, work);
+}
+
+/* Crossings of the next row of each plane. */
+inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, row_results k1,
+                                    brick_work *work) {
+    const uint y = c.y + BRICK_ROWS, w = c.x / 64;
+    const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
+    if (y >= s->ny) return;
+    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
+        const uint z = c.z + n;
+        const ulong a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
+        crossings k = {{0, 0, 0, 0, 0, 0}};
+        k.type[0].s0 = (a0 ^ a1) & has_x;
+        if (n < BRICK_PLANES && z + 1 < s->nz) {
+            const ulong c0 = signs->rows[1][n + 1].at.s0, c1 = signs->rows[1][n + 1].next.s0;
+            k.type[2].s0 = a0 ^ c0;
+            k.type[4].s0 = (even_cubes(s, y, z) & (a0 ^ c1)) | (~even_cubes(s, y, z) & (a1 ^ c0));
+            k.type[4].s0 &= has_x;
+        }
+#if MISSING
+        crossings_keep(s, k1.cells, y, z, w, &k);
+#endif
+        rows_number(s, y, z, w, 0, &k, c, k1, work);
+        rows_number(s, y, z, w, 2, &k, c, k1, work);
+        rows_number(s, y, z, w, 4, &k, c, k1, work);
+    }
+}
+
+/* The first word's first samples of the rows in the next brick in x. */
+inline_always lanes column_of(sample_rows rows) { return rows.next >> 63; }
+
+/* Crossings of the next column, of rows y, y + 1 and planes z, z + 1. Last, since row_number uses the place. */
+inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+    const uint w = c.x / 64 + 1;
+    if (w >= s->words_x) return;
+    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
+        const uint z = c.z + n;
+        const bool has_z = n < BRICK_PLANES && z + 1 < s->nz;
+        const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
+        const lanes a = column_of(signs->rows[0][n]), b = column_of(signs_up(signs, n));
+        crossings k = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
+        k.type[1] = (a ^ b) & has_y;
+        if (has_z) {
+            const lanes below = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
+            k.type[2] = a ^ below;
+            k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ below) & has_y;
+            up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
+        }
+#if MISSING
+        crossings_keep(s, k1.cells, c.y, z, w, &k);
+        crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
+#endif
+        rows_number(s, c.y, z, w, 1, &k, c, k1, work);
+        rows_number(s, c.y, z, w, 2, &k, c, k1, work);
+        rows_number(s, c.y, z, w, 5, &k, c, k1, work);
+        if (c.y + BRICK_ROWS < s->ny) rows_number(s, c.y + BRICK_ROWS, z, w, 2, &up, c, k1, work);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- vertices */
+
+#ifdef REAL
+
+/* The samples at the ends of listed edges, and where the edges are. */
+inline_always void batch_gather(const slab *s, const uint *list, uint count, global const BITS *samples,
+                                brick_work *work) {
+    for (uint n = 0; n < count; n++) {
+        uint code = list[n], odd = (code ^ code >> 7 ^ code >> 11 ^ s->parity) & 1;
+        const edge_way *way = &work->way[2 * (code >> 14) + odd];
+        global const BITS *start = samples + work->row_start[code >> 7 & 0x7f] + (code & 0x7f);
+        work->place[n] = (code & 0x3fff) + way->place;
+        work->a[n] = start[way->from];
+        work->b[n] = start[way->to];
+    }
+}
+
+/* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
+inline_always void batch_store(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
+                               mesh_buffers mesh, const brick_work *work) {
+    for (uint first = 0; first < count; first += BATCH_STEP) {
+        float t[BATCH_STEP], positions[3 * BATCH_STEP];
+        for (uint n = 0; n < BATCH_STEP; n++) {
+            t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
+            position_make(s, brick, work->place[first + n], t[n], positions + 3 * n);
+        }
+        global float *position = mesh.positions + 3 * (out + first);
+        uint left = min(count - first, (uint)BATCH_STEP);
+        if (left == BATCH_STEP)
+            for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, position);
+        else
+            for (uint n = 0; n < 3 * left; n++) position[n] = positions[n];
+#if NORMALS
+        for (uint n = 0; n < left; n++)
+            normal_store(samples, s, brick, work->place[first + n], t[n], mesh.normals + 3 * (out + first + n));
+#endif
+    }
+}
+
+/* Asks for the samples at the ends of the rows' edges ahead of their use, a row of 64 by cache lines. */
+inline_always void rows_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
+    uint before = 0;
+    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
+        uint here = mask & ((1u << BRICK_ROWS) - 1), rows = here | before;
+        before = here;
+        for (rows |= rows << 1; rows; rows &= rows - 1) {
+            uint y = c.y + lowest_bit(rows);
+            if (y >= s->ny) continue;
+            size_t address = (size_t)(samples + row_start(s, y, c.z + n) + c.x);
+            for (uint line = 0; line < sizeof(BITS); line++) __builtin_prefetch((const void *)(address + 64 * line));
+        }
+    }
+}
+
+inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
+                                 mesh_buffers mesh, brick_work *work) {
+    for (uint first = 0; first < count; first += BATCH_EDGES) {
+        uint batch = min(count - first, (uint)BATCH_EDGES);
+        batch_gather(s, work->list + first, batch, samples, work);
+        batch_store(s, brick, batch, out + first, samples, mesh, work);
+    }
+}
+
+#endif
+
+/* -------------------------------------------------------------------------------------------------------- triangles */
+
+/* Lists the active cubes of the rows in mask: x, y, z in the bits that PLACE has, then the cube's place in the table of
+ * numbers. */
+inline_always uint cubes_list(uint mask, brick_work *work) {
+    uint count = 0;
+    for (; mask; mask &= mask - 1) {
+        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
+        uint code = y << 7 | z << 11 | number_place(0, y, z) << 14;
+        ulong active = work->active[z][y];
+        uint end = count + (uint)popcount(active);
+        for (; count < end; count += LIST_STEP)
+            for (uint n = 0; n < LIST_STEP; n++, active &= active - 1)
+                work->list[count + n] = code + lowest_bit(active) * (1 + (1u << 14));
+        count = end;
+    }
+    return count;
+}
+
+/* The cases of listed cubes, apart from what is done with them: how many triangles a cube has is soon known then. */
+inline_always void cases_find(const slab *s, uint count, brick_work *work) {
+    for (uint n = 0; n < count; n++) {
+        uint code = work->list[n], x = code & 0x7f, y = code >> 7 & 0xf, z = code >> 11 & 7;
+        uint odd = (x ^ y ^ z ^ s->parity) & 1;
+        ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
+        work->cases[n] = (ushort)(256 * odd + pattern_at(corners, x));
+    }
+}
+
+/* Loops as written: gathers cost more than what they replace. */
+inline_always void triangles_emit(uint count, global const ushort *cases, global uint *index, const brick_work *work) {
+    for (uint n = 0; n < count; n++) {
+        const uint *number = work->number + (work->list[n] >> 14);
+        global const ushort *entry = cases + CASE_ITEMS * work->cases[n];
+        uint indices = 3u * *entry++;
+        if (n + CASE_EXACT < count) {
+#pragma clang loop vectorize(disable) unroll(full)
+            for (uint m = 0; m < CASE_STEP; m++) index[m] = number[entry[m]];
+            if (indices > CASE_STEP)
+#pragma clang loop vectorize(disable) unroll(full)
+                for (uint m = CASE_STEP; m < CASE_MOST; m++) index[m] = number[entry[m]];
+        } else {
+#pragma clang loop vectorize(disable) unroll(disable)
+            for (uint m = 0; m < indices; m++) index[m] = number[entry[m]];
+        }
+        index += indices;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ brick */
+
+/* Crossed edges and active cubes of the brick itself. */
+inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, row_results k1,
+                                   brick_work *work) {
+    for (uint n = 0; n < BRICK_PLANES; n++) {
+        cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
+                                   signs->rows[0][n + 1], signs_up(signs, n + 1));
+        crossings k = crossings_owned(&r);
+        lanes active = cubes_active(&r);
+#if MISSING
+        crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &k);
+        active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
+#endif
+        for (uint type = 0; type < 6; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
+        vstore8(active, 0, work->active[n]);
+    }
+}
+
+inline_always void brick_emit(const slab *s, uint number, corner c, global const BITS *samples, row_results k1,
+                              global const ushort *cases, mesh_buffers mesh, brick_work *work) {
+    brick_signs signs;
+    const brick_state state = k1.bricks[number];
+    uint first = s->vertex_base + state.vertices;
+#ifdef REAL
+    rows_prefetch(s, c, state.rows, samples);
+#endif
+    signs_load(s, c, number, k1, &signs);
+    corners_store(&signs, work);
+    crossings_store(s, c, &signs, k1, work);
+    uint count = edges_list(s, c, state.rows, first, work);
+#ifdef REAL
+    vertices_emit(s, c, count, first - s->vertex_window, samples, mesh, work);
+#endif
+    plane_number(s, c, &signs, k1, work);
+    next_rows_number(s, c, &signs, k1, work);
+    column_number(s, c, &signs, k1, work);
+    count = cubes_list(state.rows, work);
+    cases_find(s, count, work);
+    triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
+}
+
+#endif

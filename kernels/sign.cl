@@ -1,0 +1,263 @@
+/*
+ * sign.cl - the first stage of kernel 1: on which side the samples of a brick are, and its sign words where on both
+ *
+ * A first visit reads every sample once and leaves the range of every brick, as keys: unsigned integers of 32 bits that
+ * order like the samples (of 64-bit samples the upper half, so that a key in doubt counts as mixed). Later visits with
+ * another isovalue read the bricks only whose range holds it. Where a work-item has bricks to itself it takes eight at
+ * a time, next to each other in x, so that samples are read in long runs, 64 by vectors of Clang's; else four
+ * work-items share a row of 64 samples.
+ */
+#if FLOATING == 32
+typedef int signed_bits;
+#define SIGNED16 int16
+#elif FLOATING == 64
+typedef long signed_bits;
+#define SIGNED16 long16
+#endif
+
+#if FLOATING
+#define KEY_SIGN ((BITS)1 << (FLOATING - 1))
+/* From here on keys are infinite or NaN, up to its complement too. */
+#define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
+#endif
+
+inline_always uint key_upper(BITS key) {
+#if FLOATING == 64
+    return (uint)(key >> 32);
+#else
+    return (uint)key;
+#endif
+}
+
+/* Where a sample is missing the range tells nothing. */
+inline_always bool range_finite(brick_range range) {
+#if FLOATING
+    return range.high < KEY_INFINITY && range.low > ~KEY_INFINITY;
+#else
+    return true;
+#endif
+}
+
+inline_always uint range_sign(const slab *s, brick_range range) {
+    if (!range_finite(range)) return SIGN_MIXED;
+    return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
+}
+
+inline_always uint keys_least(BITS16 keys) {
+    PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
+    PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
+    return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
+}
+
+/* The largest upper half is the complement of the complement's least. */
+inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }
+
+inline_always void brick_sign_store(uint number, uint sign, global brick_state *bricks) {
+    brick_state b = {0, 0, 0, sign};
+    bricks[number] = b;
+}
+
+#if WORK_ITEMS == 1
+
+typedef BITS samples64 __attribute__((ext_vector_type(64)));
+typedef BITS samples64_unaligned __attribute__((ext_vector_type(64), aligned(sizeof(BITS))));
+typedef char mask64 __attribute__((ext_vector_type(64)));
+#if FLOATING
+typedef signed_bits signed64 __attribute__((ext_vector_type(64)));
+#endif
+
+inline_always samples64 keys64(samples64 bits, const slab *s) {
+#if FLOATING
+    return bits ^ (__builtin_astype(__builtin_astype(bits, signed64) >> (FLOATING - 1), samples64) | KEY_SIGN);
+#else
+    return bits ^ (BITS)s->key_flip;
+#endif
+}
+
+inline_always ulong word_make(samples64 bits, const slab *s) {
+    ulong8 mask = __builtin_astype(
+        __builtin_convertvector((bits - (BITS)s->inside_low) <= (samples64)(BITS)s->inside_span, mask64), ulong8);
+    return as_ulong(convert_uchar8(((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56));
+}
+
+/* 64 samples of a row; those past its end repeat the first. */
+inline_always samples64 samples_load64(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+    uint left = s->nx - 64 * w;
+    global const BITS *first = samples + row_start(s, y, z) + 64ul * w;
+    if (left >= 64) return *(global const samples64_unaligned *)first;
+    BITS row[64];
+    for (uint n = 0; n < 64; n++) row[n] = first[n < left ? n : 0];
+    return *(const samples64_unaligned *)row;
+}
+
+inline_always brick_range range_of(samples64 low, samples64 high) {
+    BITS l[64], h[64];
+    *(samples64_unaligned *)l = low, *(samples64_unaligned *)h = high;
+    brick_range range = {keys_least(min(min(vload16(0, l), vload16(1, l)), min(vload16(2, l), vload16(3, l)))),
+                         keys_most(max(max(vload16(0, h), vload16(1, h)), max(vload16(2, h), vload16(3, h))))};
+    return range;
+}
+
+/* Words of a brick that is mixed. */
+inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, global const BITS *samples,
+                                    global ulong *out) {
+    ulong valid = word_valid(s, w);
+    for (uint place = 0; place < BRICK_WORDS; place++) {
+        uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+        bool exists = y < s->ny && z < s->z1;
+        out[place] = exists ? word_make(samples_load64(samples, s, y, z, w), s) & valid : 0;
+    }
+}
+
+#define RUN_BRICKS_X 8
+
+/* Words, ranges and signs of `count` bricks from w on, seen for the first time. */
+inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
+                             global ulong *words, global brick_state *bricks, global brick_range *ranges,
+                             uint *nonfinite) {
+    ulong word[RUN_BRICKS_X][BRICK_WORDS];
+    samples64 low[RUN_BRICKS_X], high[RUN_BRICKS_X];
+    for (uint n = 0; n < count; n++) low[n] = (BITS) ~(BITS)0, high[n] = 0;
+    for (uint place = 0; place < BRICK_WORDS; place++) {
+        uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+        bool exists = y < s->ny && z < s->z1;
+        for (uint n = 0; n < count && exists; n++) {
+            samples64 bits = samples_load64(samples, s, y, z, w + n), keys = keys64(bits, s);
+            word[n][place] = word_make(bits, s);
+            low[n] = keys < low[n] ? keys : low[n];
+            high[n] = keys > high[n] ? keys : high[n];
+        }
+        for (uint n = 0; n < count && !exists; n++) word[n][place] = 0;
+    }
+    uint first = brick_index(s, y0, z0, w);
+    for (uint n = 0; n < count; n++) {
+        brick_range range = range_of(low[n], high[n]);
+        uint sign = range_sign(s, range);
+        ranges[s->range_offset + first + n] = range;
+        brick_sign_store(first + n, sign, bricks);
+#if FLOATING && !MISSING
+        *nonfinite |= !range_finite(range);
+#endif
+        if (sign != SIGN_MIXED) continue;
+        ulong valid = word_valid(s, w + n);
+        for (uint place = 0; place < BRICK_WORDS; place++)
+            words[(ulong)BRICK_WORDS * (first + n) + place] = word[n][place] & valid;
+    }
+}
+
+/* Of bricks whose ranges are known. */
+inline_always void run_visit_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
+                                   global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
+    uint first = brick_index(s, y0, z0, w);
+    for (uint n = 0; n < count; n++) {
+        uint sign = range_sign(s, ranges[s->range_offset + first + n]);
+        brick_sign_store(first + n, sign, bricks);
+        if (sign == SIGN_MIXED) brick_words_make(s, y0, z0, w + n, samples, words + (ulong)BRICK_WORDS * (first + n));
+    }
+}
+
+/* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
+inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
+                              global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
+    for (uint y = y0; y < y1; y += BRICK_ROWS)
+        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
+            uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
+            if (s->ranges_known)
+                run_visit_again(s, y, z, w, count, samples, words, bricks, ranges);
+            else
+                run_visit(s, y, z, w, count, samples, words, bricks, ranges, nonfinite);
+        }
+}
+
+/* A row of words, each 'stride' words after the last. */
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples, global ulong *out,
+                                  uint stride) {
+    for (uint w = 0; w < s->words_x; w++)
+        out[(ulong)stride * w] = word_make(samples_load64(samples, s, y, z, w), s) & word_valid(s, w);
+}
+
+#else
+
+#define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
+#define ROW_PARTS      4 /* of 16 samples */
+
+/* 16 samples of a row from 16 * part on; those past its end repeat the first. */
+inline_always BITS16 row_part_load(global const BITS *samples, const slab *s, uint y, uint z, uint part) {
+    const BITS16 lane = (BITS16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
+    uint left = min(s->nx - 16 * part, 16u);
+    return lane < (BITS16)(BITS)left ? bits : (BITS16)bits.s0;
+}
+
+inline_always BITS16 keys16(BITS16 bits, const slab *s) {
+#if FLOATING
+    return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
+#else
+    return bits ^ (BITS)s->key_flip;
+#endif
+}
+
+/* A work-item's part of a brick's words and range. */
+inline_always void part_visit(const slab *s, uint y, uint z, uint part, global const BITS *samples, global ulong *word,
+                              local brick_range *range) {
+    ((global ushort *)word)[part % ROW_PARTS] = (ushort)word_part(samples, s, y, z, part);
+    if (s->ranges_known || 16 * part >= s->nx) return;
+    BITS16 keys = keys16(row_part_load(samples, s, y, z, part), s);
+    atomic_min(&range->low, keys_least(keys));
+    atomic_max(&range->high, keys_most(keys));
+}
+
+/* The bricks of rows y0 <= y < y1 in the layer that begins with plane z; found: room for BRICKS_AT_ONCE. No variable
+ * lives across a barrier, as compilers have gone wrong on that. */
+inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
+                              global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
+                              local brick_range *found) {
+    const uint first = brick_index(s, y0, z, 0);
+    const uint count = (y1 - y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
+    for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
+        {
+            uint lid = (uint)get_local_id(0), number = first + min(n + lid, count - 1);
+            if (lid < BRICKS_AT_ONCE) {
+                found[lid].low = s->ranges_known ? ranges[s->range_offset + number].low : ~0u;
+                found[lid].high = s->ranges_known ? ranges[s->range_offset + number].high : 0;
+            }
+        }
+        group_barrier();
+        for (uint step = 0; step < ROW_PARTS; step++) {
+            uint item = step * WORK_ITEMS + (uint)get_local_id(0), b = item / (ROW_PARTS * BRICK_WORDS);
+            uint place = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
+            uint y = y0 + number / s->words_x * BRICK_ROWS + place % BRICK_ROWS, zp = z + place / BRICK_ROWS;
+            bool wanted = number < count && y < s->ny && zp < s->z1;
+            if (wanted && s->ranges_known) wanted = range_sign(s, found[b]) == SIGN_MIXED;
+            if (wanted)
+                part_visit(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
+                           words + (ulong)BRICK_WORDS * (first + number) + place, &found[b]);
+        }
+        group_barrier();
+        {
+            uint lid = (uint)get_local_id(0), number = first + n + lid;
+            if (lid < BRICKS_AT_ONCE && n + lid < count) {
+                brick_range range = found[lid];
+                brick_sign_store(number, range_sign(s, range), bricks);
+                ranges[s->range_offset + number] = range;
+#if FLOATING && !MISSING
+                *nonfinite |= !range_finite(range);
+#endif
+            }
+        }
+        group_barrier();
+    }
+}
+
+/* A row of words, each `stride` words after the last. */
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples, global ulong *out,
+                                  uint stride) {
+    for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
+        uint part = first + (uint)get_local_id(0);
+        if (part < ROW_PARTS * s->words_x)
+            ((global ushort *)(out + (ulong)stride * (part / ROW_PARTS)))[part % ROW_PARTS] =
+                (ushort)word_part(samples, s, y, z, part);
+    }
+}
+
+#endif
