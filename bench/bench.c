@@ -11,14 +11,20 @@
 #include "measure.h"
 #include "progress.h"
 #include "report.h"
+#include "sweep.h"
 
 #include <errno.h>
+#include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define PATIENCE_MS   4000.0
+#define WORKING_BYTES 2 /* per sample, of device and reference together; less, in fact */
+
 /* Cold extractions, one per line on standard input, until its end. */
-static int take_turns(measurement *m, case_result *result) {
+static int take_turns(const measurement *m, case_result *result) {
     char line[256];
     double *times = NULL;
     int count = 0, status = 0;
@@ -42,51 +48,78 @@ static int take_turns(measurement *m, case_result *result) {
     return status;
 }
 
-static int case_run(tc_context *context, const bench_options *o, const samples *s, const device_limits *limits,
-                    case_result *result) {
+/* Nonzero where a sweep may take so much more memory; else the case is marked as left out, with a notice. */
+static int case_fits(const bench_options *o, uint64_t bytes, const measurement *m, case_result *result) {
+    uint64_t available = o->sweep ? sweep_memory() : UINT64_MAX;
+    if (bytes <= available) return 1;
+    snprintf(result->left_out, sizeof result->left_out, "it needs %" PRIu64 " MB of memory, %" PRIu64 " MB may be had",
+             bytes >> 20, available >> 20);
+    progress_clear();
+    fprintf(stderr, "tetracubes-bench: %s is left out: %s\n", m->label, result->left_out);
+    return 0;
+}
+
+static int case_measure(const bench_options *o, const measurement *m, const device_limits *limits,
+                        case_result *result) {
+    int status = measure_verify(m, result);
+    if (!status && !o->turns) status = measure_cold_times(m, o->repeat, o->has_repeat ? INFINITY : PATIENCE_MS, result);
+    if (o->turns) result->repeat = o->repeat;
+    if (!status) status = measure_warm_times(m, limits, result);
+    return status || !o->turns ? status : take_turns(m, result);
+}
+
+/* Describes the samples of case n of the command line, fields varying slowest, sizes fastest. */
+static int case_samples(const bench_options *o, int n, samples *out) {
+    if (o->input) return samples_read(o, out);
+    int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
+    return samples_describe(o->fields[f], o->dims[size], o->types[type], out);
+}
+
+/* Makes the samples, where they and then both engines' meshes fit, and measures. */
+static int samples_measure(tc_context *context, const bench_options *o, samples *s, const device_limits *limits,
+                           case_result *result) {
     measurement m;
-    int status = measure_open(context, s, o->iso, &m, result);
-    if (!status && !o->turns) status = measure_cold_times(&m, o->repeat, result);
-    if (!status) status = measure_warm_times(&m, o->repeat, limits, result);
-    if (!status && o->turns) status = take_turns(&m, result);
-    measure_close(&m);
+    uint64_t working = s->bytes / tc_type_bytes(s->grid.type) * WORKING_BYTES, mesh = 0;
+    measure_begin(context, s, o->iso, o->second, &m, result);
+    if (!case_fits(o, s->bytes + working, &m, result)) return 0;
+    int status = samples_make(s);
+    if (!status && o->sweep) status = measure_mesh_bytes(&m, &mesh);
+    if (!status && case_fits(o, 2 * mesh + working, &m, result)) status = case_measure(o, &m, limits, result);
     progress_clear();
     return status;
 }
 
-/* Case n of the command line, fields varying slowest, sizes fastest. */
-static int case_samples(const bench_options *o, int n, samples *out) {
-    if (o->input) return samples_read(o, out);
-    int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
-    return samples_make(o->fields[f], o->dims[size], o->types[type], out);
+/* Adds case n to the report, unless a sweep has no such case. */
+static int case_run(tc_context *context, const bench_options *o, int n, bench_report *report) {
+    samples s = {0};
+    int status = case_samples(o, n, &s);
+    if (!status && (!o->sweep || sweep_takes(s.made_from, s.grid.dims, s.grid.type)))
+        status = samples_measure(context, o, &s, &report->limits, &report->cases[report->case_count++]);
+    samples_release(&s);
+    return status;
 }
 
 static int cases_run(tc_context *context, const bench_options *o) {
     bench_report report = {.device = {.struct_size = sizeof report.device}};
     int case_count = o->input ? 1 : o->field_count * o->dims_count * o->type_count;
     int has_table = !o->json && !o->turns;
-    samples s = {0};
-    case_result *results = calloc((size_t)case_count, sizeof *results);
-    report.cases = results;
-    int status = results ? 0 : fail(STATUS_FAILED, "no memory for %d results", case_count);
+    report.cases = calloc((size_t)case_count, sizeof *report.cases);
+    int status = report.cases ? 0 : fail(STATUS_FAILED, "no memory for %d results", case_count);
     if (!status) status = library_status(tc_context_device(context, &report.device));
     if (!status) status = device_limits_measure(context, &report.limits);
     for (int n = 0; n < case_count && !status; n++) {
-        status = case_samples(o, n, &s);
-        if (!status && has_table && n == 0) report_head(&report);
-        if (!status) status = case_run(context, o, &s, &report.limits, &results[n]);
-        if (!status) report.case_count++;
-        if (!status && has_table) report_row(&results[n]);
-        samples_release(&s);
+        status = case_run(context, o, n, &report);
+        if (!status && has_table) report_table(&report);
     }
     if (!status && !has_table) status = report_json(&report);
-    free(results);
+    free(report.cases);
     return status;
 }
 
 static int dump_run(const bench_options *o) {
     samples s;
     int status = case_samples(o, 0, &s);
+    if (!status) status = samples_make(&s);
     if (!status) status = samples_dump(&s, o->dump);
     progress_clear();
     if (!status) status = report_dump_json(&s);

@@ -68,13 +68,22 @@ static int take_type(const char *text, bench_options *o) {
     return fail(STATUS_USAGE, "--type: '%s' is none of u8, i8, u16, i16, u32, i32, f32, f64", text);
 }
 
-static int take_iso(const char *text, bench_options *o) {
+static int parse_isovalue(const char *name, const char *text, double *value) {
     char *end;
-    o->iso = strtod(text, &end);
-    o->has_iso = 1;
-    if (end == text || *end || !isfinite(o->iso))
-        return fail(STATUS_USAGE, "--iso: '%s' is no finite number; the benchmark takes one, as in 127.5", text);
+    *value = strtod(text, &end);
+    if (end == text || *end || !isfinite(*value))
+        return fail(STATUS_USAGE, "%s: '%s' is no finite number; the benchmark takes one, as in 127.5", name, text);
     return 0;
+}
+
+static int take_iso(const char *text, bench_options *o) {
+    o->has_iso = 1;
+    return parse_isovalue("--iso", text, &o->iso);
+}
+
+static int take_second(const char *text, bench_options *o) {
+    o->has_second = 1;
+    return parse_isovalue("--second", text, &o->second);
 }
 
 static int take_method(const char *text, bench_options *o) {
@@ -87,6 +96,7 @@ static int take_repeat(const char *text, bench_options *o) {
     char *end;
     long repeat = strtol(text, &end, 10);
     o->repeat = (int)repeat;
+    o->has_repeat = 1;
     if (end == text || *end || repeat < 1 || repeat > 100000)
         return fail(STATUS_USAGE, "--repeat: '%s' is no whole number from 1 to 100000", text);
     return 0;
@@ -97,6 +107,8 @@ static int take_device(const char *text, bench_options *o) { return o->device = 
 static int take_input(const char *text, bench_options *o) { return o->input = text, 0; }
 
 static int take_dump(const char *text, bench_options *o) { return o->dump = text, 0; }
+
+static int take_sweep(const char *text, bench_options *o) { return (void)text, o->sweep = 1, 0; }
 
 static int take_json(const char *text, bench_options *o) { return (void)text, o->json = 1, 0; }
 
@@ -122,6 +134,14 @@ static const option table[] = {
      "u8 i8 u16 i16 u32 i32 f32 f64; default u8, then f32 *"},
     {"--iso", "V", take_iso,
      "isovalue; default 127.5; needed with --input"},
+    {"--second", "V", take_second,
+     "the isovalue that follows on the same grid; default 5% above --iso,\n"
+     "or 1 where that is 0"},
+    {"--sweep", NULL, take_sweep,
+     "other defaults: 64 to 1024; u8, u16, f32; sphere, gyroid,\n"
+     "marschner-lobb, noise, empty, full. Of these noise ends at 256, all\n"
+     "others at 512 but sphere (u8, f32), gyroid and empty (u8). What does\n"
+     "not fit the free memory is left out, with a notice"},
     {"--method", "M", take_method,
      "tetra, five tetrahedra per cell (the default, and the only one)"},
     {"--input", "FILE", take_input,
@@ -130,7 +150,8 @@ static const option table[] = {
      "an index, platform:device, cpu, gpu or part of a name;\n"
      "default: $TETRACUBES_DEVICE, else the first"},
     {"--repeat", "R", take_repeat,
-     "timed extractions of each kind per case; default 11"},
+     "timed extractions of each kind per case; default 11, or fewer, but 3\n"
+     "at least, where these take over 4 seconds"},
     {"--json", NULL, take_json,
      "print one JSON object instead of the table"},
     {"--turns", NULL, take_turns,
@@ -174,18 +195,18 @@ static int parse_option(int argc, char **argv, int *at, bench_options *o) {
 }
 
 static void add_defaults(bench_options *o) {
-    static const int64_t sizes[] = {64, 128, 256, 512};
-    if (!o->field_count) {
-        o->fields[o->field_count++] = field_find("sphere");
-        o->fields[o->field_count++] = field_find("gyroid");
-    }
+    static const char *const names[] = {"sphere", "gyroid", "marschner-lobb", "noise", "empty", "full"};
+    static const int64_t sizes[] = {64, 128, 256, 512, 1024};
+    static const tc_type types[] = {TC_U8, TC_F32}, sweep_types[] = {TC_U8, TC_U16, TC_F32};
+    if (!o->field_count)
+        for (; o->field_count < (o->sweep ? 6 : 2); o->field_count++)
+            o->fields[o->field_count] = field_find(names[o->field_count]);
     if (!o->dims_count)
-        for (; o->dims_count < 4; o->dims_count++)
+        for (; o->dims_count < (o->sweep ? 5 : 4); o->dims_count++)
             for (int axis = 0; axis < 3; axis++) o->dims[o->dims_count][axis] = sizes[o->dims_count];
-    if (!o->type_count) {
-        o->types[o->type_count++] = TC_U8;
-        o->types[o->type_count++] = TC_F32;
-    }
+    if (!o->type_count)
+        for (; o->type_count < (o->sweep ? 3 : 2); o->type_count++)
+            o->types[o->type_count] = o->sweep ? sweep_types[o->type_count] : types[o->type_count];
 }
 
 static int check_together(const bench_options *o) {
@@ -196,6 +217,10 @@ static int check_together(const bench_options *o) {
     if ((o->turns || o->dump) && !o->input && (o->field_count != 1 || o->dims_count != 1 || o->type_count != 1))
         return fail(STATUS_USAGE, "%s is for one case: give one --field, --dims and --type, or --input",
                     o->turns ? "--turns" : "--dump");
+    if (o->sweep && (o->input || o->turns || o->dump))
+        return fail(STATUS_USAGE, "--sweep is of fields: it goes with neither --input, --turns nor --dump");
+    if (o->has_second && o->second == o->iso)
+        return fail(STATUS_USAGE, "--second: %g is the first isovalue, too; give another", o->second);
     return 0;
 }
 
@@ -208,22 +233,27 @@ int bench_options_parse(int argc, char **argv, bench_options *o) {
     }
     int status = o->help ? 0 : check_together(o);
     if (!status && !o->input) add_defaults(o);
+    if (!o->has_second) o->second = o->iso == 0.0 ? 1.0 : o->iso + 0.05 * fabs(o->iso);
     return status;
 }
 
 void bench_options_help(FILE *out) {
     fprintf(out, "tetracubes-bench [options]: how fast isosurfaces are, beside what the device's memory allows\n"
                  "\n"
-                 "Every case is verified first, bit for bit, against the scalar reference. Times are medians:\n"
+                 "Every case is verified first, bit for bit, against the scalar reference. Times are medians;\n"
+                 "each is of the first visit of a new grid, whose making is not counted, but for the second:\n"
                  "  new mesh   first launch to mesh complete, its memory new on each repeat (extract_ms)\n"
                  "  kept mesh  the same into the memory of the mesh before (extract_warm_ms); classify and\n"
                  "             emit are its two halves\n"
+                 "  second     another isovalue right after that on the same grid, into the same memory\n"
+                 "             (second_warm_ms)\n"
                  "  limit      bytes of samples at the device's read bandwidth, plus bytes of the mesh at its\n"
                  "             write bandwidth; the ratio is that of the kept mesh\n"
                  "\n"
                  "  tetracubes-bench\n"
                  "  tetracubes-bench --field gyroid --dims 256 --type u8 --json\n"
                  "  tetracubes-bench --input head.nii.gz --iso 500\n"
+                 "  tetracubes-bench --sweep --json --device gpu\n"
                  "\nOptions (* may be given several times; every combination is a case):\n");
     for (const option *spec = table; spec < table + TABLE_COUNT; spec++) {
         char head[32];

@@ -14,12 +14,13 @@ typedef struct bench_options {
     int64_t dims[LIST_MAX][3];
     tc_type types[LIST_MAX];
     int field_count, dims_count, type_count; /* never 0, but with an input, where dims and type are for raw data */
-    int has_iso;
-    double iso;
+    int has_iso, has_second, has_repeat;
+    double iso, second; /* isovalues; the second one follows on the same grid */
     const char *device; /* NULL: the library's default */
     const char *input;  /* a volume file instead of fields, or NULL */
     const char *dump;   /* where to write the samples instead of measuring, or NULL */
     int repeat;
+    int sweep; /* sweep.h: not all of the combinations */
     int json, turns, help;
 } bench_options;
 

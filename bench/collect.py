@@ -44,17 +44,34 @@ def file_name(cpu, device):
     return re.sub(r"[^a-z0-9]+", "-", text).strip("-")
 
 
+def optional(folder, part):
+    """A part that need not be there, as peers on a machine without them."""
+    path = os.path.join(folder, part + ".json")
+    return read(path) if os.path.exists(path) else {}
+
+
+def versions(tool, peers):
+    told = {
+        "tetracubes": first_line([tool, "--version"]).split()[-1],
+        "cmake": first_line(["cmake", "--version"]).split()[-1],
+        "linux": platform.release().split("-")[0],
+    }
+    if peers:
+        told.update(vtk=peers["vtk"]["version"], skimage=peers["skimage"])
+    return told
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", required=True, metavar="DIR", help="the build folder")
-    parser.add_argument("--parts", required=True, metavar="DIR", help="bench.json, peers.json and process.json")
+    parser.add_argument("--parts", required=True, metavar="DIR",
+                        help="bench.json and, where they were measured, peers.json and process.json")
     parser.add_argument("--results", required=True, metavar="DIR", help="where the file goes")
     arguments = parser.parse_args()
-    bench, peers, process = (read(os.path.join(arguments.parts, part + ".json"))
-                             for part in ("bench", "peers", "process"))
+    bench = read(os.path.join(arguments.parts, "bench.json"))
+    peers, process = optional(arguments.parts, "peers"), optional(arguments.parts, "process")
     cpu = cpu_model()
     name = file_name(cpu, bench["device"])
-    tool = os.path.join(arguments.build, "host", "tool", "tetracubes")
     result = {
         "name": name,
         "date": first_line(["date", "-u", "+%F"]),
@@ -63,19 +80,15 @@ def main():
         "device": bench["device"],
         "driver": bench["driver"],
         "compiler": compiler(arguments.build),
-        "versions": {
-            "tetracubes": first_line([tool, "--version"]).split()[-1],
-            "vtk": peers["vtk"]["version"],
-            "cmake": first_line(["cmake", "--version"]).split()[-1],
-            "linux": platform.release().split("-")[0],
-        },
+        "versions": versions(os.path.join(arguments.build, "host", "tool", "tetracubes"), peers),
         "read_gbps": bench["read_gbps"],
         "write_gbps": bench["write_gbps"],
         **process,
-        "peers": peers["cases"],
-        "vtk": peers["vtk"],
         "cases": bench["cases"],
+        "left_out": bench["left_out"],
     }
+    if peers:
+        result.update(peers=peers["cases"], vtk=peers["vtk"])
     path = os.path.join(arguments.results, name + ".json")
     os.makedirs(arguments.results, exist_ok=True)
     with open(path, "w", encoding="utf-8") as file:

@@ -6,8 +6,12 @@
 #include "progress.h"
 #include "verify.h"
 
+#include <CL/cl.h>
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
+
+#define LEAST_REPEATS 3
 
 int library_status(tc_status status) {
     switch (status) {
@@ -36,6 +40,47 @@ spread spread_of(double *values, int count) {
     return (spread){median, values[0], values[count - 1]};
 }
 
+/* ------------------------------------------------------------------------------------------------------ extraction */
+
+void measure_begin(tc_context *context, const samples *s, double iso, double second_iso, measurement *m,
+                   case_result *result) {
+    const int64_t *dims = s->grid.dims;
+    *m = (measurement){.context = context, .samples = s};
+    tc_extract_options_init(&m->first);
+    m->first.isovalue = iso;
+    m->second = m->first;
+    m->second.isovalue = second_iso;
+    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s", s->name, dims[0], dims[1],
+             dims[2], tc_type_name(s->grid.type));
+    *result = (case_result){.field = s->name, .type = s->grid.type, .sample_bytes = s->bytes};
+    memcpy(result->dims, dims, sizeof result->dims);
+}
+
+/* A grid that nothing was extracted from. The wait keeps an upload under way out of the times that follow. */
+static int grid_make(const measurement *m, tc_grid **grid) {
+    int status = library_status(tc_grid_create(m->context, &m->samples->grid, grid));
+    if (!status && clFinish(tc_context_cl_queue(m->context))) status = fail(STATUS_FAILED, "the device's queue failed");
+    return status;
+}
+
+/* One extraction into *mesh, which is made where it is NULL. */
+static int extract(tc_grid *grid, const tc_extract_options *how, tc_mesh **mesh, tc_mesh_data *data) {
+    *data = (tc_mesh_data){.struct_size = sizeof *data};
+    int status = library_status(tc_extract(grid, how, mesh));
+    return status ? status : library_status(tc_mesh_get(*mesh, data));
+}
+
+int measure_mesh_bytes(const measurement *m, uint64_t *bytes) {
+    tc_counts first = {.struct_size = sizeof first}, second = {.struct_size = sizeof second};
+    tc_grid *grid = NULL;
+    int status = grid_make(m, &grid);
+    if (!status) status = library_status(tc_count(grid, &m->first, &first));
+    if (!status) status = library_status(tc_count(grid, &m->second, &second));
+    *bytes = first.mesh_bytes > second.mesh_bytes ? first.mesh_bytes : second.mesh_bytes;
+    tc_grid_destroy(grid);
+    return status;
+}
+
 /* ---------------------------------------------------------------------------------------------------- verification */
 
 static int show_label(void *user, const char *stage, double fraction) {
@@ -43,13 +88,13 @@ static int show_label(void *user, const char *stage, double fraction) {
     return progress_update(NULL, user, fraction);
 }
 
-/* Compares the device's mesh with the reference's, of the same samples. */
-static int verify(const measurement *m, const samples *s, const tc_mesh_data *device, spread *reference_ms) {
+/* Compares the device's first surface with the reference's, of the same samples. */
+static int reference_compare(const measurement *m, const tc_mesh_data *device, spread *reference_ms) {
     tc_context_options options;
     tc_context *context = NULL;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_mesh_data data = {0};
     char text[256], label[sizeof m->label + 16];
     snprintf(label, sizeof label, "%s: reference", m->label);
     tc_context_options_init(&options);
@@ -57,9 +102,8 @@ static int verify(const measurement *m, const samples *s, const tc_mesh_data *de
     options.progress = show_label;
     options.progress_user = label;
     int status = library_status(tc_context_create(&options, &context));
-    if (!status) status = library_status(tc_grid_create(context, &s->grid, &grid));
-    if (!status) status = library_status(tc_extract(grid, &m->how, &mesh));
-    if (!status) status = library_status(tc_mesh_get(mesh, &data));
+    if (!status) status = library_status(tc_grid_create(context, &m->samples->grid, &grid));
+    if (!status) status = extract(grid, &m->first, &mesh, &data);
     if (!status && !verify_same(device, &data, text, sizeof text))
         status = fail(STATUS_CHECK, "%s: verification failed: %s", m->label, text);
     double ms = data.timings.total_ms;
@@ -70,56 +114,61 @@ static int verify(const measurement *m, const samples *s, const tc_mesh_data *de
     return status;
 }
 
-int measure_open(tc_context *context, const samples *s, double iso, measurement *m, case_result *result) {
-    const int64_t *dims = s->grid.dims;
+static surface surface_of(const tc_extract_options *how, const tc_mesh_data *data) {
+    return (surface){how->isovalue, data->vertex_count, data->triangle_count,
+                     mesh_hash(data->positions, data->vertex_count, data->triangles, data->triangle_count)};
+}
+
+/* Both surfaces of one grid, the first compared with the reference's. */
+static int surfaces_make(const measurement *m, case_result *result) {
+    tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data data = {.struct_size = sizeof data};
-    *m = (measurement){0};
-    *result = (case_result){.field = s->name,
-                            .dims = {dims[0], dims[1], dims[2]},
-                            .type = s->grid.type,
-                            .iso = iso,
-                            .sample_bytes = s->bytes};
-    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s", s->name, dims[0], dims[1],
-             dims[2], tc_type_name(s->grid.type));
-    tc_extract_options_init(&m->how);
-    m->how.isovalue = iso;
-    int status = library_status(tc_grid_create(context, &s->grid, &m->grid));
-    if (!status) status = library_status(tc_extract(m->grid, &m->how, &mesh));
-    if (!status) status = library_status(tc_mesh_get(mesh, &data));
-    if (!status) status = verify(m, s, &data, &result->reference_ms);
+    tc_mesh_data data;
+    int status = grid_make(m, &grid);
+    if (!status) status = extract(grid, &m->first, &mesh, &data);
+    if (!status) status = reference_compare(m, &data, &result->reference_ms);
     if (!status) {
-        result->vertex_count = data.vertex_count;
-        result->triangle_count = data.triangle_count;
+        result->first = surface_of(&m->first, &data);
         result->mesh_bytes = 12 * (data.vertex_count + data.triangle_count);
-        result->hash = mesh_hash(data.positions, data.vertex_count, data.triangles, data.triangle_count);
+        status = extract(grid, &m->second, &mesh, &data);
     }
+    if (!status) result->second = surface_of(&m->second, &data);
     tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
     return status;
 }
 
-void measure_close(measurement *m) {
-    tc_grid_destroy(m->grid);
-    *m = (measurement){0};
+/* The second surface from a grid of its own. */
+static int second_compare(const measurement *m, const case_result *result) {
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data data;
+    int status = grid_make(m, &grid);
+    if (!status) status = extract(grid, &m->second, &mesh, &data);
+    if (!status && surface_of(&m->second, &data).hash != result->second.hash)
+        status = fail(STATUS_CHECK, "%s: verification failed: isovalue %g gives another mesh after %g than alone",
+                      m->label, m->second.isovalue, m->first.isovalue);
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    return status;
+}
+
+int measure_verify(const measurement *m, case_result *result) {
+    int status = surfaces_make(m, result);
+    return status ? status : second_compare(m, result);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- timing */
 
-/* One extraction into *mesh, which is made where it is NULL. */
-static int extract(measurement *m, tc_mesh **mesh, tc_timings *timings) {
-    tc_mesh_data data = {.struct_size = sizeof data};
-    int status = library_status(tc_extract(m->grid, &m->how, mesh));
-    if (!status) status = library_status(tc_mesh_get(*mesh, &data));
-    *timings = data.timings;
-    return status;
-}
-
-int measure_cold(measurement *m, double *ms) {
+int measure_cold(const measurement *m, double *ms) {
+    tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_timings timings;
-    int status = extract(m, &mesh, &timings);
-    *ms = timings.total_ms;
+    tc_mesh_data data;
+    int status = grid_make(m, &grid);
+    if (!status) status = extract(grid, &m->first, &mesh, &data);
+    if (!status) *ms = data.timings.total_ms;
     tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
     return status;
 }
 
@@ -131,44 +180,69 @@ static int show_repeats(const measurement *m, int done, int repeat) {
 
 static int no_memory(void) { return fail(STATUS_FAILED, "no memory for the times; give fewer --repeat"); }
 
-int measure_cold_times(measurement *m, int repeat, case_result *result) {
-    double *times = calloc((size_t)repeat, sizeof *times);
-    int status = times ? 0 : no_memory();
-    for (int n = 0; n < repeat && !status; n++) {
-        status = measure_cold(m, &times[n]);
-        if (!status) status = show_repeats(m, n, 2 * repeat);
+int measure_cold_times(const measurement *m, int repeat, double patience_ms, case_result *result) {
+    double *times = calloc((size_t)repeat, sizeof *times), begin = now_ms();
+    int status = times ? 0 : no_memory(), count = 0;
+    while (!status && count < repeat && (count < LEAST_REPEATS || now_ms() - begin < patience_ms)) {
+        status = measure_cold(m, &times[count++]);
+        if (!status) status = show_repeats(m, count, 2 * repeat);
     }
-    if (!status) result->extract_ms = spread_of(times, repeat);
+    if (!status) result->extract_ms = spread_of(times, count);
+    result->repeat = count;
     free(times);
     return status;
+}
+
+/* A first and a second warm extraction. */
+static int warm_pair(const measurement *m, tc_mesh **mesh, tc_timings *first, tc_timings *second) {
+    tc_grid *grid = NULL;
+    tc_mesh_data data;
+    int status = grid_make(m, &grid);
+    if (!status) status = extract(grid, &m->first, mesh, &data);
+    if (!status) *first = data.timings;
+    if (!status) status = extract(grid, &m->second, mesh, &data);
+    if (!status) *second = data.timings;
+    tc_grid_destroy(grid);
+    return status;
+}
+
+/* scratch: count numbers. */
+static stage_times stage_times_of(const tc_timings *timings, int count, double *scratch) {
+    stage_times times;
+    for (int n = 0; n < count; n++) scratch[n] = timings[n].classify_ms;
+    times.classify_ms = spread_of(scratch, count);
+    for (int n = 0; n < count; n++) scratch[n] = timings[n].emit_ms;
+    times.emit_ms = spread_of(scratch, count);
+    for (int n = 0; n < count; n++) scratch[n] = timings[n].total_ms;
+    times.total_ms = spread_of(scratch, count);
+    return times;
 }
 
 static void limits_apply(const device_limits *limits, case_result *result) {
     result->limit_ms =
         ((double)result->sample_bytes / limits->read_gbps + (double)result->mesh_bytes / limits->write_gbps) * 1e-6;
-    result->limit_ratio = result->extract_warm_ms.median / result->limit_ms;
+    result->limit_ratio = result->first_times.total_ms.median / result->limit_ms;
 }
 
-int measure_warm_times(measurement *m, int repeat, const device_limits *limits, case_result *result) {
+int measure_warm_times(const measurement *m, const device_limits *limits, case_result *result) {
+    const int repeat = result->repeat;
     tc_mesh *mesh = NULL;
-    tc_timings timings;
-    double *times = calloc((size_t)repeat * 3, sizeof *times);
-    double *classify = times, *emit = times + repeat, *total = times + 2 * repeat;
-    int status = times ? extract(m, &mesh, &timings) : no_memory();
+    tc_timings *first = calloc((size_t)repeat, sizeof *first), *second = calloc((size_t)repeat, sizeof *second);
+    double *scratch = calloc((size_t)repeat, sizeof *scratch);
+    int status = first && second && scratch ? 0 : no_memory();
+    if (!status) status = warm_pair(m, &mesh, first, second); /* makes the mesh that is kept */
     for (int n = 0; n < repeat && !status; n++) {
-        status = extract(m, &mesh, &timings);
-        classify[n] = timings.classify_ms;
-        emit[n] = timings.emit_ms;
-        total[n] = timings.total_ms;
+        status = warm_pair(m, &mesh, &first[n], &second[n]);
         if (!status) status = show_repeats(m, repeat + n, 2 * repeat);
     }
     if (!status) {
-        result->classify_ms = spread_of(classify, repeat);
-        result->emit_ms = spread_of(emit, repeat);
-        result->extract_warm_ms = spread_of(total, repeat);
+        result->first_times = stage_times_of(first, repeat, scratch);
+        result->second_times = stage_times_of(second, repeat, scratch);
         limits_apply(limits, result);
     }
     tc_mesh_destroy(mesh);
-    free(times);
+    free(first);
+    free(second);
+    free(scratch);
     return status;
 }

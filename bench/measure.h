@@ -1,9 +1,11 @@
 /*
- * measure.h - one case: a grid on the device, verified against the reference, then timed
+ * measure.h - one case: verified against the reference, then timed
  *
- * Times are the library's own, tc_timings. An extraction is *cold* when its mesh is new (its memory is allocated and
- * first touched within the timed part, and given back outside it) and *warm* when the mesh of the one before is reused;
- * the context keeps its working buffers in both.
+ * Times are the library's own, tc_timings. Every timed first extraction is the first on a new grid, so that nothing is
+ * known of the samples beforehand; what tc_grid_create takes is not counted. It is *cold* when its mesh is new too (its
+ * memory is allocated and first touched within the timed part, and given back outside it) and *warm* when the mesh of
+ * the one before is reused; the context keeps its working buffers in both. A *second* extraction follows a first, warm
+ * one on the same grid, at another isovalue.
  */
 #ifndef MEASURE_H
 #define MEASURE_H
@@ -16,39 +18,58 @@ typedef struct spread {
     double median, min, max;
 } spread;
 
+/* Warm extractions. */
+typedef struct stage_times {
+    spread classify_ms, emit_ms, total_ms;
+} stage_times;
+
+typedef struct surface {
+    double iso;
+    uint64_t vertex_count, triangle_count, hash;
+} surface;
+
 typedef struct case_result {
     const char *field;
     int64_t dims[3];
     tc_type type;
-    double iso;
-    uint64_t vertex_count, triangle_count, hash;
-    uint64_t sample_bytes, mesh_bytes;
-    spread classify_ms, emit_ms, extract_ms, extract_warm_ms; /* classify and emit: of warm extractions */
-    spread reference_ms;                                      /* of one run */
+    uint64_t sample_bytes, mesh_bytes; /* of the first surface */
+    surface first, second;
+    int repeat; /* timed extractions of each kind */
+    spread extract_ms;
+    stage_times first_times, second_times;
+    spread reference_ms; /* of one run */
     double limit_ms, limit_ratio;
+    char left_out[160]; /* why a sweep did not measure this case: all but its name is 0; else "" */
 } case_result;
 
-/* A case in hand. */
+/* A case in hand; owns nothing. */
 typedef struct measurement {
-    tc_grid *grid;
-    tc_extract_options how;
+    tc_context *context;
+    const samples *samples;
+    tc_extract_options first, second;
     char label[128]; /* for progress and messages */
 } measurement;
 
-/* Makes the grid, extracts with both engines and compares every byte; fills all of result but the times of the device
- * and what follows from them. STATUS_CHECK where the engines differ. m is to be closed in any case. */
-int measure_open(tc_context *context, const samples *s, double iso, measurement *m, case_result *result);
+/* Names the case in *m and *result. */
+void measure_begin(tc_context *context, const samples *s, double iso, double second_iso, measurement *m,
+                   case_result *result);
+
+/* What the larger one of the two meshes takes. */
+int measure_mesh_bytes(const measurement *m, uint64_t *bytes);
+
+/* Compares every byte of the first surface with the reference's, and the hash of the second with its hash on a grid
+ * not visited before; fills the surfaces and reference_ms. STATUS_CHECK where they differ. */
+int measure_verify(const measurement *m, case_result *result);
 
 /* Milliseconds of one cold extraction. */
-int measure_cold(measurement *m, double *ms);
+int measure_cold(const measurement *m, double *ms);
 
-/* repeat cold extractions to result->extract_ms. */
-int measure_cold_times(measurement *m, int repeat, case_result *result);
+/* `repeat` cold extractions to result->extract_ms; fewer, but three at least, once patience_ms have passed.
+ * result->repeat says how many. */
+int measure_cold_times(const measurement *m, int repeat, double patience_ms, case_result *result);
 
-/* repeat warm extractions to the other times of the device, and the ratio to the limits. */
-int measure_warm_times(measurement *m, int repeat, const device_limits *limits, case_result *result);
-
-void measure_close(measurement *m);
+/* result->repeat warm extractions of each kind to the other times of the device, and the ratio to the limits. */
+int measure_warm_times(const measurement *m, const device_limits *limits, case_result *result);
 
 /* Sorts the values. */
 spread spread_of(double *values, int count);

@@ -1,41 +1,56 @@
 #!/usr/bin/python3
-"""peers.py - Tetracubes and VTK's fastest isosurface filter on the very same samples, in turns
+"""peers.py - Tetracubes and other isosurface filters on the very same samples, in turns
 
-For every case tetracubes-bench writes the samples to one file; then that file is what both read: Tetracubes maps it,
-VTK's image wraps a numpy memmap of it. Tetracubes verifies its mesh against its reference before anything is timed.
-Then the two take turns, repeat by repeat, so that both see the same state of the machine:
+For every case tetracubes-bench writes the samples to one file; then that file is what all read: Tetracubes maps it, the
+others wrap a numpy memmap of it. Tetracubes verifies its mesh against its reference before anything is timed. Then they
+take turns, in the reverse order on every other repeat, so that all see the same state of the machine:
 
-  ours  tetracubes-bench --turns: first launch to mesh complete, a new mesh on every repeat (extract_ms)
-  VTK   vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
-        are all cores unless --threads says otherwise
+  ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
+  vtk     vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
+          are all cores unless --threads says otherwise
+  vtk_mc  vtkMarchingCubes.Update(), likewise, up to 512^3 samples; it has one thread
+  skimage skimage.measure.marching_cubes, up to 256^3 samples; it has one thread, and always makes normals and values
 
-On a device with memory of its own our mesh is complete there, not yet on the host; VTK's is always on the host.
-What is released is released outside the timed parts. Medians and their ratio are printed; a ratio above 1 means that
-Tetracubes is faster, though it makes about 2.4 times the triangles. With --skimage, skimage.measure.marching_cubes is
-timed too, a few times, after the turns: it is several times slower.
+A peer whose first turn, which does not count, takes over a second has three turns, over five seconds one. Of a cube of 1024 or more, ours at
+half the size takes turns too (half_ms), so that one run shows how time grows with size.
 
-Needs Debian's own Python with VTK and numpy: bench/peers-setup installs them.
+On a device with memory of its own our mesh is complete there, not yet on the host; theirs are always on the host. What
+is released is released outside the timed parts. Medians and their ratios to ours are printed; above 1 Tetracubes is
+faster, though it makes about 2.4 times the triangles. What free memory does not allow is left out, with a notice.
+
+Needs Debian's own Python with VTK, numpy and scikit-image: bench/peers-setup installs them.
 """
 
 import argparse
 import json
+import math
 import os
+import re
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from typing import NamedTuple
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-DEFAULT_CASES = ["sphere:512:u8", "gyroid:512:u8", "sphere:512:f32", "sphere:256:u8"]
-REST = 0.01  # seconds before every turn: the other side's threads have gone to sleep by then
+DEFAULT_CASES = [f"{field}:{size}:{kind}" for field, kind, sizes in
+                 (("sphere", "u8", (64, 128, 256, 512, 1024)), ("gyroid", "u8", (64, 128, 256, 512)),
+                  ("sphere", "f32", (64, 128, 256, 512))) for size in sizes]
+REAL_VOLUME, REAL_ISO = "uniform/embryo.nrrd", 80.0  # of the folder TETRACUBES_DATA
+REST = 0.01  # seconds before every turn: the others' threads have gone to sleep by then
+SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
+HALVED_FROM = 1024
+MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
 
 try:
     import numpy
+    import skimage
+    from skimage.measure import marching_cubes
     from vtkmodules.util.numpy_support import get_vtk_array_type, numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkSMPTools, vtkVersion
     from vtkmodules.vtkCommonDataModel import vtkImageData
-    from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
+    from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D, vtkMarchingCubes
 except ImportError as missing:
     if not {"-h", "--help"} & set(sys.argv):
         sys.exit(f"peers.py: {missing}; run bench/peers-setup, then start this script by /usr/bin/python3")
@@ -54,8 +69,8 @@ def spread(times):
 class Samples:
     """The samples of one case in a raw file, and how the two sides open it."""
 
-    def __init__(self, bench, folder, options):
-        self.path = os.path.join(folder, "samples.raw")
+    def __init__(self, bench, path, options):
+        self.path = path
         command = [bench, *options, "--dump", self.path]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
         if done.returncode:
@@ -69,6 +84,9 @@ class Samples:
     def array(self):
         """Copy-on-write: nobody writes, but VTK asks for writable memory."""
         return numpy.memmap(self.path, dtype=NUMPY_TYPES[self.type], mode="c", shape=tuple(reversed(self.dims)))
+
+    def count(self):
+        return self.dims[0] * self.dims[1] * self.dims[2]
 
 
 class Ours:
@@ -109,49 +127,58 @@ class Ours:
             self.process.wait()
 
 
-class FlyingEdges:
-    """vtkFlyingEdges3D on an image that wraps the samples."""
+class VtkFilter:
+    """An isosurface filter of VTK on an image that wraps the samples."""
 
-    def __init__(self, samples, iso):
+    def __init__(self, kind, samples, iso):
         values = samples.array().reshape(-1)
         scalars = numpy_to_vtk(values, deep=0, array_type=get_vtk_array_type(values.dtype))
         self.keep = values
         self.image = vtkImageData()
         self.image.SetDimensions(samples.dims)
         self.image.GetPointData().SetScalars(scalars)
-        self.iso = iso
+        self.kind, self.iso = kind, iso
         self.triangles = 0
 
     def turn(self):
         """Milliseconds of Update() of a new filter."""
-        edges = vtkFlyingEdges3D()
-        edges.SetInputData(self.image)
-        edges.ComputeNormalsOff()
-        edges.ComputeGradientsOff()
-        edges.ComputeScalarsOff()
-        edges.SetValue(0, self.iso)
+        surface = self.kind()
+        surface.SetInputData(self.image)
+        surface.ComputeNormalsOff()
+        surface.ComputeGradientsOff()
+        surface.ComputeScalarsOff()
+        surface.SetValue(0, self.iso)
         begin = time.perf_counter()
-        edges.Update()
+        surface.Update()
         ms = 1e3 * (time.perf_counter() - begin)
-        self.triangles = edges.GetOutput().GetNumberOfPolys()
+        self.triangles = surface.GetOutput().GetNumberOfPolys()
         return ms
 
 
-def skimage_times(samples, iso, repeat):
-    """Medians of scikit-image's marching_cubes, and its triangles."""
-    try:
-        from skimage.measure import marching_cubes
-    except ImportError as missing:
-        raise Failure(f"{missing}; run bench/peers-setup") from missing
-    values = samples.array()
-    times, triangles = [], 0
-    for _ in range(repeat):
+class ScikitImage:
+    """skimage.measure.marching_cubes on the samples."""
+
+    def __init__(self, samples, iso):
+        self.values, self.iso = samples.array(), iso
+        self.triangles = 0
+
+    def turn(self):
+        """Milliseconds of one call."""
         begin = time.perf_counter()
-        mesh = marching_cubes(values, iso)
-        times.append(1e3 * (time.perf_counter() - begin))
-        triangles = len(mesh[1])
-        del mesh
-    return {"skimage_ms": spread(times), "skimage_triangles": triangles}
+        mesh = marching_cubes(self.values, self.iso)
+        ms = 1e3 * (time.perf_counter() - begin)
+        self.triangles = len(mesh[1])
+        return ms
+
+
+def peers_of(samples, iso):
+    """Those that can do it in seconds, by the key of their results."""
+    peers = {"vtk": VtkFilter(vtkFlyingEdges3D, samples, iso)}
+    if samples.count() <= 512 ** 3:
+        peers["vtk_mc"] = VtkFilter(vtkMarchingCubes, samples, iso)
+    if samples.count() <= 256 ** 3:
+        peers["skimage"] = ScikitImage(samples, iso)
+    return peers
 
 
 def progress(text):
@@ -159,37 +186,38 @@ def progress(text):
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def run_case(arguments, case, folder):
-    """One line of the report."""
-    name, options, iso = case
-    progress(f"{name}: making samples")
-    samples = Samples(arguments.bench, folder, options)
-    theirs = FlyingEdges(samples, iso)
-    progress(f"{name}: verifying")
-    ours = Ours(arguments.bench, samples, iso, arguments.device, arguments.repeat)
-    our_times, their_times = [], []
-    try:
-        ours.turn()
-        theirs.turn()
-        for n in range(arguments.repeat):
-            progress(f"{name}: turn {n + 1} of {arguments.repeat}")
-            for side, times in (ours, our_times), (theirs, their_times):
+def turns_of(side, repeat):
+    """How many turns a side has, by the time of a first one."""
+    ms = side.turn()
+    return next((min(turns, repeat) for slow_ms, turns in SLOW_TURNS if ms > slow_ms and not isinstance(side, Ours)),
+                repeat)
+
+
+def take_turns(name, sides, repeat):
+    """The times of every side."""
+    progress(f"{name}: first turns")
+    turns = {key: turns_of(side, repeat) for key, side in sides.items()}
+    times = {key: [] for key in sides}
+    for n in range(repeat):
+        progress(f"{name}: turn {n + 1} of {repeat}")
+        for key in list(sides)[::-1 if n % 2 else 1]:
+            if n < turns[key]:
                 time.sleep(REST)
-                times.append(side.turn())
-        report = ours.report()
-    finally:
-        ours.stop()
+                times[key].append(sides[key].turn())
+    return times
+
+
+def result_of(case, samples, report, times, peers):
+    """What the JSON file tells of a case; report is that of tetracubes-bench."""
     measured = report["cases"][0]
     result = {
-        "case": name,
+        "case": case.name,
         "dims": samples.dims,
         "type": samples.type,
-        "iso": iso,
-        "extract_ms": spread(our_times),
-        "vtk_ms": spread(their_times),
-        "ratio": round(statistics.median(their_times) / statistics.median(our_times), 3),
+        "iso": case.iso,
+        "extract_ms": spread(times["ours"]),
+        "ratio": round(statistics.median(times["vtk"]) / statistics.median(times["ours"]), 3),
         "triangles": measured["triangles"],
-        "vtk_triangles": theirs.triangles,
         "extract_warm_ms": measured["extract_warm_ms"],
         "limit_ms": measured["limit_ms"],
         "limit_ratio": measured["limit_ratio"],
@@ -197,27 +225,62 @@ def run_case(arguments, case, folder):
         "write_gbps": report["write_gbps"],
         "device": report["device"],
     }
-    if arguments.skimage:
-        progress(f"{name}: scikit-image")
-        result.update(skimage_times(samples, iso, min(3, arguments.repeat)))
-    progress("")
+    for key, peer in peers.items():
+        result.update({f"{key}_ms": spread(times[key]), f"{key}_triangles": peer.triangles})
+    if "half" in times:
+        result["half_ms"] = spread(times["half"])
     return result
+
+
+def run_case(arguments, case, folder):
+    """Its result."""
+    progress(f"{case.name}: making samples")
+    samples = Samples(arguments.bench, os.path.join(folder, "samples.raw"), case.options)
+    opened = {"ours": samples}
+    if case.half_options:
+        opened["half"] = Samples(arguments.bench, os.path.join(folder, "half.raw"), case.half_options)
+    ours = {}
+    try:
+        for key, its in opened.items():
+            progress(f"{case.name}: verifying")
+            ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
+        peers = peers_of(samples, case.iso)
+        times = take_turns(case.name, {**ours, **peers}, arguments.repeat)
+        report = ours["ours"].report()
+    finally:
+        for side in ours.values():
+            side.stop()
+        progress("")
+    return result_of(case, samples, report, times, peers)
 
 
 def shown(times):
     return f"{times['median']:.1f} ({times['min']:.1f} - {times['max']:.1f})"
 
 
-COLUMNS = "{:<24} {:>26} {:>28} {:>7} {:>11} {:>11} {:>11}"
+def shown_ratio(result, key):
+    """A peer's median and how many times ours it is."""
+    if f"{key}_ms" not in result:
+        return "-"
+    median = result[f"{key}_ms"]["median"]
+    return f"{median:.1f} ({median / result['extract_ms']['median']:.2f})"
+
+
+COLUMNS = "{:<24} {:>24} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
+
+
+def print_head():
+    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "triangles",
+                         "of VTK", "limit ratio"))
 
 
 def print_row(result):
-    row = COLUMNS.format(result["case"], shown(result["extract_ms"]), shown(result["vtk_ms"]), f"{result['ratio']:.2f}",
-                         result["triangles"], result["vtk_triangles"], f"{result['limit_ratio']:.2f}")
-    print(row, flush=True)
-    if "skimage_ms" in result:
-        print(f"    scikit-image marching_cubes: {shown(result['skimage_ms'])} ms, "
-              f"{result['skimage_triangles']} triangles", flush=True)
+    print(COLUMNS.format(result["case"], shown(result["extract_ms"]), shown_ratio(result, "vtk"),
+                         shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"), result["triangles"],
+                         result["vtk_triangles"], f"{result['limit_ratio']:.2f}"), flush=True)
+    if "half_ms" in result:
+        growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
+        print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
 
 
 def find_bench():
@@ -229,19 +292,43 @@ def find_bench():
     return found[-1] if found else "tetracubes-bench"
 
 
+class Case(NamedTuple):
+    """Options make the samples; half_options make those of half the size, where they are measured too."""
+    name: str
+    options: list
+    iso: float
+    half_options: list = []
+    sample_bytes: int = 0  # 0: not known, a file's
+
+
 def parse_case(text):
-    """sphere:512:u8 to a name, the options that make it, and its isovalue."""
+    """sphere:512:u8"""
     parts = text.split(":")
-    if len(parts) != 3 or parts[2] not in NUMPY_TYPES:
+    if len(parts) != 3 or parts[2] not in NUMPY_TYPES or not re.fullmatch(r"\d+(,\d+,\d+)?", parts[1]):
         raise Failure(f"--cases: '{text}' is not FIELD:N:TYPE, as in sphere:512:u8")
     field, dims, kind = parts
-    size = dims if "," in dims else f"{dims}^3"
-    return f"{field} {size} {kind}", ["--field", field, "--dims", dims, "--type", kind], 127.5
+    options = ["--field", field, "--type", kind, "--dims"]
+    half = [*options, str(int(dims) // 2)] if "," not in dims and int(dims) >= HALVED_FROM else []
+    sizes = [int(size) for size in dims.split(",")]
+    count = sizes[0] ** 3 if len(sizes) == 1 else math.prod(sizes)
+    return Case(f"{field} {dims if ',' in dims else f'{dims}^3'} {kind}", [*options, dims], 127.5, half,
+                count * numpy.dtype(NUMPY_TYPES[kind]).itemsize)
+
+
+def default_cases():
+    """With the real volume, where there is one."""
+    cases = [parse_case(text) for text in DEFAULT_CASES]
+    if os.environ.get("TETRACUBES_DATA"):
+        path = os.path.join(os.environ["TETRACUBES_DATA"], REAL_VOLUME)
+        cases.append(Case(os.path.basename(path), ["--input", path], REAL_ISO))
+    else:
+        print(f"TETRACUBES_DATA is unset: without {REAL_VOLUME}", file=sys.stderr)
+    return cases
 
 
 def cases_of(arguments):
     if not arguments.input:
-        return [parse_case(text) for text in arguments.cases]
+        return [parse_case(text) for text in arguments.cases] if arguments.cases else default_cases()
     if arguments.iso is None:
         raise Failure("--input needs an isovalue: --iso V")
     options = ["--input", arguments.input]
@@ -249,13 +336,25 @@ def cases_of(arguments):
         options += ["--dims", arguments.dims]
     if arguments.type:
         options += ["--type", arguments.type]
-    return [(os.path.basename(arguments.input), options, arguments.iso)]
+    return [Case(os.path.basename(arguments.input), options, arguments.iso)]
+
+
+def fits(case):
+    """Whether free memory allows the case; says so where it does not."""
+    with open("/proc/meminfo", encoding="ascii") as file:
+        available = 1024 * int(re.search(r"^MemAvailable: +(\d+) kB$", file.read(), re.MULTILINE).group(1))
+    if MEMORY_FACTOR * case.sample_bytes <= available * 3 // 4:
+        return True
+    print(f"peers.py: {case.name} is left out: it needs {MEMORY_FACTOR * case.sample_bytes >> 20} MB of memory, "
+          f"{(available * 3 // 4) >> 20} MB may be had", file=sys.stderr)
+    return False
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", nargs="+", default=DEFAULT_CASES, metavar="F:N:T",
-                        help=f"field, size (N or NX,NY,NZ) and type; default {' '.join(DEFAULT_CASES)}")
+    parser.add_argument("--cases", nargs="+", metavar="F:N:T",
+                        help=f"field, size (N or NX,NY,NZ) and type; default {' '.join(DEFAULT_CASES)} and, where "
+                             f"TETRACUBES_DATA is set, its {REAL_VOLUME}")
     parser.add_argument("--input", metavar="FILE", help="a volume instead, in any format that Tetracubes reads")
     parser.add_argument("--iso", type=float, metavar="V", help="isovalue of --input")
     parser.add_argument("--dims", metavar="NX,NY,NZ", help="of raw --input")
@@ -263,9 +362,8 @@ def parse_arguments():
     parser.add_argument("--repeat", type=int, default=11, metavar="R", help="turns of each, default 11")
     parser.add_argument("--device", metavar="SPEC", help="OpenCL device of Tetracubes")
     parser.add_argument("--threads", type=int, default=0, metavar="N", help="of VTK, default all cores")
-    parser.add_argument("--skimage", action="store_true", help="time scikit-image too")
     parser.add_argument("--bench", metavar="FILE", help="tetracubes-bench; default that of the last build")
-    parser.add_argument("--folder", metavar="DIR", help="for the samples (up to 512 MB), default a temporary one")
+    parser.add_argument("--folder", metavar="DIR", help="for the samples (up to 1.2 GB), default a temporary one")
     parser.add_argument("--json", metavar="FILE", help="write the results here too")
     arguments = parser.parse_args()
     if arguments.repeat < 1:
@@ -280,16 +378,17 @@ def main():
     vtkSMPTools.Initialize(arguments.threads)
     vtk = {"version": vtkVersion.GetVTKVersion(), "threads": vtkSMPTools.GetEstimatedNumberOfThreads(),
            "backend": vtkSMPTools.GetBackend()}
-    print(f"VTK {vtk['version']}, {vtk['threads']} threads ({vtk['backend']}); milliseconds: median (min - max)\n")
-    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "ratio", "triangles", "of VTK", "limit ratio"))
+    print(f"VTK {vtk['version']}, {vtk['threads']} threads ({vtk['backend']}), scikit-image {skimage.__version__}; "
+          "milliseconds: median (min - max), of the others median (times ours)\n")
+    print_head()
     results = []
     with tempfile.TemporaryDirectory(prefix="tetracubes-peers-", dir=arguments.folder) as folder:
-        for case in cases:
+        for case in filter(fits, cases):
             results.append(run_case(arguments, case, folder))
             print_row(results[-1])
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
-            json.dump({"vtk": vtk, "cases": results}, file, indent=2)
+            json.dump({"vtk": vtk, "skimage": skimage.__version__, "cases": results}, file, indent=2)
             file.write("\n")
 
 

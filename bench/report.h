@@ -7,8 +7,9 @@
 typedef struct bench_report {
     tc_device_info device;
     device_limits limits;
-    const case_result *cases;
+    case_result *cases; /* those left out, too */
     int case_count;
+    int printed; /* by report_table */
 } bench_report;
 
 /* One object on standard output. Returns 0, or STATUS_FAILED with its text (failure.h). */
@@ -17,8 +18,7 @@ int report_json(const bench_report *report);
 /* The object that --dump prints: dims and type. */
 int report_dump_json(const samples *s);
 
-/* The table comes line by line, as cases are done. */
-void report_head(const bench_report *report);
-void report_row(const case_result *result);
+/* Prints the rows of cases that are new, the head before the first one. */
+void report_table(bench_report *report);
 
 #endif

@@ -11,29 +11,35 @@
 
 #define CHUNK_BYTES ((uint64_t)4 << 20) /* made between two looks at progress */
 
-int samples_make(const field *f, const int64_t dims[3], tc_type type, samples *out) {
-    *out = (samples){.name = f->name};
+int samples_describe(const field *f, const int64_t dims[3], tc_type type, samples *out) {
+    *out = (samples){.made_from = f, .name = f->name};
     tc_grid_options_init(&out->grid);
     uint64_t plane = (uint64_t)dims[0] * (uint64_t)dims[1] * tc_type_bytes(type);
     if (__builtin_mul_overflow(plane, (uint64_t)dims[2], &out->bytes) || out->bytes > PTRDIFF_MAX)
         return fail(STATUS_USAGE, "--dims %" PRId64 ",%" PRId64 ",%" PRId64 " are more bytes than memory can have",
                     dims[0], dims[1], dims[2]);
-    void *memory = mmap(NULL, out->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED)
-        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims",
-                    out->bytes >> 20);
-    out->made = memory;
-    out->grid.samples = memory;
     out->grid.type = type;
     for (int axis = 0; axis < 3; axis++) {
         out->grid.dims[axis] = dims[axis];
         out->grid.matrix[axis][axis] = 2.0 / (double)(dims[axis] - 1);
         out->grid.matrix[axis][3] = -1.0;
     }
+    return 0;
+}
+
+int samples_make(samples *s) {
+    if (!s->made_from) return 0;
+    void *memory = mmap(NULL, s->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED)
+        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims", s->bytes >> 20);
+    s->made = memory;
+    s->grid.samples = memory;
+    const int64_t *dims = s->grid.dims;
+    uint64_t plane = s->bytes / (uint64_t)dims[2];
     int64_t step = plane < CHUNK_BYTES ? (int64_t)(CHUNK_BYTES / plane) : 1;
     for (int64_t z = 0; z < dims[2]; z += step) {
         int64_t end = dims[2] - z < step ? dims[2] : z + step;
-        field_sample(f, dims, type, 0, z, end, (char *)memory + (uint64_t)z * plane);
+        field_sample(s->made_from, dims, s->grid.type, 0, z, end, (char *)memory + (uint64_t)z * plane);
         if (progress_update(NULL, "making samples", (double)end / (double)dims[2])) return progress_status();
     }
     return 0;

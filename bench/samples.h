@@ -6,18 +6,23 @@
 #include "volume.h"
 
 typedef struct samples {
-    const char *name; /* of the field, or of the file without its folders */
+    const field *made_from; /* NULL: a file */
+    const char *name;       /* of the field, or of the file without its folders */
     tc_grid_options grid;
     uint64_t bytes;
     void *made;  /* page-aligned, so that a device that shares the host's memory uses it in place; or NULL */
     volume read; /* the file's, where there is one */
 } samples;
 
-/* Samples of an analytic field; the matrix is the one that `tetracubes generate` writes, so that hashes agree. Returns
- * 0 or an exit status with its text (failure.h); out is to be released in any case. */
-int samples_make(const field *f, const int64_t dims[3], tc_type type, samples *out);
+/* Describes samples of an analytic field, for samples_make to take the memory for; the matrix is the one that
+ * `tetracubes generate` writes, so that hashes agree. Returns 0 or an exit status with its text (failure.h); out is to
+ * be released in any case. */
+int samples_describe(const field *f, const int64_t dims[3], tc_type type, samples *out);
 
-/* Samples of the file o->input. The same. */
+/* Makes those described; samples of a file are there already. */
+int samples_make(samples *s);
+
+/* Samples of the file o->input, likewise. */
 int samples_read(const bench_options *o, samples *out);
 
 /* Writes them as they lie in memory. Returns 0 or STATUS_FAILED. */

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""table.py - bench/results/*.json as Markdown, into the README between its bench:begin and bench:end comments
+"""table.py - bench/results/*.json as Markdown
 
-Prints it instead with --print. Standard library only.
+The largest cases go into the README, between its bench:begin and bench:end comments, all of them into README.md beside
+the results. What a results file does not hold is left out. Standard library only.
 """
 
 import argparse
@@ -13,11 +14,19 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 README = os.path.join(os.path.dirname(HERE), "README.md")
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
+PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms")]
+HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the README's table
+HEADLINE_SIZE = 512
 SAMPLE_BYTES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
 
 
+def number(value):
+    """As many digits as it deserves."""
+    return f"{value:.{0 if value >= 100 else 1 if value >= 10 else 2}f}"
+
+
 def ms(times):
-    """The median, as many digits as it deserves, with its spread."""
+    """The median, with its spread."""
     digits = 1 if times["median"] >= 10 else 2
     return f"{times['median']:.{digits}f} ({times['min']:.{digits}f}-{times['max']:.{digits}f})"
 
@@ -32,49 +41,136 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def peers_table(result):
+# --------------------------------------------------------------------------------------------------------------- peers
+
+def peer_cell(peer, key):
+    """Its median, and how many times ours that is."""
+    if f"{key}_ms" not in peer:
+        return ""
+    median = peer[f"{key}_ms"]["median"]
+    return f"{number(median)} (**{median / peer['extract_ms']['median']:.2f}**)"
+
+
+def peers_table(peers):
+    """With a column for each peer that any of them has."""
+    present = [(key, title) for key, title in PEERS if any(f"{key}_ms" in peer for peer in peers)]
+    head = ["samples", "Tetracubes, ms", *(title for _, title in present), "triangles", "VTK's triangles",
+            "× memory limit"]
     rows = [[f"{peer['case'].split()[0]} {size(peer['dims'])} {peer['type']}", ms(peer["extract_ms"]),
-             ms(peer["vtk_ms"]), f"**{peer['ratio']:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
-             f"{peer['limit_ratio']:.1f}"] for peer in result["peers"]]
-    return table(["samples", "Tetracubes, ms", "VTK, ms", "times as fast", "triangles", "VTK's triangles",
-                  "× memory limit"], rows)
+             *(peer_cell(peer, key) for key, _ in present), f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
+             f"{peer['limit_ratio']:.1f}"] for peer in peers]
+    return table(head, rows)
 
 
-def case_row(case):
-    warm = case["extract_warm_ms"]["median"]
-    samples = case["dims"][0] * case["dims"][1] * case["dims"][2] * SAMPLE_BYTES[case["type"]]
-    moved = samples + 12 * (case["vertices"] + case["triangles"])
-    return [f"{case['field']} {size(case['dims'])} {case['type']}", f"{case['triangles']:,}", ms(case["extract_ms"]),
-            ms(case["extract_warm_ms"]), f"{moved / warm * 1e-6:.1f}", f"{case['triangles'] / warm * 1e-3:.0f}",
-            f"{case['limit_ms']:.2f}", f"{case['limit_ratio']:.1f}", f"{case['reference_ms']['median']:.0f}"]
+def growth_text(peers):
+    return "".join(f" {size(peer['dims'])} {peer['type']} took {number(peer['half_ms']['median'])} ms at half the size, "
+                   f"in the same turns: {peer['extract_ms']['median'] / peer['half_ms']['median']:.1f} times as long for "
+                   "8 times the samples." for peer in peers if "half_ms" in peer)
 
 
-def cases_table(result):
-    head = ["samples", "triangles", "new mesh, ms", "kept mesh, ms", "GB/s", "M triangles/s", "limit, ms", "× limit",
-            "scalar C, ms"]
-    return table(head, map(case_row, result["cases"]))
+def is_headline_peer(peer):
+    """Large, or of a real volume."""
+    return max(peer["dims"]) >= HEADLINE_SIZE or "^" not in peer["case"]
 
 
-def section(result):
+def peers_text(result, peers):
+    if not peers:
+        return []
     vtk = result["vtk"]
-    return "\n\n".join([
-        f"**{result['cpu']}, {result['cores']} cores**, OpenCL device {result['device']} (driver {result['driver']}), "
-        f"{result['date']}. The device reads {result['read_gbps']:.1f} GB/s and writes "
-        f"{result['write_gbps']:.1f} GB/s. A whole process on a 64³ file takes "
-        f"{result['startup_ms']['median']:.0f} ms; on a 512³ u8 file its memory peaks at "
-        f"{result['peak_extra_mb']:.0f} MB beyond file and mesh.",
-        f"Against vtkFlyingEdges3D of VTK {vtk['version']} ({vtk['threads']} threads, no normals), a new mesh on every "
-        "repeat on both sides, in turns; medians (min-max):",
-        peers_table(result),
-        "Alone. The limit is reading every sample and writing the mesh once, at the bandwidths above; its ratio, GB/s "
-        "and triangles are those of the kept mesh:",
-        cases_table(result),
-    ])
+    return [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
+            "others one), a new mesh on every repeat on all sides, in turns; medians (min-max), of the others medians "
+            "(times ours)." + growth_text(peers), peers_table(peers)]
+
+
+# --------------------------------------------------------------------------------------------------------------- cases
+
+def read_share(result, case, times):
+    """Percentage of the device's read bandwidth at which classification goes through the samples."""
+    samples = case["dims"][0] * case["dims"][1] * case["dims"][2] * SAMPLE_BYTES[case["type"]]
+    return f"{100 * samples / times['median'] * 1e-6 / result['read_gbps']:.0f}%"
+
+
+def second_cells(case):
+    if "second_warm_ms" not in case:
+        return ["", ""]
+    return [ms(case["second_warm_ms"]), number(case["second_classify_ms"]["median"])]
+
+
+def case_row(result, case):
+    return [f"{case['field']} {size(case['dims'])} {case['type']}", f"{case['triangles']:,}", ms(case["extract_ms"]),
+            ms(case["extract_warm_ms"]), number(case["classify_ms"]["median"]),
+            read_share(result, case, case["classify_ms"]), *second_cells(case), f"{case['limit_ms']:.2f}",
+            f"{case['limit_ratio']:.1f}", f"{case['reference_ms']['median']:.0f}"]
+
+
+def cases_table(result, cases):
+    head = ["samples", "triangles", "new mesh, ms", "kept mesh, ms", "of it classify", "of read bandwidth",
+            "second isovalue, ms", "of it classify", "limit, ms", "× limit", "scalar C, ms"]
+    return table(head, [case_row(result, case) for case in cases])
+
+
+def is_headline_case(case):
+    return case["field"] in HEADLINES and case["type"] in ("u8", "f32") and max(case["dims"]) >= HEADLINE_SIZE
+
+
+def cases_text(result, cases):
+    if not cases:
+        return []
+    return ["Alone. The limit is reading every sample and writing the mesh once, at the bandwidths above; its ratio is "
+            "that of the kept mesh:", cases_table(result, cases)]
+
+
+def left_out_text(result):
+    return [f"Left out: {case['field']} {size(case['dims'])} {case['type']}; {case['reason']}."
+            for case in result.get("left_out", [])]
+
+
+# ------------------------------------------------------------------------------------------------------------ sections
+
+def machine_text(result):
+    text = (f"**{result['cpu']}, {result['cores']} cores**, OpenCL device {result['device']} (driver "
+            f"{result['driver']}), {result['date']}. The device reads {result['read_gbps']:.1f} GB/s and writes "
+            f"{result['write_gbps']:.1f} GB/s.")
+    if "startup_ms" in result:
+        text += (f" A whole process on a 64³ file takes {result['startup_ms']['median']:.0f} ms; on a 512³ u8 file its "
+                 f"memory peaks at {result['peak_extra_mb']:.0f} MB beyond file and mesh.")
+    return text
+
+
+def picture(result, folder):
+    return f"![Time against size on {result['device']}]({folder}/{result['name']}.svg)"
+
+
+def headlines(result):
+    """The README's section of a machine."""
+    return [machine_text(result), picture(result, "bench/pictures"),
+            *peers_text(result, list(filter(is_headline_peer, result.get("peers", [])))),
+            *cases_text(result, list(filter(is_headline_case, result["cases"])))]
+
+
+def everything(result):
+    return [f"## {result['name']}", machine_text(result), picture(result, "../pictures"),
+            *peers_text(result, result.get("peers", [])), *cases_text(result, result["cases"]), *left_out_text(result)]
+
+
+def paragraphs(parts):
+    return "\n\n".join(parts)
+
+
+def readme_with(readme, section):
+    """The README's text with its generated section replaced; None where it has no place for it."""
+    if readme.count(BEGIN) != 1 or readme.count(END) != 1 or readme.index(BEGIN) > readme.index(END):
+        return None
+    return f"{readme.split(BEGIN)[0]}{BEGIN}\n{section}\n{END}{readme.split(END)[1]}"
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--print", action="store_true", help="to standard output, README.md untouched")
     parser.add_argument("--results", default=os.path.join(HERE, "results"), metavar="DIR", help="default bench/results")
     parser.add_argument("--readme", default=README, metavar="FILE", help="default README.md")
     arguments = parser.parse_args()
@@ -84,17 +180,15 @@ def main():
             results.append(json.load(file))
     if not results:
         sys.exit(f"table.py: no results in {arguments.results}; run bench/run first")
-    text = "\n\n".join(map(section, results))
-    if arguments.print:
-        print(text)
-        return
     with open(arguments.readme, encoding="utf-8") as file:
-        readme = file.read()
-    if readme.count(BEGIN) != 1 or readme.count(END) != 1 or readme.index(BEGIN) > readme.index(END):
+        readme = readme_with(file.read(), paragraphs(part for result in results for part in headlines(result)) +
+                             "\n\nAll cases: [bench/results](bench/results/README.md).")
+    if readme is None:
         sys.exit(f"table.py: {arguments.readme} has to hold {BEGIN} and, after it, {END}, once each")
-    before, after = readme.split(BEGIN)[0], readme.split(END)[1]
-    with open(arguments.readme, "w", encoding="utf-8") as file:
-        file.write(f"{before}{BEGIN}\n{text}\n{END}{after}")
+    write(arguments.readme, readme)
+    title = "# Results\n\nMade by bench/table.py from the files beside this one; what the columns mean: ../../README.md."
+    write(os.path.join(arguments.results, "README.md"),
+          paragraphs([title, *(part for result in results for part in everything(result))]) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_bench.py - tetracubes-bench from outside: its JSON, its turns, its dump, its statuses
+"""test_bench.py - tetracubes-bench from outside: its JSON, second isovalue, sweep, turns, dump and statuses
 
 Known counts come from the definition: the corner lattice of a 17^3 sphere is small enough to count crossed edges here.
 Standard library only.
@@ -13,9 +13,10 @@ import sys
 import tempfile
 
 BENCH = sys.argv[1]
-SPREADS = ["classify_ms", "emit_ms", "extract_ms", "extract_warm_ms", "reference_ms"]
-CASE_KEYS = {"field", "dims", "type", "iso", "method", "vertices", "triangles", "hash", "limit_ms", "limit_ratio",
-             *SPREADS}
+SPREADS = ["classify_ms", "emit_ms", "extract_ms", "extract_warm_ms", "second_classify_ms", "second_emit_ms",
+           "second_warm_ms", "reference_ms"]
+CASE_KEYS = {"field", "dims", "type", "iso", "method", "vertices", "triangles", "hash", "repeats", "second_iso",
+             "second_vertices", "second_triangles", "second_hash", "limit_ms", "limit_ratio", *SPREADS}
 checks = failures = 0
 
 
@@ -46,7 +47,8 @@ def expect_case(case, label):
 
 
 def expect_limits(report):
-    expect(list(report) == ["device", "driver", "read_gbps", "write_gbps", "cases"], f"keys {list(report)}")
+    keys = ["device", "driver", "read_gbps", "write_gbps", "cases", "left_out"]
+    expect(list(report) == keys, f"keys {list(report)}")
     expect(report["device"] and report["driver"], "device and driver are named")
     expect(report["read_gbps"] > 0.1 and report["write_gbps"] > 0.1, f"limits {report['read_gbps']}")
 
@@ -88,7 +90,57 @@ def test_json():
     expect(names == wanted, f"cases {names}")
     for case in report["cases"]:
         expect_case(case, f"{case['field']} {case['dims']} {case['type']}")
+        expect(case["repeats"] == 3, f"{case['repeats']} repeats of 3")
+    expect(report["left_out"] == [], f"left out: {report['left_out']}")
     return report["cases"][0]
+
+
+def cases_of(*arguments):
+    done = bench(*arguments, "--repeat", "1", "--json")
+    expect(done.returncode == 0, f"{arguments}: {done.returncode} {done.stderr!r}")
+    return json.loads(done.stdout)
+
+
+def test_second(made):
+    """It is the surface that this isovalue alone has, and another one than the first."""
+    expect(made["second_iso"] == 127.5 * 1.05, f"second isovalue {made['second_iso']}")
+    expect(made["second_hash"] != made["hash"], "two isovalues, one mesh")
+    case = ["--field", "sphere", "--dims", "17", "--type", "u8"]
+    alone = cases_of(*case, "--iso", repr(made["second_iso"]), "--second", "127.5")["cases"][0]
+    for key in "iso", "vertices", "triangles", "hash":
+        expect(alone[key] == made[f"second_{key}"], f"second {key}: {made[f'second_{key}']}, alone {alone[key]}")
+        expect(alone[f"second_{key}"] == made[key], f"{key}: {made[key]}, as second {alone[f'second_{key}']}")
+    expect(cases_of(*case, "--iso", "0")["cases"][0]["second_iso"] == 1, "the second isovalue after 0")
+
+
+def test_sweep():
+    """All fields and types of a sweep; what its rules or memory do not allow is left out, the latter with a notice."""
+    report = cases_of("--sweep", "--dims", "9")
+    names = [(case["field"], case["type"]) for case in report["cases"]]
+    wanted = [(field, kind) for field in ("sphere", "gyroid", "marschner-lobb", "noise", "empty", "full")
+              for kind in ("u8", "u16", "f32")]
+    expect(names == wanted, f"--sweep: {names}")
+    for case in report["cases"]:
+        expect_case(case, f"--sweep: {case['field']} {case['type']}")
+        expect((case["triangles"] == 0) == (case["field"] in ("empty", "full")), f"--sweep: {case}")
+    report = cases_of("--sweep", "--field", "noise", "--dims", "9", "--dims", "9,9,257", "--type", "u8")
+    expect([case["dims"] for case in report["cases"]] == [[9, 9, 9]], f"--sweep: noise {report['cases']}")
+    expect(report["left_out"] == [], f"--sweep: {report['left_out']}")
+
+    done = bench("--sweep", "--field", "torus", "--dims", "100000", "--dims", "9", "--type", "u8", "--json",
+                 "--repeat", "1")
+    report = json.loads(done.stdout)
+    expect(done.returncode == 0 and len(report["cases"]) == 1, f"too large: {done.returncode} {report['cases']}")
+    left_out = report["left_out"]
+    expect(len(left_out) == 1 and left_out[0]["dims"] == [100000] * 3 and "memory" in left_out[0]["reason"],
+           f"too large: {left_out}")
+    expect("left out" in done.stderr, f"too large: says {done.stderr!r}")
+
+
+def test_table():
+    done = bench("--field", "sphere", "--dims", "9", "--dims", "9,10,11", "--type", "u8", "--repeat", "1")
+    rows = [line for line in done.stdout.splitlines() if line.startswith("sphere ")]
+    expect(done.returncode == 0 and [row.split()[1] for row in rows] == ["9^3", "9x10x11"], f"table: {done.stdout}")
 
 
 def test_dump_and_turns(made, folder):
@@ -121,6 +173,9 @@ def test_statuses(folder):
             (2, "--dims", ["--dims", "5,5"]), (2, "--dims", ["--dims", "64,"]), (2, "--type", ["--type", "u9"]),
             (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "hybrid"]),
             (2, "--json", ["--json=1"]), (2, "needs a value", ["--dims"]), (2, "--turns", ["--turns"]),
+            (2, "--second", ["--second", "x"]), (2, "--second", ["--second", "127.5"]), (2, "--sweep", ["--swep"]),
+            (2, "--sweep", ["--sweep", "--turns", "--field", "empty", "--dims", "9", "--type", "u8"]),
+            (2, "--sweep", ["--sweep", "--input", missing, "--iso", "1"]),
             (2, "isovalue", ["--input", missing]), (2, "--input", ["--input", missing, "--field", "sphere"]),
             (4, "none.nrrd", ["--input", missing, "--iso", "1"]), (1, "nonesuch", ["--device", "nonesuch"]),
             (1, "--dump", ["--field", "sphere", "--dims", "9", "--type", "u8", "--dump", os.path.join(missing, "x")])]:
@@ -138,6 +193,9 @@ def test_statuses(folder):
 def main():
     with tempfile.TemporaryDirectory(prefix="tetracubes-bench-test-") as folder:
         made = test_json()
+        test_second(made)
+        test_sweep()
+        test_table()
         test_dump_and_turns(made, folder)
         test_statuses(folder)
     print(f"{checks} checks, {failures} failed")

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""test_results.py - the committed tables are those that the committed results make; scripts cope with partial results
+
+    test_results.py SOURCE
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SOURCE = Path(sys.argv[1]).resolve()
+RESULTS = SOURCE / "bench" / "results"
+failures = 0
+
+
+def expect(condition, text):
+    global failures
+    if not condition:
+        failures += 1
+        print(f"FAILED: {text}")
+
+
+def run(*command):
+    return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          timeout=60, check=False)
+
+
+def make_tables(results, readme):
+    return run(sys.executable, SOURCE / "bench" / "table.py", "--results", results, "--readme", readme)
+
+
+def test_committed(folder):
+    results, readme = folder / "results", folder / "README.md"
+    shutil.copytree(RESULTS, results)
+    shutil.copy(SOURCE / "README.md", readme)
+    (results / "README.md").unlink()
+    done = make_tables(results, readme)
+    expect(done.returncode == 0, f"table.py: {done.returncode} {done.stderr}")
+    for made, committed in (readme, SOURCE / "README.md"), (results / "README.md", RESULTS / "README.md"):
+        expect(made.read_text() == committed.read_text(), f"{committed} is not what bench/table.py makes of the results")
+    for path in RESULTS.glob("*.json"):
+        name = json.loads(path.read_text())["name"]
+        expect(name == path.stem, f"{path.name} is named {name}")
+        expect((SOURCE / "bench" / "pictures" / f"{name}.svg").exists(), f"{path.name}: no plot; run bench/plot.py")
+
+
+def test_partial(folder):
+    """A machine without peers, as bench/gpu leaves it, with a case left out."""
+    path = sorted(RESULTS.glob("*.json"))[0]
+    result = json.loads(path.read_text())
+    for key in "peers", "vtk", "startup_ms", "peak_extra_mb":
+        result.pop(key, None)
+    result["cases"] = result["cases"][:1]
+    result["left_out"] = [{"field": "sphere", "dims": [1024, 1024, 1024], "type": "f32", "reason": "too large"}]
+    partial = folder / "partial"
+    partial.mkdir()
+    (partial / path.name).write_text(json.dumps(result))
+    readme = folder / "partial.md"
+    shutil.copy(SOURCE / "README.md", readme)
+    done = make_tables(partial, readme)
+    expect(done.returncode == 0, f"partial results: {done.returncode} {done.stderr}")
+    text = (partial / "README.md").read_text()
+    expect("Left out: sphere 1024³ f32; too large." in text, "the case left out is not told of")
+    expect("Beside other filters" not in text, "a table of peers without peers")
+
+
+def test_failures(folder):
+    empty = folder / "empty"
+    empty.mkdir()
+    readme = folder / "none.md"
+    readme.write_text("no place for tables\n")
+    for results, words in (empty, "no results"), (RESULTS, "has to hold"):
+        done = make_tables(results, readme)
+        expect(done.returncode == 1 and words in done.stderr, f"table.py, {words}: {done.returncode} {done.stderr!r}")
+    expect(readme.read_text() == "no place for tables\n", "table.py wrote where it has no place")
+    for script in "run", "gpu":
+        done = run("bash", SOURCE / "bench" / script, "--no-such-option")
+        expect(done.returncode == 2 and "--no-such-option" in done.stderr, f"bench/{script}: {done.returncode}")
+
+
+def test_plot(folder):
+    if run("/usr/bin/python3", "-c", "import matplotlib").returncode:
+        print("matplotlib is missing: without plot.py")
+        return
+    done = run("/usr/bin/python3", SOURCE / "bench" / "plot.py", "--results", folder / "partial", "--pictures", folder)
+    made = list(folder.glob("*.svg"))
+    expect(done.returncode == 0 and len(made) == 1, f"plot.py: {done.returncode} {done.stderr}")
+    expect(made and "<svg" in made[0].read_text(), "plot.py made no SVG")
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="tetracubes-results-test-") as name:
+        os.environ["MPLCONFIGDIR"] = name
+        folder = Path(name)
+        test_committed(folder)
+        test_partial(folder)
+        test_failures(folder)
+        test_plot(folder)
+    print(f"{failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
