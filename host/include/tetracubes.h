@@ -127,8 +127,11 @@ typedef struct tc_context tc_context;
 /* Defaults: OpenCL engine, default device, no bound on memory, no progress. */
 TC_API void tc_context_options_init(tc_context_options *options);
 
-/* Picks the device; kernels are built when the first grid needs them. The context keeps device buffers between
- * extractions. Destroy its grids and meshes before it. */
+/* Picks the device; kernels are built when the first extraction needs them, or taken from the cache: files in the
+ * folder that the environment's TETRACUBES_CACHE_DIR names, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes
+ * (empty TETRACUBES_CACHE_DIR: no cache). tc_context_destroy puts there what had to be built; files that are damaged or
+ * cannot be written are done without. The context keeps device buffers between extractions. Destroy its grids and
+ * meshes before it. */
 TC_API tc_status tc_context_create(const tc_context_options *options, tc_context **context);
 TC_API void tc_context_destroy(tc_context *context);
 
