@@ -11,6 +11,7 @@
 #include "measure.h"
 #include "progress.h"
 #include "report.h"
+#include "tune.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -112,7 +113,7 @@ int main(int argc, char **argv) {
         bench_options_help(stdout);
     } else if (!status) {
         progress_begin(0);
-        status = o.dump ? dump_run(&o) : measure_run(&o);
+        status = o.dump ? dump_run(&o) : o.tune ? tune_run(&o) : measure_run(&o);
         progress_clear();
     }
     if (!status && (fflush(stdout) || ferror(stdout)))

@@ -20,7 +20,7 @@ typedef struct bench_options {
     const char *input;  /* a volume file instead of fields, or NULL */
     const char *dump;   /* where to write the samples instead of measuring, or NULL */
     int repeat;
-    int json, turns, help;
+    int json, tune, turns, help;
 } bench_options;
 
 /* Returns 0, or STATUS_USAGE with its text (failure.h). */
