@@ -12,6 +12,7 @@
 #include "progress.h"
 #include "report.h"
 #include "sweep.h"
+#include "tune.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -145,7 +146,7 @@ int main(int argc, char **argv) {
         bench_options_help(stdout);
     } else if (!status) {
         progress_begin(0);
-        status = o.dump ? dump_run(&o) : measure_run(&o);
+        status = o.dump ? dump_run(&o) : o.tune ? tune_run(&o) : measure_run(&o);
         progress_clear();
     }
     if (!status && (fflush(stdout) || ferror(stdout)))

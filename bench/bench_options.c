@@ -114,6 +114,8 @@ static int take_json(const char *text, bench_options *o) { return (void)text, o-
 
 static int take_turns(const char *text, bench_options *o) { return (void)text, o->turns = 1, 0; }
 
+static int take_tune(const char *text, bench_options *o) { return (void)text, o->tune = 1, 0; }
+
 static int take_help(const char *text, bench_options *o) { return (void)text, o->help = 1, 0; }
 
 /* ----------------------------------------------------------------------------------------------------------- table */
@@ -154,6 +156,9 @@ static const option table[] = {
      "at least, where these take over 4 seconds"},
     {"--json", NULL, take_json,
      "print one JSON object instead of the table"},
+    {"--tune", NULL, take_tune,
+     "try launch parameters over the cases (default sizes: 128 and 256), have\n"
+     "the library keep the fastest for this device, and measure nothing else"},
     {"--turns", NULL, take_turns,
      "of one case: print 'ready' when it is verified, then make one timed\n"
      "extraction with a new mesh for every line on standard input and print\n"
@@ -196,13 +201,14 @@ static int parse_option(int argc, char **argv, int *at, bench_options *o) {
 
 static void add_defaults(bench_options *o) {
     static const char *const names[] = {"sphere", "gyroid", "marschner-lobb", "noise", "empty", "full"};
-    static const int64_t sizes[] = {64, 128, 256, 512, 1024};
+    static const int64_t all_sizes[] = {64, 128, 256, 512, 1024};
     static const tc_type types[] = {TC_U8, TC_F32}, sweep_types[] = {TC_U8, TC_U16, TC_F32};
+    const int64_t *sizes = o->tune ? all_sizes + 1 : all_sizes;
     if (!o->field_count)
         for (; o->field_count < (o->sweep ? 6 : 2); o->field_count++)
             o->fields[o->field_count] = field_find(names[o->field_count]);
     if (!o->dims_count)
-        for (; o->dims_count < (o->sweep ? 5 : 4); o->dims_count++)
+        for (; o->dims_count < (o->sweep ? 5 : o->tune ? 2 : 4); o->dims_count++)
             for (int axis = 0; axis < 3; axis++) o->dims[o->dims_count][axis] = sizes[o->dims_count];
     if (!o->type_count)
         for (; o->type_count < (o->sweep ? 3 : 2); o->type_count++)
@@ -214,6 +220,8 @@ static int check_together(const bench_options *o) {
     if (o->input && (o->dims_count != o->type_count || o->dims_count > 1))
         return fail(STATUS_USAGE, "--input: raw files need one --dims and one --type, others neither");
     if (o->input && !o->has_iso && !o->dump) return fail(STATUS_USAGE, "--input needs an isovalue, as in --iso 127.5");
+    if (o->tune && (o->turns || o->dump))
+        return fail(STATUS_USAGE, "--tune and %s: give one of them", o->turns ? "--turns" : "--dump");
     if ((o->turns || o->dump) && !o->input && (o->field_count != 1 || o->dims_count != 1 || o->type_count != 1))
         return fail(STATUS_USAGE, "%s is for one case: give one --field, --dims and --type, or --input",
                     o->turns ? "--turns" : "--dump");
@@ -254,6 +262,7 @@ void bench_options_help(FILE *out) {
                  "  tetracubes-bench --field gyroid --dims 256 --type u8 --json\n"
                  "  tetracubes-bench --input head.nii.gz --iso 500\n"
                  "  tetracubes-bench --sweep --json --device gpu\n"
+                 "  tetracubes-bench --tune --device gpu\n"
                  "\nOptions (* may be given several times; every combination is a case):\n");
     for (const option *spec = table; spec < table + TABLE_COUNT; spec++) {
         char head[32];

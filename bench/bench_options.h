@@ -21,7 +21,7 @@ typedef struct bench_options {
     const char *dump;   /* where to write the samples instead of measuring, or NULL */
     int repeat;
     int sweep; /* sweep.h: not all of the combinations */
-    int json, turns, help;
+    int json, tune, turns, help;
 } bench_options;
 
 /* Returns 0, or STATUS_USAGE with its text (failure.h). */

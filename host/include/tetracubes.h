@@ -51,6 +51,7 @@ typedef enum tc_status {
     TC_ERROR_MEMORY,    /* host or device memory ran out */
     TC_ERROR_LIMIT,     /* the mesh needs more than 2^32 - 1 vertices */
     TC_ERROR_CANCELLED, /* the progress callback asked to stop */
+    TC_ERROR_FILE,      /* a file of the cache, which the caller asked for, cannot be written */
 } tc_status;
 
 /* What the last failed call of this thread found wrong, in one or two sentences. Never NULL; valid until the thread's
@@ -114,7 +115,8 @@ typedef struct tc_context_options {
                                   0: what the device allows. Less memory means smaller slabs, never other results */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
-    uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results */
+    uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These
+                             three all 0: what tc_context_tuning_keep kept for the device, if it did */
     uint32_t spin_limit;  /* polls of an unfinished tile before its sum is recomputed; 0: default; 1 also recomputes the
                              tile  before each, which tests that path. Never changes results */
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
@@ -127,13 +129,29 @@ typedef struct tc_context tc_context;
 /* Defaults: OpenCL engine, default device, no bound on memory, no progress. */
 TC_API void tc_context_options_init(tc_context_options *options);
 
-/* Picks the device; kernels are built when the first grid needs them. The context keeps device buffers between
- * extractions. Destroy its grids and meshes before it. */
+/* Picks the device; kernels are built when the first extraction needs them, or taken from the cache: files in the
+ * folder that the environment's TETRACUBES_CACHE_DIR names, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes
+ * (empty TETRACUBES_CACHE_DIR: no cache). tc_context_destroy puts there what had to be built; files that are damaged or
+ * cannot be written are done without. The context keeps device buffers between extractions. Destroy its grids and
+ * meshes before it. */
 TC_API tc_status tc_context_create(const tc_context_options *options, tc_context **context);
 TC_API void tc_context_destroy(tc_context *context);
 
 /* The device of an OpenCL context; TC_ERROR_ARGUMENT for the reference engine, which has none. */
 TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *info);
+
+/* How kernels are launched; fields as in tc_context_options. Never changes results. */
+typedef struct tc_tuning {
+    size_t struct_size; /* set by the caller: sizeof(tc_tuning) */
+    uint32_t work_items, work_groups, tile_bricks;
+} tc_tuning;
+
+/* What the context launches with; TC_ERROR_ARGUMENT for the reference engine. */
+TC_API tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning);
+
+/* Keeps that in the cache folder, for this device and driver: later contexts whose options leave all three at 0 launch
+ * so. TC_ERROR_FILE where that cannot be written. */
+TC_API tc_status tc_context_tuning_keep(const tc_context *context);
 
 /* The context's OpenCL objects, not retained; NULL for the reference engine. */
 TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);

@@ -2,6 +2,7 @@
 
 #include "device.h"
 #include "failure.h"
+#include "tuning.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -139,27 +140,6 @@ static tc_status device_open(tc_context *context, const char *specification) {
     return status;
 }
 
-static const uint64_t work_items_most = 1024; /* CPUs keep the variables of all work-items of a group on one stack */
-
-/* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
-static tc_status tuning_default(tc_context *context) {
-    tc_context_options *o = &context->options;
-    bool cpu = !strcmp(context->info.type, "cpu");
-    if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
-    if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
-    if (!o->spin_limit) o->spin_limit = 1u << 14;
-    if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
-    uint64_t most =
-        context->info.max_work_group_size < work_items_most ? context->info.max_work_group_size : work_items_most;
-    if ((o->work_items != 1 && o->work_items % 32) || o->work_items > most)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %llu on this device",
-                               o->work_items, (unsigned long long)most);
-    if (o->division < 1 || o->division > 3 || (o->division == 1 && !context->info.rounds_division) ||
-        (o->division == 2 && !context->info.has_fp64))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", o->division);
-    return TC_OK;
-}
-
 static tc_status opencl_begin(tc_context *context, const tc_context_options *o) {
     tc_status status = opencl_load();
     if (!status && o->cl_context) {
@@ -168,7 +148,7 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     } else if (!status) {
         status = device_open(context, o->device);
     }
-    return status ? status : tuning_default(context);
+    return status ? status : tuning_choose(context);
 }
 
 tc_status tc_context_create(const tc_context_options *options, tc_context **out) {

@@ -20,6 +20,8 @@ typedef struct device_buffer {
 /* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
 typedef struct program {
     char options[512];
+    const char *const *sources;
+    bool cached; /* it came from the cache of built programs */
     cl_program program;
     cl_kernel kernel, cells;
     struct program *next;

@@ -15,33 +15,47 @@ typedef struct device_list {
     device_choice devices[DEVICES_MAX];
 } device_list;
 
-/* A platform without devices is passed over. */
-static tc_status device_list_make(device_list *list) {
+typedef struct platform_list {
+    cl_uint count;
     cl_platform_id platforms[PLATFORMS_MAX];
-    cl_uint platform_count = 0;
-    list->count = 0;
+} platform_list;
+
+static tc_status platform_list_make(platform_list *list) {
     tc_status status = opencl_load();
     if (status) return status;
-    cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
-    if (error != CL_SUCCESS || platform_count == 0)
+    list->count = 0;
+    cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, list->platforms, &list->count);
+    if (error != CL_SUCCESS || list->count == 0)
         return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL platform is installed (for the CPU on Debian: apt install "
                                                 "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
                                                 "reference engine needs none");
-    if (platform_count > PLATFORMS_MAX) platform_count = PLATFORMS_MAX;
-    for (cl_uint p = 0; p < platform_count; p++) {
-        cl_device_id devices[DEVICES_MAX];
-        cl_uint device_count = 0;
-        cl_uint room = (cl_uint)(DEVICES_MAX - list->count);
-        if (room == 0 || cl->GetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count)) continue;
-        for (cl_uint d = 0; d < device_count && d < room; d++)
-            list->devices[list->count++] = (device_choice){platforms[p], devices[d], (int)p, (int)d};
-    }
-    if (list->count == 0)
-        return (tc_status)fail(TC_ERROR_DEVICE,
-                               "the %u OpenCL platform(s) installed have no device (for the CPU on "
-                               "Debian: apt install pocl-opencl-icd); the reference engine needs none",
-                               platform_count);
+    if (list->count > PLATFORMS_MAX) list->count = PLATFORMS_MAX;
     return TC_OK;
+}
+
+/* Wakes the driver of platform p. One without devices is passed over. */
+static void devices_append(device_list *list, const platform_list *platforms, cl_uint p) {
+    cl_device_id devices[DEVICES_MAX];
+    cl_uint device_count = 0, room = (cl_uint)(DEVICES_MAX - list->count);
+    if (room == 0 || cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count))
+        return;
+    for (cl_uint d = 0; d < device_count && d < room; d++)
+        list->devices[list->count++] = (device_choice){platforms->platforms[p], devices[d], (int)p, (int)d};
+}
+
+static tc_status no_device(const platform_list *platforms) {
+    return (tc_status)fail(TC_ERROR_DEVICE,
+                           "the %u OpenCL platform(s) installed have no device (for the CPU on "
+                           "Debian: apt install pocl-opencl-icd); the reference engine needs none",
+                           platforms->count);
+}
+
+static tc_status device_list_make(device_list *list) {
+    platform_list platforms;
+    list->count = 0;
+    tc_status status = platform_list_make(&platforms);
+    for (cl_uint p = 0; !status && p < platforms.count; p++) devices_append(list, &platforms, p);
+    return status || list->count ? status : no_device(&platforms);
 }
 
 static void text_get(cl_device_id device, cl_device_info what, char *out, size_t bytes) {
@@ -56,6 +70,14 @@ static uint64_t number_get(cl_device_id device, cl_device_info what, size_t byte
     return value; /* little-endian hosts only, as the sign words are */
 }
 
+static const char *type_name(cl_device_id device) {
+    uint64_t type = number_get(device, CL_DEVICE_TYPE, sizeof(cl_device_type));
+    return type & CL_DEVICE_TYPE_GPU           ? "gpu"
+           : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
+           : type & CL_DEVICE_TYPE_CPU         ? "cpu"
+                                               : "other";
+}
+
 tc_status device_describe(cl_device_id device, tc_device_info *info) {
     cl_platform_id platform = NULL;
     memset(info, 0, sizeof *info);
@@ -68,11 +90,7 @@ tc_status device_describe(cl_device_id device, tc_device_info *info) {
     text_get(device, CL_DEVICE_NAME, info->name, sizeof info->name);
     text_get(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
     text_get(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    uint64_t type = number_get(device, CL_DEVICE_TYPE, sizeof(cl_device_type));
-    strcpy(info->type, type & CL_DEVICE_TYPE_GPU           ? "gpu"
-                       : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
-                       : type & CL_DEVICE_TYPE_CPU         ? "cpu"
-                                                           : "other");
+    strcpy(info->type, type_name(device));
     info->compute_units = (uint32_t)number_get(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
     info->max_work_group_size = number_get(device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
     info->global_memory_bytes = number_get(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
@@ -110,25 +128,32 @@ static bool device_matches(const char *specification, int index, const device_ch
     tc_device_info info;
     bool same = indices_match(specification, index, d, &is_index);
     if (is_index) return same;
-    if (device_describe(d->device, &info)) return false;
     if (!strcasecmp(specification, "cpu") || !strcasecmp(specification, "gpu") ||
         !strcasecmp(specification, "accelerator"))
-        return !strcasecmp(specification, info.type);
+        return !strcasecmp(specification, type_name(d->device));
+    if (device_describe(d->device, &info)) return false;
     return text_contains(info.name, specification) || text_contains(info.platform, specification);
 }
 
+/* Platforms behind that of the device meant stay asleep: a driver may take long to wake. */
 tc_status device_choose(const char *specification, device_choice *choice) {
-    device_list list;
-    tc_status status = device_list_make(&list);
+    platform_list platforms;
+    device_list list = {0};
+    tc_status status = platform_list_make(&platforms);
     if (status) return status;
     const char *origin = specification ? "" : " (from TETRACUBES_DEVICE)";
     if (!specification) specification = getenv("TETRACUBES_DEVICE");
     const char *wanted = specification && *specification ? specification : "cpu";
-    for (int n = 0; n < list.count; n++)
-        if (device_matches(wanted, n, &list.devices[n])) {
-            *choice = list.devices[n];
-            return TC_OK;
-        }
+    for (cl_uint p = 0; p < platforms.count; p++) {
+        int n = list.count;
+        devices_append(&list, &platforms, p);
+        for (; n < list.count; n++)
+            if (device_matches(wanted, n, &list.devices[n])) {
+                *choice = list.devices[n];
+                return TC_OK;
+            }
+    }
+    if (!list.count) return no_device(&platforms);
     if (specification && *specification)
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "no device \"%s\"%s among the %d of this machine: give an index, "

@@ -22,7 +22,9 @@
     X(ReleaseCommandQueue)                                                                                             \
     X(GetCommandQueueInfo)                                                                                             \
     X(CreateProgramWithSource)                                                                                         \
+    X(CreateProgramWithBinary)                                                                                         \
     X(BuildProgram)                                                                                                    \
+    X(GetProgramInfo)                                                                                                  \
     X(GetProgramBuildInfo)                                                                                             \
     X(ReleaseProgram)                                                                                                  \
     X(CreateKernel)                                                                                                    \

@@ -1,10 +1,13 @@
 /*
- * Kernels: the .cl files of the source tree, embedded as text, built for one sample type at a time.
+ * Kernels: the .cl files of the source tree, embedded as text, built for one sample type at a time, and taken from the
+ * cache of built programs where that has them. What was built here is put there at the end of the context, when the
+ * kernels have run.
  */
 #include "context.h"
 
 #include "failure.h"
 #include "kernel_sources.h"
+#include "program_cache.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,13 +70,22 @@ static const char *const emit_sources[SOURCE_COUNT] = {
     kernel_source_slab, kernel_source_words,      kernel_source_tetrahedra, kernel_source_cells, kernel_source_vertex,
     kernel_source_mesh, kernel_source_emit_brick, kernel_source_emit_rows,  kernel_source_emit};
 
-static tc_status program_build(const tc_context *context, program *p, const char *const sources[SOURCE_COUNT]) {
+static program_recipe recipe_of(const program *p) { return (program_recipe){p->sources, SOURCE_COUNT, p->options}; }
+
+static tc_status source_build(const tc_context *context, program *p) {
     cl_int error;
     p->program =
-        cl->CreateProgramWithSource(context->context, SOURCE_COUNT, (const char **)(size_t)sources, NULL, &error);
+        cl->CreateProgramWithSource(context->context, SOURCE_COUNT, (const char **)(size_t)p->sources, NULL, &error);
     if (error) return opencl_fail("handing the kernels to the device", error);
     error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
     return error ? build_fail(context, p, error) : TC_OK;
+}
+
+static tc_status program_build(const tc_context *context, program *p) {
+    program_recipe recipe = recipe_of(p);
+    p->program = program_cache_load(context, &recipe);
+    p->cached = p->program != NULL;
+    return p->cached ? TC_OK : source_build(context, p);
 }
 
 static tc_status kernel_create(const tc_context *context, const program *p, const char *name, cl_kernel *kernel) {
@@ -108,7 +120,8 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
     snprintf(p->options, sizeof p->options, "%s", options);
-    tc_status status = program_build(context, p, sources);
+    p->sources = sources;
+    tc_status status = program_build(context, p);
     if (!status) status = kernel_create(context, p, name, &p->kernel);
     if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells);
     if (status) {
@@ -140,8 +153,10 @@ tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool 
 
 void programs_release(tc_context *context) {
     while (context->programs) {
-        program *next = context->programs->next;
-        program_release(context->programs);
+        program *p = context->programs, *next = p->next;
+        program_recipe recipe = recipe_of(p);
+        if (!p->cached) program_cache_store(context, &recipe, p->program);
+        program_release(p);
         context->programs = next;
     }
 }

@@ -1,0 +1,28 @@
+/*
+ * cache.h - a folder of files that save work and may vanish at any time
+ *
+ * It is TETRACUBES_CACHE_DIR, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes, of the environment; none
+ * where TETRACUBES_CACHE_DIR is empty. A file appears whole or not at all: it is written beside and renamed, so that
+ * processes may share the folder. What cannot be read or written is done without.
+ */
+#ifndef CACHE_H
+#define CACHE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct cache_text {
+    char *bytes; /* from malloc, with a zero behind the last */
+    size_t count;
+} cache_text;
+
+/* The whole of a regular file; false, and nothing to free, where there is none or it cannot be read. */
+bool cache_read(const char *name, cache_text *out);
+
+/* Replaces the file; makes the folder where it is missing. False where it cannot be written. */
+bool cache_write(const char *name, const void *bytes, size_t count);
+
+/* True where there is a folder to be used, whether it exists yet or not. */
+bool cache_is_on(void);
+
+#endif

@@ -1,0 +1,159 @@
+#include "tuning.h"
+
+#include "cache.h"
+#include "failure.h"
+
+#include <errno.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char file_name[] = "tuning";
+
+static const struct {
+    const char *name;
+    size_t place;
+} parameters[] = {
+    {"work_items=", offsetof(tc_tuning, work_items)},
+    {"work_groups=", offsetof(tc_tuning, work_groups)},
+    {"tile_bricks=", offsetof(tc_tuning, tile_bricks)},
+};
+enum { PARAMETERS = sizeof parameters / sizeof *parameters };
+
+static const uint32_t work_items_most = 1024; /* CPUs keep the variables of all work-items of a group on one stack */
+static const uint32_t kept_most = 1u << 16;   /* more groups, or bricks, would do nothing but fill memory */
+
+static uint32_t work_items_limit(const tc_context *context) {
+    uint64_t most = context->info.max_work_group_size;
+    return most < work_items_most ? (uint32_t)most : work_items_most;
+}
+
+static bool work_items_fit(const tc_context *context, uint32_t count) {
+    return (count == 1 || count % 32 == 0) && count <= work_items_limit(context);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ file */
+
+/* One line. The units are part of it: cores given to a machine change, its processor's name does not. */
+static void device_text(const tc_context *context, char out[1024]) {
+    const tc_device_info *d = &context->info;
+    snprintf(out, 1024, "device=%s, %u units, %s, %s, driver %s", d->name, d->compute_units, d->platform, d->version,
+             d->driver);
+    for (char *c = out; *c; c++)
+        if ((unsigned char)*c < ' ') *c = ' ';
+}
+
+/* Behind the parameters at the start of the line; NULL where it is of another form. */
+static const char *parameters_parse(const char *line, tc_tuning *out) {
+    for (int n = 0; n < PARAMETERS; n++) {
+        size_t length = strlen(parameters[n].name);
+        if (strncmp(line, parameters[n].name, length) || line[length] < '0' || line[length] > '9') return NULL;
+        char *end;
+        errno = 0;
+        unsigned long value = strtoul(line + length, &end, 10);
+        if (errno || value > kept_most || *end != ' ') return NULL;
+        *(uint32_t *)((char *)out + parameters[n].place) = (uint32_t)value;
+        line = end + 1;
+    }
+    return line;
+}
+
+/* What the file keeps for the device, where the device can do it. */
+static bool kept_find(const tc_context *context, tc_tuning *out) {
+    char device[1024], *rest = NULL;
+    cache_text file;
+    bool found = false;
+    if (!cache_read(file_name, &file)) return false;
+    device_text(context, device);
+    for (char *line = strtok_r(file.bytes, "\n", &rest); line && !found; line = strtok_r(NULL, "\n", &rest)) {
+        const char *of = parameters_parse(line, out);
+        found = of && !strcmp(of, device) && (!out->work_items || work_items_fit(context, out->work_items));
+    }
+    free(file.bytes);
+    return found;
+}
+
+static void line_write(FILE *out, const tc_tuning *tuning, const char *device) {
+    for (int n = 0; n < PARAMETERS; n++)
+        fprintf(out, "%s%u ", parameters[n].name, *(const uint32_t *)((const char *)tuning + parameters[n].place));
+    fprintf(out, "%s\n", device);
+}
+
+/* The lines of other devices, as they are. */
+static void others_write(FILE *out, const char *device) {
+    cache_text file;
+    char *rest = NULL;
+    if (!cache_read(file_name, &file)) return;
+    for (char *line = strtok_r(file.bytes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        const char *of = strstr(line, "device=");
+        if (of && strcmp(of, device)) fprintf(out, "%s\n", line);
+    }
+    free(file.bytes);
+}
+
+tc_status tc_context_tuning_keep(const tc_context *context) {
+    tc_tuning tuning = {.struct_size = sizeof tuning};
+    char device[1024];
+    cache_text text = {0};
+    tc_status status = tc_context_tuning(context, &tuning);
+    if (status) return status;
+    FILE *out = open_memstream(&text.bytes, &text.count);
+    if (!out) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the tuning file");
+    device_text(context, device);
+    line_write(out, &tuning, device);
+    others_write(out, device);
+    bool done = !ferror(out);
+    done = !fclose(out) && done && cache_write(file_name, text.bytes, text.count);
+    free(text.bytes);
+    return done ? TC_OK
+                : (tc_status)fail(TC_ERROR_FILE, "the tuning file cannot be written: see that TETRACUBES_CACHE_DIR is "
+                                                 "unset, or names a folder that can be written");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- choice */
+
+/* All or none: they were measured together. */
+static void kept_take(tc_context *context) {
+    tc_context_options *o = &context->options;
+    tc_tuning kept;
+    if (o->work_items || o->work_groups || o->tile_bricks || !kept_find(context, &kept)) return;
+    o->work_items = kept.work_items;
+    o->work_groups = kept.work_groups;
+    o->tile_bricks = kept.tile_bricks;
+}
+
+/* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
+static void defaults_take(tc_context *context) {
+    tc_context_options *o = &context->options;
+    bool cpu = !strcmp(context->info.type, "cpu");
+    if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
+    if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
+    if (!o->spin_limit) o->spin_limit = 1u << 14;
+    if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
+}
+
+tc_status tuning_choose(tc_context *context) {
+    const tc_context_options *o = &context->options;
+    kept_take(context);
+    defaults_take(context);
+    if (!work_items_fit(context, o->work_items))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %u on this device",
+                               o->work_items, work_items_limit(context));
+    if (o->division < 1 || o->division > 3 || (o->division == 1 && !context->info.rounds_division) ||
+        (o->division == 2 && !context->info.has_fp64))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", o->division);
+    return TC_OK;
+}
+
+tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
+    if (!context || !tuning || tuning->struct_size < sizeof *tuning)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "tc_context_tuning needs a context, and a tuning with its struct_size set");
+    if (context->options.engine == TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine launches nothing");
+    tuning->work_items = context->options.work_items;
+    tuning->work_groups = context->options.work_groups;
+    tuning->tile_bricks = context->options.tile_bricks;
+    return TC_OK;
+}
