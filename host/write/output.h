@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { OUTPUT_BLOCK = 256 << 10 }; /* bytes of records that are written at once: many, but still in a core's cache */
+enum { OUTPUT_BLOCK = 1 << 20 }; /* bytes of records that are written at once: so many that taking turns costs little */
 
 typedef struct output {
     const char *name; /* as the caller gave it, for messages; borrowed */
