@@ -12,6 +12,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +24,7 @@
 static char folder[] = "/tmp/test_write_XXXXXX";
 
 /* The same triangles with three vertices of their own each. */
-static tc_mesh_data unshare(const tc_mesh_data *mesh) {
+static tc_mesh_data unshared(const tc_mesh_data *mesh) {
     tc_mesh_data soup = make_mesh(3 * mesh->triangle_count, mesh->triangle_count, mesh->normals != NULL);
     for (uint32_t corner = 0; corner < soup.vertex_count; corner++) {
         uint64_t source = mesh->triangles[corner];
@@ -141,7 +142,7 @@ static void test_read_back(const tc_mesh_data *mesh, int soup, size_t which) {
     EXPECT(text != NULL, "%s is missing", name);
     if (!text) return;
 
-    tc_mesh_data is = formats[which].parse(text, bytes), should = soup || is_stl ? unshare(mesh) : *mesh;
+    tc_mesh_data is = formats[which].parse(text, bytes), should = soup || is_stl ? unshared(mesh) : *mesh;
     if (is_stl) {
         expect_facet_normals(name, &is);
         free((void *)(uintptr_t)is.normals);
@@ -168,6 +169,17 @@ static void test_meshes(void) {
                     test_read_back(&mesh, soup, f);
             free_mesh(&mesh);
         }
+}
+
+/* The same where blocks are encoded by one thread. */
+static void test_one_processor(void) {
+    cpu_set_t all, one;
+    if (sched_getaffinity(0, sizeof all, &all) != 0) return;
+    CPU_ZERO(&one);
+    CPU_SET((size_t)sched_getcpu(), &one);
+    EXPECT(sched_setaffinity(0, sizeof one, &one) == 0, "sched_setaffinity");
+    test_meshes();
+    sched_setaffinity(0, sizeof all, &all);
 }
 
 /* Facets of ordinary shape, one of them without area. */
@@ -261,13 +273,13 @@ static void drop_privileges(void) {
 }
 
 /* mesh_write in a child without privileges: its status, or 101 where the text lacks the words. */
-static int write_unprivileged(const char *path, const tc_mesh_data *mesh, const char *words) {
+static int write_unprivileged(const char *path, const tc_mesh_data *mesh, const char *format, const char *words) {
     fflush(stdout);
     pid_t child = fork();
     if (child == 0) {
-        mesh_write_options ply = {.format = "ply"};
+        mesh_write_options options = {.format = format};
         drop_privileges();
-        int status = mesh_write(path, mesh, &ply);
+        int status = mesh_write(path, mesh, &options);
         _exit(status == 0 || strstr(failure_text(), words) ? status : 101);
     }
     int status = -1;
@@ -279,10 +291,10 @@ static void test_no_permission(const tc_mesh_data *mesh) {
     make_file(path_of("old.ply"), "kept");
     chmod(path_of("old.ply"), 0444);
     chmod(folder, 0777);
-    int status = write_unprivileged(path_of("old.ply"), mesh, "Permission denied");
+    int status = write_unprivileged(path_of("old.ply"), mesh, "ply", "Permission denied");
     EXPECT(status == STATUS_FAILED, "protected file: %d", status);
     chmod(folder, 0555);
-    status = write_unprivileged(path_of("new.ply"), mesh, "Permission denied");
+    status = write_unprivileged(path_of("new.ply"), mesh, "ply", "Permission denied");
     EXPECT(status == STATUS_FAILED, "protected folder: %d", status);
     chmod(folder, 0755);
     EXPECT(holds(path_of("old.ply"), "kept") && count_files() == 1, "a protected file or folder was changed");
@@ -315,11 +327,10 @@ static void expect_nothing_left(const char *name, const tc_mesh_data *mesh, rlim
 
 static void test_full_disk(const tc_mesh_data *mesh) {
     static const char *const names[] = {"full.ply", "full.stl", "full.obj"};
-    if (access("/dev/full", W_OK) == 0) {
-        int status = write_unprivileged("/dev/full", mesh, "free space");
-        EXPECT(status == STATUS_FAILED, "/dev/full: %d", status);
-    } else {
-        printf("skipped: no /dev/full\n");
+    if (access("/dev/full", W_OK) != 0) printf("skipped: no /dev/full\n");
+    for (int i = 0; i < 3 && access("/dev/full", W_OK) == 0; i++) {
+        int status = write_unprivileged("/dev/full", mesh, names[i] + strlen("full."), "free space");
+        EXPECT(status == STATUS_FAILED, "/dev/full as %s: %d", names[i], status);
     }
 
     signal(SIGXFSZ, SIG_IGN);
@@ -330,9 +341,30 @@ static void test_full_disk(const tc_mesh_data *mesh) {
         unlink(path_of(names[i]));
         expect_nothing_left(names[i], mesh, 50);                        /* fails in the first write */
         expect_nothing_left(names[i], mesh, (rlim_t)whole.st_size / 2); /* in a later one */
-        expect_nothing_left(names[i], mesh, (rlim_t)whole.st_size - 1); /* in the last, when the output is closed */
+        expect_nothing_left(names[i], mesh, (rlim_t)whole.st_size - 1); /* in the last */
     }
     signal(SIGXFSZ, SIG_DFL);
+}
+
+/* Writes to a FIFO whose reader leaves after the first bytes, while later blocks are being encoded. */
+static void test_closed_pipe(const tc_mesh_data *mesh) {
+    static const char *const names[] = {"closed.ply", "closed.stl", "closed.obj"};
+    signal(SIGPIPE, SIG_IGN);
+    for (int i = 0; i < 3; i++) {
+        EXPECT(mkfifo(path_of(names[i]), 0600) == 0, "mkfifo");
+        fflush(stdout);
+        pid_t child = fork();
+        if (child == 0) {
+            char head[1000];
+            int fd = open(path_of(names[i]), O_RDONLY);
+            _exit(read(fd, head, sizeof head) > 0 ? 0 : 1);
+        }
+        expect_failure(names[i], mesh_write(path_of(names[i]), mesh, NULL), STATUS_FAILED, "Broken pipe");
+        waitpid(child, NULL, 0);
+        EXPECT(count_files() == 1, "%s: %d files", names[i], count_files());
+        unlink(path_of(names[i]));
+    }
+    signal(SIGPIPE, SIG_DFL);
 }
 
 /* --------------------------------------------------------------------------------------------------------- targets */
@@ -388,7 +420,7 @@ static void test_names(const tc_mesh_data *mesh) {
 }
 
 static void test_devices(const tc_mesh_data *mesh) {
-    EXPECT(write_unprivileged("/dev/null", mesh, "") == 0, "/dev/null");
+    EXPECT(write_unprivileged("/dev/null", mesh, "ply", "") == 0, "/dev/null");
     EXPECT(mkfifo(path_of("fifo.ply"), 0600) == 0, "mkfifo");
     fflush(stdout);
     pid_t child = fork();
@@ -435,6 +467,7 @@ int main(int argc, char **argv) {
     if (!mkdtemp(folder)) return EXIT_FAILURE;
     tc_mesh_data small = make_mesh(4, 4, 1), large = make_mesh(200000, 200000, 0);
     test_meshes();
+    test_one_processor();
     test_facets();
     test_obj_text();
     test_formats_named(&small);
@@ -442,6 +475,7 @@ int main(int argc, char **argv) {
     test_bad_targets(&small);
     test_no_permission(&small);
     test_full_disk(&large);
+    test_closed_pipe(&large);
     test_replacement(&small);
     test_names(&small);
     test_devices(&large);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 size_t element_bytes(int element) {
     static const unsigned char bytes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8};
@@ -107,6 +108,36 @@ static void copy_elements(unsigned char *to, const unsigned char *from, int64_t 
     }
 }
 
+#define SWAP_NEIGHBOURS(type, swap)                                                                                    \
+    for (int64_t i = 0; i < n; i++) {                                                                                  \
+        type value;                                                                                                    \
+        memcpy(&value, from + (size_t)i * sizeof value, sizeof value);                                                 \
+        value = swap(value);                                                                                           \
+        memcpy(to + (size_t)i * sizeof value, &value, sizeof value);                                                   \
+    }                                                                                                                  \
+    break
+
+/* Elements of 2, 4 or 8 bytes in the other byte order: with a constant step the compiler makes vector code. */
+static void swap_neighbours(unsigned char *to, const unsigned char *from, int64_t n, size_t bytes) {
+    switch (bytes) {
+    case 2:
+        SWAP_NEIGHBOURS(uint16_t, __builtin_bswap16);
+    case 4:
+        SWAP_NEIGHBOURS(uint32_t, __builtin_bswap32);
+    default:
+        SWAP_NEIGHBOURS(uint64_t, __builtin_bswap64);
+    }
+}
+
+static void copy_row(unsigned char *to, const unsigned char *from, int64_t n, size_t step, size_t bytes, int swapped) {
+    if (step != bytes)
+        copy_elements(to, from, n, step, bytes, swapped);
+    else if (swapped && bytes > 1)
+        swap_neighbours(to, from, n, bytes);
+    else
+        memcpy(to, from, (size_t)n * bytes);
+}
+
 /* The element as a double; *exact is cleared where a 64-bit integer has none. */
 static double element_value(const unsigned char *from, int element, int swapped, int *exact) {
     union {
@@ -172,7 +203,7 @@ int layout_gather(const char *path, const layout *l, const unsigned char *stored
                 stored + (l->offset + (uint64_t)z * l->stride[2] + (uint64_t)y * l->stride[1]) * bytes;
             size_t step = (size_t)l->stride[0] * bytes;
             if (!converts)
-                copy_elements(to, from, l->dims[0], step, bytes, l->swapped);
+                copy_row(to, from, l->dims[0], step, bytes, l->swapped);
             else if (!convert_elements((double *)(void *)to, from, l->dims[0], step, l))
                 return fail(STATUS_INPUT,
                             "%s: has 64-bit integers that a double cannot hold exactly; convert it to another type",
@@ -182,8 +213,14 @@ int layout_gather(const char *path, const layout *l, const unsigned char *stored
 }
 
 void *samples_allocate(uint64_t bytes) {
+    enum { SMALL_PAGE = 4096, HUGE_PAGE = 2 << 20, HUGE_FROM = 256 << 10 };
+    size_t page = bytes < HUGE_FROM ? SMALL_PAGE : HUGE_PAGE;
     void *memory = NULL;
-    return bytes <= SIZE_MAX / 2 && posix_memalign(&memory, 4096, bytes ? (size_t)bytes : 1) == 0 ? memory : NULL;
+    if (bytes > SIZE_MAX / 2) return NULL;
+    size_t whole_pages = ((size_t)bytes + page - 1) & ~(page - 1);
+    if (posix_memalign(&memory, page, whole_pages ? whole_pages : page)) return NULL;
+    if (page == HUGE_PAGE) madvise(memory, whole_pages, MADV_HUGEPAGE);
+    return memory;
 }
 
 int matrix_check(const char *path, double matrix[3][4]) {

@@ -53,7 +53,8 @@ int layout_is_plain(const layout *l, const unsigned char *stored);
  * 64-bit integer has no exact double. */
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
 
-/* Memory for samples, page-aligned so that devices can use it in place, to be freed; NULL where there is none. */
+/* Memory for samples, to be freed: page-aligned, so that devices can use it in place, and in huge pages where large,
+ * since new small ones cost more than reading a file. NULL where there is none. */
 void *samples_allocate(uint64_t bytes);
 
 /* STATUS_INPUT unless the matrix is finite and invertible. */

@@ -1,6 +1,9 @@
 /*
  * extract.c - the main job: read, upload, then for every isovalue extract, verify, check, write; report
  *
+ * The device is started on a second thread while the input is read: neither needs the other, and a compressed volume
+ * takes as long as a driver.
+ *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
  * written; the others are, and the exit status is 3.
  */
@@ -14,6 +17,7 @@
 #include "verify.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -29,6 +33,8 @@ typedef struct job {
     const options *o;
     volume v;
     engine main, reference; /* reference: for --verify only */
+    int start_status;       /* of starting the main engine's device */
+    char start_text[1024];
     extract_report report;
     int failed_count; /* surfaces that failed verification or check */
 } job;
@@ -110,15 +116,19 @@ static int grid_status(const options *o, tc_status status) {
     return of_input ? fail(STATUS_INPUT, "%s: %s", o->operands[0], tc_message()) : library_status(status);
 }
 
-static int engine_open(const job *j, tc_engine kind, engine *e) {
+static int device_open(const job *j, tc_engine kind, tc_context **context) {
     tc_context_options device;
-    tc_grid_options grid;
     tc_context_options_init(&device);
-    tc_grid_options_init(&grid);
     device.engine = kind;
     device.device = j->o->device;
     device.max_memory_bytes = kind == TC_ENGINE_OPENCL ? j->o->max_memory : 0;
     device.progress = progress_update;
+    return library_status(tc_context_create(&device, context));
+}
+
+static int grid_open(const job *j, engine *e) {
+    tc_grid_options grid;
+    tc_grid_options_init(&grid);
     memcpy(grid.dims, j->v.dims, sizeof grid.dims);
     memcpy(grid.first, j->v.first, sizeof grid.first);
     memcpy(grid.matrix, j->v.matrix, sizeof grid.matrix);
@@ -126,8 +136,7 @@ static int engine_open(const job *j, tc_engine kind, engine *e) {
     grid.samples = j->v.samples;
     grid.has_nodata = j->o->has_nodata;
     grid.nodata = j->o->nodata;
-    tc_status status = tc_context_create(&device, &e->context);
-    return status ? library_status(status) : grid_status(j->o, tc_grid_create(e->context, &grid, &e->grid));
+    return grid_status(j->o, tc_grid_create(e->context, &grid, &e->grid));
 }
 
 static void engine_close(engine *e) {
@@ -137,11 +146,34 @@ static void engine_close(engine *e) {
     *e = (engine){0};
 }
 
+/* The second thread: texts of failures are each thread's own, so this one's is handed over. */
+static void *device_start(void *argument) {
+    job *j = argument;
+    double begin = now_ms();
+    j->start_status = device_open(j, (tc_engine)j->o->engine, &j->main.context);
+    j->report.device_start_ms = now_ms() - begin;
+    if (j->start_status) snprintf(j->start_text, sizeof j->start_text, "%s", failure_text());
+    return NULL;
+}
+
+static int read_and_start(job *j) {
+    pthread_t starter;
+    int is_threaded = pthread_create(&starter, NULL, device_start, j) == 0;
+    int status = read_input(j);
+    if (is_threaded)
+        pthread_join(starter, NULL);
+    else if (!status)
+        device_start(j);
+    if (status) return status;
+    return j->start_status ? fail(j->start_status, "%s", j->start_text) : 0;
+}
+
 static int upload(job *j) {
     double begin = now_ms();
-    int status = engine_open(j, (tc_engine)j->o->engine, &j->main);
+    int status = grid_open(j, &j->main);
     j->report.upload_ms = now_ms() - begin;
-    if (!status && j->o->verify) status = engine_open(j, TC_ENGINE_REFERENCE, &j->reference);
+    if (!status && j->o->verify) status = device_open(j, TC_ENGINE_REFERENCE, &j->reference.context);
+    if (!status && j->o->verify) status = grid_open(j, &j->reference);
     if (status || j->o->engine == TC_ENGINE_REFERENCE) return status;
     tc_device_info info = {.struct_size = sizeof info};
     status = library_status(tc_context_device(j->main.context, &info));
@@ -159,12 +191,19 @@ static int extract_mesh(const job *j, engine *e, double isovalue, tc_mesh_data *
     return library_status(status ? status : tc_mesh_get(e->mesh, data));
 }
 
+/* The part of a call before its first kernel: the first call makes the kernels ready. */
+static void add_device_start(job *j, double begin_ms, double kernels_ms) {
+    j->report.device_start_ms += now_ms() - begin_ms - kernels_ms;
+}
+
 static int count_surface(job *j, surface_report *s) {
     tc_extract_options how;
     tc_counts counts = {.struct_size = sizeof counts};
     tc_extract_options_init(&how);
     how.isovalue = s->iso->value;
+    double begin = now_ms();
     int status = library_status(tc_count(j->main.grid, &how, &counts));
+    add_device_start(j, begin, counts.classify_ms);
     s->vertex_count = counts.vertex_count;
     s->triangle_count = counts.triangle_count;
     s->active_cell_count = counts.active_cell_count;
@@ -172,7 +211,7 @@ static int count_surface(job *j, surface_report *s) {
     return status;
 }
 
-static void describe_mesh(const tc_mesh_data *m, surface_report *s) {
+static void describe_mesh(const options *o, const tc_mesh_data *m, surface_report *s) {
     s->has_mesh = 1;
     s->vertex_count = m->vertex_count;
     s->triangle_count = m->triangle_count;
@@ -181,6 +220,7 @@ static void describe_mesh(const tc_mesh_data *m, surface_report *s) {
     s->emit_ms = m->timings.emit_ms;
     s->readback_ms = m->timings.readback_ms;
     s->slab_count = m->slab_count;
+    if (o->quiet && !o->json) return; /* nobody will read it */
     mesh_summarize(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->summary);
     s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
 }
@@ -237,8 +277,10 @@ static int make_surface(job *j, surface_report *s) {
     tc_mesh_data mesh;
     int status, good = 1;
     if (j->o->count) return count_surface(j, s);
+    double begin = now_ms();
     if ((status = extract_mesh(j, &j->main, s->iso->value, &mesh))) return status;
-    describe_mesh(&mesh, s);
+    add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
+    describe_mesh(j->o, &mesh, s);
     if (j->o->verify && (status = verify_surface(j, &mesh, s))) return status;
     if (j->o->check && (status = check_surface(j, &mesh, s, &good))) return status;
     if ((status = progress_status())) return status;
@@ -279,7 +321,7 @@ int extract_run(const options *o) {
     if (status) goto cleanup;
     if (o->engine == TC_ENGINE_REFERENCE && o->device && !o->quiet)
         message("--device has no effect with --engine reference");
-    if ((status = read_input(&j))) goto cleanup;
+    if ((status = read_and_start(&j))) goto cleanup;
     if ((status = upload(&j))) goto cleanup;
     if ((status = make_surfaces(&j))) goto cleanup;
     if ((status = print_report(&j, begin))) goto cleanup;

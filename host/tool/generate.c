@@ -101,17 +101,9 @@ static void write_header(const recipe *r, output *out) {
     if (pad == 1) pad += ALIGNMENT;
     memset(padding, '.', sizeof padding);
     padding[0] = '#';
-    output_text(out, "%s%.*s\n\n", text, pad - 1, padding);
-}
-
-static void write_bytes(output *out, const char *bytes, uint64_t count) {
-    while (count) {
-        size_t part = count < OUTPUT_BLOCK ? (size_t)count : OUTPUT_BLOCK;
-        memcpy(output_reserve(out, part), bytes, part);
-        output_advance(out, part);
-        bytes += part;
-        count -= part;
-    }
+    output_bytes(out, text, (uint64_t)length);
+    output_bytes(out, padding, (uint64_t)pad - 1);
+    output_bytes(out, "\n\n", 2);
 }
 
 /* Makes and writes all planes; an error of the output or a signal ends it early. */
@@ -120,7 +112,7 @@ static void write_planes(const recipe *r, char *chunk, int64_t chunk_planes, out
     for (int64_t z = 0; z < o->dims[2] && !out->error; z += chunk_planes) {
         int64_t end = o->dims[2] - z < chunk_planes ? o->dims[2] : z + chunk_planes;
         field_sample(r->f, o->dims, (tc_type)o->type, o->seed, z, end, chunk);
-        write_bytes(out, chunk, (uint64_t)(end - z) * r->plane_bytes);
+        output_bytes(out, chunk, (uint64_t)(end - z) * r->plane_bytes);
         if (progress_update(NULL, "generate", (double)end / (double)o->dims[2])) out->error = ECANCELED;
     }
 }

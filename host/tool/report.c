@@ -85,8 +85,9 @@ static uint64_t cell_count(const volume *v) {
 }
 
 static json_t *timings_json(const extract_report *r) {
-    return json_pack("{s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "upload", ms_json(r->upload_ms), "write",
-                     ms_json(r->write_ms), "total", ms_json(r->total_ms));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "device_start",
+                     ms_json(r->device_start_ms), "upload", ms_json(r->upload_ms), "write", ms_json(r->write_ms),
+                     "total", ms_json(r->total_ms));
 }
 
 json_t *report_string(const char *text) {
@@ -164,6 +165,6 @@ void report_extract_text(const extract_report *r) {
            5 * cell_count(r->v));
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n]);
-    printf("read %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms, r->upload_ms, r->write_ms,
-           r->total_ms);
+    printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
+           r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
 }

@@ -20,8 +20,8 @@ typedef struct surface_report {
     uint64_t vertex_count, triangle_count, active_cell_count;
     double classify_ms, emit_ms, readback_ms;
     uint32_t slab_count;
-    int has_mesh; /* 0: counted only; then the rest is not filled */
-    mesh_summary summary;
+    int has_mesh;         /* 0: counted only; then the rest is not filled */
+    mesh_summary summary; /* this and the hash: not where no report is printed */
     uint64_t hash;
     int has_topology;
     mesh_topology topology;
@@ -35,6 +35,7 @@ typedef struct extract_report {
     const volume *v;
     char device[160]; /* "" for the reference engine */
     double read_ms, upload_ms, write_ms, total_ms;
+    double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
     surface_report *surfaces;
     size_t surface_count;
 } extract_report;

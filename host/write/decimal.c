@@ -1,11 +1,11 @@
 /*
  * decimal.c - numbers as text
  *
- * A float is scaled by a power of ten to nine digits before the point, in double, and rounded. Nine digits tell all
- * floats apart: decimals of nine digits lie at most 1e-8 apart (relatively), floats at least 5.9e-8, so the nearest
- * decimal is less than 0.6e-8 from the float and the float is the nearest to it by far. Rounding errors of the scaling,
- * some 1e-16, change nothing in that; only the ninth digit of a tie, exact or near, may differ from printf's. Subnormal
- * floats lie further apart still.
+ * A float that is a whole number below 10^9 is written as that. Others are scaled by a power of ten to nine digits
+ * before the point, in double, and rounded. Nine digits tell all floats apart: decimals of nine digits lie at most 1e-8
+ * apart (relatively), floats at least 5.9e-8, so the nearest decimal is less than 0.6e-8 from the float and the float
+ * is the nearest to it by far. Rounding errors of the scaling, some 1e-16, change nothing in that; only the ninth digit
+ * of a tie, exact or near, may differ from printf's. Subnormal floats lie further apart still.
  */
 #include "decimal.h"
 
@@ -24,17 +24,40 @@ static const double powers[MOST_POWER - LEAST_POWER + 1] = {
     1e40,  1e41,  1e42,  1e43,  1e44,  1e45,  1e46,  1e47,  1e48,  1e49,  1e50,  1e51,  1e52,  1e53,
 };
 
+/* floor(log10(value)), or one too low; of a positive finite value. */
+static int estimate_exponent(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    int binary = bits >> 23 ? (int)(bits >> 23) - 127 : ilogbf(value);
+    return binary * 315653 >> 20; /* log10(2): right for every exponent of a float */
+}
+
 /* value (positive, finite) as digits * 10^(exponent - 8) with nine digits; returns the digits. */
 static uint32_t split_decimal(float value, int *exponent) {
-    int binary;
-    frexpf(value, &binary);
-    *exponent = (int)floor((binary - 1) * 0.30102999566398120); /* right, or one too low */
+    *exponent = estimate_exponent(value);
     uint64_t digits = (uint64_t)((double)value * powers[DIGITS - 1 - *exponent - LEAST_POWER] + 0.5);
     if (digits >= 1000000000) {
         ++*exponent;
         digits = (uint64_t)((double)value * powers[DIGITS - 1 - *exponent - LEAST_POWER] + 0.5);
     }
     return (uint32_t)digits;
+}
+
+/* Two digits at a time halve the divisions, each of which waits for the one before. */
+static const char pairs[] =
+    "0001020304050607080910111213141516171819202122232425262728293031323334353637383940414243444546474849"
+    "5051525354555657585960616263646566676869707172737475767778798081828384858687888990919293949596979899";
+
+/* The last count digits of value. */
+static void put_digits(char *to, uint32_t value, int count) {
+    for (; count >= 2; count -= 2, value /= 100) memcpy(to + count - 2, pairs + 2 * (value % 100), 2);
+    if (count) *to = (char)('0' + value % 10);
+}
+
+static int digit_count(uint32_t value) {
+    static const uint32_t least[] = {0, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+    int binary = 32 - __builtin_clz(value | 1), count = binary * 1233 >> 12; /* log10(2) */
+    return count + (value >= least[count]);
 }
 
 static char *put_bytes(char *to, const char *text, int length) {
@@ -70,23 +93,19 @@ char *put_float_text(char *to, float value) {
     if (signbit(value)) *to++ = '-';
     value = fabsf(value);
     if (isinf(value)) return put_bytes(to, "inf", 3);
-    if (value == 0) return put_bytes(to, "0", 1);
+    if (value < 1e9f && value == (float)(uint32_t)value) return put_u32_text(to, (uint32_t)value);
 
     int exponent, count = DIGITS;
     char text[DIGITS];
     uint32_t digits = split_decimal(value, &exponent);
-    for (int i = DIGITS - 1; i >= 0; i--, digits /= 10) text[i] = (char)('0' + digits % 10);
+    put_digits(text, digits, DIGITS);
     while (text[count - 1] == '0') count--;
     if (exponent < LEAST_FIXED || exponent >= DIGITS) return put_scientific(to, text, count, exponent);
     return put_fixed(to, text, count, exponent);
 }
 
 char *put_u32_text(char *to, uint32_t value) {
-    char text[10];
-    int first = 10;
-    do {
-        text[--first] = (char)('0' + value % 10);
-        value /= 10;
-    } while (value > 0);
-    return put_bytes(to, text + first, 10 - first);
+    int count = digit_count(value);
+    put_digits(to, value, count);
+    return to + count;
 }

@@ -10,24 +10,38 @@
 #include "output.h"
 #include "tetracubes.h"
 
+#include <string.h>
+
 #define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY or OBJ file, triangles in an STL file */
 
-void ply_write(output *o, const tc_mesh_data *mesh, int soup);
-void obj_write(output *o, const tc_mesh_data *mesh, int soup);
-void stl_write(output *o, const tc_mesh_data *mesh, int soup);
+/* A mesh as the file shows it; what encoders take their records from. */
+typedef struct shown_mesh {
+    const tc_mesh_data *mesh;
+    int soup; /* vertices of the file are the triangles' corners, one after the other */
+} shown_mesh;
 
-/* The vertex of the mesh that vertex v of the file shows: in a soup the triangles' corners, one after the other. */
-static inline uint64_t source_vertex(const tc_mesh_data *mesh, int soup, uint64_t v) {
-    return soup ? mesh->triangles[v] : v;
-}
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY and STL are written as numbers lie in memory");
+
+void ply_write(output *o, const shown_mesh *s);
+void obj_write(output *o, const shown_mesh *s);
+void stl_write(output *o, const shown_mesh *s);
+
+/* The vertex of the mesh that vertex v of the file shows. */
+static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) { return s->soup ? s->mesh->triangles[v] : v; }
 
 /* The vertex of the file at corner c (3 per triangle). */
-static inline uint32_t corner_vertex(const tc_mesh_data *mesh, int soup, uint64_t c) {
-    return soup ? (uint32_t)c : mesh->triangles[c];
+static inline uint32_t corner_vertex(const shown_mesh *s, uint64_t c) {
+    return s->soup ? (uint32_t)c : s->mesh->triangles[c];
 }
 
-static inline uint64_t file_vertex_count(const tc_mesh_data *mesh, int soup) {
-    return soup ? 3 * mesh->triangle_count : mesh->vertex_count;
+static inline uint64_t file_vertex_count(const shown_mesh *s) {
+    return s->soup ? 3 * s->mesh->triangle_count : s->mesh->vertex_count;
+}
+
+/* Copies to an address of any alignment; returns the address behind. */
+static inline unsigned char *put_bytes(unsigned char *to, const void *from, size_t bytes) {
+    memcpy(to, from, bytes);
+    return to + bytes;
 }
 
 #endif

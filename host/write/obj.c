@@ -8,29 +8,35 @@
 #include "decimal.h"
 #include "formats.h"
 
+#include <stdio.h>
+
 enum {
     VECTOR_MOST = 3 + 3 * (1 + DECIMAL_MOST), /* bytes of the longest line */
     FACE_MOST = 2 + 3 * (1 + 10 + 2 + 10),
 };
 
-static void write_vectors(output *o, const char *keyword, const float *vectors, const tc_mesh_data *mesh, int soup) {
-    uint64_t count = file_vertex_count(mesh, soup);
-    size_t keyword_length = strlen(keyword);
-    for (uint64_t v = 0; v < count;) {
-        uint64_t end = output_block_end(v, count, VECTOR_MOST);
-        char *start = (char *)output_reserve(o, (size_t)(end - v) * VECTOR_MOST), *to = start;
-        for (; v < end; v++) {
-            const float *vector = vectors + 3 * source_vertex(mesh, soup, v);
-            memcpy(to, keyword, keyword_length);
-            to += keyword_length;
-            for (int axis = 0; axis < 3; axis++) {
-                *to++ = ' ';
-                to = put_float_text(to, vector[axis]);
-            }
-            *to++ = '\n';
+/* What lines of vectors are made from. */
+typedef struct vector_lines {
+    const shown_mesh *shown;
+    const char *keyword;
+    const float *vectors;
+} vector_lines;
+
+static unsigned char *encode_vectors(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const vector_lines *lines = source;
+    size_t keyword_length = strlen(lines->keyword);
+    char *at = (char *)to;
+    for (uint64_t v = first; v < end; v++) {
+        const float *vector = lines->vectors + 3 * source_vertex(lines->shown, v);
+        memcpy(at, lines->keyword, keyword_length);
+        at += keyword_length;
+        for (int axis = 0; axis < 3; axis++) {
+            *at++ = ' ';
+            at = put_float_text(at, vector[axis]);
         }
-        output_advance(o, (size_t)(to - start));
+        *at++ = '\n';
     }
+    return (unsigned char *)at;
 }
 
 static char *put_corner(char *to, uint32_t index, int with_normal) {
@@ -42,24 +48,30 @@ static char *put_corner(char *to, uint32_t index, int with_normal) {
     return put_u32_text(to, index);
 }
 
-static void write_faces(output *o, const tc_mesh_data *mesh, int soup) {
-    for (uint64_t t = 0; t < mesh->triangle_count;) {
-        uint64_t end = output_block_end(t, mesh->triangle_count, FACE_MOST);
-        char *start = (char *)output_reserve(o, (size_t)(end - t) * FACE_MOST), *to = start;
-        for (; t < end; t++) {
-            *to++ = 'f';
-            for (uint64_t corner = 3 * t; corner < 3 * t + 3; corner++)
-                to = put_corner(to, corner_vertex(mesh, soup, corner) + 1, mesh->normals != NULL);
-            *to++ = '\n';
-        }
-        output_advance(o, (size_t)(to - start));
+static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const shown_mesh *s = source;
+    int with_normals = s->mesh->normals != NULL;
+    char *at = (char *)to;
+    for (uint64_t t = first; t < end; t++) {
+        *at++ = 'f';
+        for (uint64_t corner = 3 * t; corner < 3 * t + 3; corner++)
+            at = put_corner(at, corner_vertex(s, corner) + 1, with_normals);
+        *at++ = '\n';
     }
+    return (unsigned char *)at;
 }
 
-void obj_write(output *o, const tc_mesh_data *mesh, int soup) {
-    output_text(o, "# tetracubes isosurface: %llu vertices, %llu triangles\n",
-                (unsigned long long)file_vertex_count(mesh, soup), (unsigned long long)mesh->triangle_count);
-    write_vectors(o, "v", mesh->positions, mesh, soup);
-    if (mesh->normals) write_vectors(o, "vn", mesh->normals, mesh, soup);
-    write_faces(o, mesh, soup);
+static void write_vectors(output *o, const shown_mesh *s, const char *keyword, const float *vectors) {
+    const vector_lines lines = {s, keyword, vectors};
+    output_records(o, file_vertex_count(s), VECTOR_MOST, encode_vectors, &lines);
+}
+
+void obj_write(output *o, const shown_mesh *s) {
+    char header[128];
+    int length = snprintf(header, sizeof header, "# tetracubes isosurface: %llu vertices, %llu triangles\n",
+                          (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count);
+    output_bytes(o, header, (uint64_t)length);
+    write_vectors(o, s, "v", s->mesh->positions);
+    if (s->mesh->normals) write_vectors(o, s, "vn", s->mesh->normals);
+    output_records(o, s->mesh->triangle_count, FACE_MOST, encode_faces, s);
 }

@@ -1,5 +1,9 @@
 /*
- * output.c - buffered writing beside the final name, then rename
+ * output.c - large writes beside the final name, then rename
+ *
+ * Records are encoded in blocks by several threads. A thread takes the next block, encodes it in a buffer of its own,
+ * waits for the block's turn and writes it, so that one writes while others encode and the file grows in order, also
+ * where it is a pipe.
  *
  * Which way a target is written:
  *   what standard output is already    through that descriptor: its offset and append mode hold
@@ -12,12 +16,14 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "parallel.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -103,12 +109,37 @@ static int open_target(output *o) {
     return o->fd >= 0 ? 0 : errno;
 }
 
-static void write_all(output *o, const unsigned char *data, size_t bytes) {
+/* Closes and frees; removes what has not been renamed. */
+static void release(output *o) {
+    if (o->fd >= 0 && close(o->fd) != 0 && !o->error) o->error = errno;
+    if (o->temporary && !o->error && rename(o->temporary, o->path) != 0) o->error = errno;
+    if (o->temporary && o->error) unlink(o->temporary);
+    free(o->temporary);
+    free(o->path);
+}
+
+int output_open(output *o, const char *path) {
+    *o = (output){.name = path, .fd = -1, .path = strdup(path)};
+    o->error = o->path ? open_target(o) : ENOMEM;
+    if (!o->error) return 0;
+    int error = o->error;
+    release(o);
+    *o = (output){.fd = -1};
+    return fail_write(path, error);
+}
+
+/* Where a file system has no such call, or no room, writing will tell. */
+void output_expect(output *o, uint64_t bytes) {
+    if (o->temporary && bytes > 0 && bytes <= INT64_MAX) (void)fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
+}
+
+void output_bytes(output *o, const void *data, uint64_t bytes) {
+    const unsigned char *from = data;
     while (bytes > 0 && !o->error) {
-        ssize_t written = write(o->fd, data, bytes);
+        ssize_t written = write(o->fd, from, bytes);
         if (written > 0) {
-            data += written;
-            bytes -= (size_t)written;
+            from += written;
+            bytes -= (uint64_t)written;
         } else if (written == 0) {
             o->error = ENOSPC;
         } else if (errno != EINTR) {
@@ -117,48 +148,67 @@ static void write_all(output *o, const unsigned char *data, size_t bytes) {
     }
 }
 
-static void flush(output *o) {
-    write_all(o, o->buffer, o->used);
-    o->used = 0;
+/* ---------------------------------------------------------------------------------------------------------- records */
+
+typedef struct records {
+    output *o; /* belongs to the thread whose block's turn it is */
+    uint64_t count, per_block;
+    output_encode *encode;
+    const void *source;
+
+    pthread_mutex_t lock;
+    pthread_cond_t turned;
+    uint64_t next; /* first record that nobody has taken */
+    uint64_t turn; /* first record that is not written */
+    int stopped;   /* after an error no more blocks are taken */
+} records;
+
+/* Takes the next block. Returns 0 where there is none. */
+static int take_block(records *r, uint64_t *first, uint64_t *end) {
+    pthread_mutex_lock(&r->lock);
+    *first = r->stopped ? r->count : r->next;
+    *end = r->count - *first < r->per_block ? r->count : *first + r->per_block;
+    r->next = *end;
+    pthread_mutex_unlock(&r->lock);
+    return *first < *end;
 }
 
-/* Closes and frees; removes what has not been renamed. */
-static void release(output *o) {
-    if (o->fd >= 0 && close(o->fd) != 0 && !o->error) o->error = errno;
-    if (o->temporary && !o->error && rename(o->temporary, o->path) != 0) o->error = errno;
-    if (o->temporary && o->error) unlink(o->temporary);
-    free(o->temporary);
-    free(o->path);
-    free(o->buffer);
+static void write_in_turn(records *r, const unsigned char *data, size_t bytes, uint64_t first, uint64_t end) {
+    pthread_mutex_lock(&r->lock);
+    while (r->turn != first) pthread_cond_wait(&r->turned, &r->lock);
+    pthread_mutex_unlock(&r->lock);
+    output_bytes(r->o, data, bytes);
+    pthread_mutex_lock(&r->lock);
+    r->turn = end;
+    r->stopped = r->o->error != 0;
+    pthread_cond_broadcast(&r->turned);
+    pthread_mutex_unlock(&r->lock);
 }
 
-int output_open(output *o, const char *path) {
-    *o = (output){.name = path, .fd = -1, .path = strdup(path), .buffer = malloc(OUTPUT_BUFFER)};
-    o->error = o->path && o->buffer ? open_target(o) : ENOMEM;
-    if (!o->error) return 0;
-    int error = o->error;
-    release(o);
-    *o = (output){.fd = -1};
-    return fail_write(path, error);
+static void encode_blocks(void *shared) {
+    records *r = shared;
+    unsigned char *buffer = malloc(OUTPUT_BLOCK);
+    uint64_t first, end;
+    while (buffer && take_block(r, &first, &end))
+        write_in_turn(r, buffer, (size_t)(r->encode(r->source, first, end, buffer) - buffer), first, end);
+    free(buffer);
 }
 
-unsigned char *output_reserve(output *o, size_t bytes) {
-    if (o->used + bytes > OUTPUT_BUFFER) flush(o);
-    return o->buffer + o->used;
-}
-
-void output_text(output *o, const char *format, ...) {
-    enum { MOST = 1024 };
-    char *room = (char *)output_reserve(o, MOST);
-    va_list arguments;
-    va_start(arguments, format);
-    int length = vsnprintf(room, MOST, format, arguments);
-    va_end(arguments);
-    output_advance(o, length < MOST ? (size_t)length : MOST - 1);
+void output_records(output *o, uint64_t count, size_t record_bytes, output_encode *encode, const void *source) {
+    records r = {.o = o,
+                 .count = count,
+                 .per_block = OUTPUT_BLOCK / record_bytes,
+                 .encode = encode,
+                 .source = source,
+                 .lock = PTHREAD_MUTEX_INITIALIZER,
+                 .turned = PTHREAD_COND_INITIALIZER,
+                 .stopped = o->error != 0};
+    if (count == 0) return;
+    parallel_run((count - 1) / r.per_block + 1, encode_blocks, &r);
+    if (r.turn < count && !o->error) o->error = ENOMEM; /* no thread had memory for its buffer */
 }
 
 int output_close(output *o) {
-    flush(o);
     release(o);
     return o->error ? fail_write(o->name, o->error) : 0;
 }

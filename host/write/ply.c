@@ -6,51 +6,57 @@
  *
  * Indices are uint: int would end at 2^31, and readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
  * both by their declared type.
+ *
+ * Vertices without normals lie in the mesh as they lie in the file.
  */
 #include "formats.h"
 
-enum { FACE_BYTES = 1 + 3 * 4 };
+#include <stdio.h>
 
-static void write_header(output *o, const tc_mesh_data *mesh, int soup) {
-    output_text(o,
-                "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
-                "property float x\nproperty float y\nproperty float z\n",
-                (unsigned long long)file_vertex_count(mesh, soup));
-    if (mesh->normals) output_text(o, "property float nx\nproperty float ny\nproperty float nz\n");
-    output_text(o, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
-                (unsigned long long)mesh->triangle_count);
+enum { HEADER_MOST = 1024, VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4 };
+
+/* Writes the header into text[HEADER_MOST]. Returns its length. */
+static size_t make_header(const shown_mesh *s, char *text) {
+    return (size_t)snprintf(text, HEADER_MOST,
+                            "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
+                            "property float x\nproperty float y\nproperty float z\n%s"
+                            "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
+                            (unsigned long long)file_vertex_count(s),
+                            s->mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+                            (unsigned long long)s->mesh->triangle_count);
 }
 
-static void write_vertices(output *o, const tc_mesh_data *mesh, int soup) {
-    uint64_t count = file_vertex_count(mesh, soup);
-    size_t vertex_bytes = mesh->normals ? 24 : 12;
-    for (uint64_t v = 0; v < count;) {
-        uint64_t end = output_block_end(v, count, vertex_bytes);
-        unsigned char *start = output_reserve(o, (size_t)(end - v) * vertex_bytes), *to = start;
-        for (; v < end; v++) {
-            uint64_t source = 3 * source_vertex(mesh, soup, v);
-            to = put_floats(to, mesh->positions + source, 3);
-            if (mesh->normals) to = put_floats(to, mesh->normals + source, 3);
-        }
-        output_advance(o, (size_t)(to - start));
+static unsigned char *encode_vertices(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const shown_mesh *s = source;
+    const float *positions = s->mesh->positions, *normals = s->mesh->normals;
+    for (uint64_t v = first; v < end; v++) {
+        uint64_t from = 3 * source_vertex(s, v);
+        to = put_bytes(to, positions + from, VECTOR_BYTES);
+        if (normals) to = put_bytes(to, normals + from, VECTOR_BYTES);
     }
+    return to;
 }
 
-static void write_faces(output *o, const tc_mesh_data *mesh, int soup) {
-    for (uint64_t t = 0; t < mesh->triangle_count;) {
-        uint64_t end = output_block_end(t, mesh->triangle_count, FACE_BYTES);
-        unsigned char *start = output_reserve(o, (size_t)(end - t) * FACE_BYTES), *to = start;
-        for (; t < end; t++) {
-            *to++ = 3;
-            for (uint64_t corner = 3 * t; corner < 3 * t + 3; corner++)
-                to = put_u32(to, corner_vertex(mesh, soup, corner));
-        }
-        output_advance(o, (size_t)(to - start));
+static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const shown_mesh *s = source;
+    for (uint64_t t = first; t < end; t++) {
+        uint32_t corners[3];
+        for (uint64_t k = 0; k < 3; k++) corners[k] = corner_vertex(s, 3 * t + k);
+        *to++ = 3;
+        to = put_bytes(to, corners, sizeof corners);
     }
+    return to;
 }
 
-void ply_write(output *o, const tc_mesh_data *mesh, int soup) {
-    write_header(o, mesh, soup);
-    write_vertices(o, mesh, soup);
-    write_faces(o, mesh, soup);
+void ply_write(output *o, const shown_mesh *s) {
+    char header[HEADER_MOST];
+    size_t header_bytes = make_header(s, header), vertex_bytes = s->mesh->normals ? 2 * VECTOR_BYTES : VECTOR_BYTES;
+    uint64_t vertex_count = file_vertex_count(s), face_count = s->mesh->triangle_count;
+    output_expect(o, header_bytes + vertex_count * vertex_bytes + face_count * FACE_BYTES);
+    output_bytes(o, header, header_bytes);
+    if (s->soup || s->mesh->normals)
+        output_records(o, vertex_count, vertex_bytes, encode_vertices, s);
+    else
+        output_bytes(o, s->mesh->positions, vertex_count * vertex_bytes);
+    output_records(o, face_count, FACE_BYTES, encode_faces, s);
 }

@@ -19,33 +19,31 @@ static void facet_normal(const float *a, const float *b, const float *c, float n
     }
     double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int axis = 0; axis < 3; axis++) normal[axis] = length > 0 && isfinite(length) ? (float)(n[axis] / length) : 0;
+    int has_area = length > 0 && isfinite(length);
+    double scale = has_area ? 1 / length : 0;
+    for (int axis = 0; axis < 3; axis++) normal[axis] = has_area ? (float)(n[axis] * scale) : 0;
 }
 
-static unsigned char *put_triangle(unsigned char *to, const float *positions, const uint32_t v[3]) {
-    const float *corners[3];
-    float normal[3];
-    for (int k = 0; k < 3; k++) corners[k] = positions + 3 * (uint64_t)v[k];
-    facet_normal(corners[0], corners[1], corners[2], normal);
-    to = put_floats(to, normal, 3);
-    for (int k = 0; k < 3; k++) to = put_floats(to, corners[k], 3);
-    *to++ = 0;
-    *to++ = 0;
+static unsigned char *encode_triangles(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const tc_mesh_data *mesh = source;
+    for (uint64_t t = first; t < end; t++) {
+        const float *corners[3];
+        float vectors[4][3];
+        for (int k = 0; k < 3; k++) corners[k] = mesh->positions + 3 * (uint64_t)mesh->triangles[3 * t + (uint64_t)k];
+        facet_normal(corners[0], corners[1], corners[2], vectors[0]);
+        for (int k = 0; k < 3; k++) memcpy(vectors[1 + k], corners[k], sizeof vectors[0]);
+        to = put_bytes(to, vectors, sizeof vectors);
+        to = put_bytes(to, &(uint16_t){0}, 2);
+    }
     return to;
 }
 
-void stl_write(output *o, const tc_mesh_data *mesh, int soup) {
-    (void)soup; /* the only form there is */
-    unsigned char *header = output_reserve(o, HEADER_BYTES + 4);
-    memset(header, 0, HEADER_BYTES);
-    strcpy((char *)header, "binary STL, tetracubes isosurface");
-    put_u32(header + HEADER_BYTES, (uint32_t)mesh->triangle_count);
-    output_advance(o, HEADER_BYTES + 4);
-
-    for (uint64_t t = 0; t < mesh->triangle_count;) {
-        uint64_t end = output_block_end(t, mesh->triangle_count, TRIANGLE_BYTES);
-        unsigned char *start = output_reserve(o, (size_t)(end - t) * TRIANGLE_BYTES), *to = start;
-        for (; t < end; t++) to = put_triangle(to, mesh->positions, mesh->triangles + 3 * t);
-        output_advance(o, (size_t)(to - start));
-    }
+/* Soup or not: it is the only form there is. */
+void stl_write(output *o, const shown_mesh *s) {
+    char header[HEADER_BYTES + 4] = "binary STL, tetracubes isosurface";
+    uint32_t count = (uint32_t)s->mesh->triangle_count;
+    memcpy(header + HEADER_BYTES, &count, sizeof count);
+    output_expect(o, sizeof header + (uint64_t)count * TRIANGLE_BYTES);
+    output_bytes(o, header, sizeof header);
+    output_records(o, count, TRIANGLE_BYTES, encode_triangles, s->mesh);
 }

@@ -13,7 +13,7 @@
 
 typedef struct format {
     const char *name;
-    void (*write)(output *o, const tc_mesh_data *mesh, int soup);
+    void (*write)(output *o, const shown_mesh *s);
 } format;
 
 static const format formats[] = {{"ply", ply_write}, {"stl", stl_write}, {"obj", obj_write}, {NULL, NULL}};
@@ -65,11 +65,11 @@ int mesh_write_check(const char *path, const mesh_write_options *options) {
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
-    int soup = options && options->soup;
+    shown_mesh shown = {mesh, options && options->soup};
     int status = choose_format(path, options, &f);
-    if (!status) status = check_counts(path, mesh, soup, f);
+    if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = output_open(&o, path);
     if (status) return status;
-    f->write(&o, mesh, soup);
+    f->write(&o, &shown);
     return output_close(&o);
 }
