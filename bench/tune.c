@@ -128,22 +128,25 @@ static int reference_hash(const search *s, tune_case *c) {
 /* -------------------------------------------------------------------------------------------------------- comparison
  */
 
+/* Extracts from a new grid, of which nothing is known; *ms NULL: checked instead of timed. */
+static int extract_new(const search *s, const tune_case *c, setting *with, double *ms) {
+    tc_grid *grid = NULL;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    int status = library_status(tc_grid_create(with->context, &c->s.grid, &grid));
+    if (!status) status = ms ? extract(s, grid, with, &data) : extract_first(s, c, grid, with);
+    if (!status && ms) *ms = data.timings.total_ms;
+    tc_grid_destroy(grid);
+    return status;
+}
+
 /* Median time of b's extractions, by that of a's; both take turns. */
 static int case_compare(const search *s, const tune_case *c, setting *a, setting *b, double *ratio) {
     setting *both[2] = {a, b};
-    tc_grid *grids[2] = {NULL, NULL};
-    tc_mesh_data data;
     int repeat = s->o->repeat, status = 0;
-    for (int n = 0; n < 2 && !status; n++) {
-        status = library_status(tc_grid_create(both[n]->context, &c->s.grid, &grids[n]));
-        if (!status) status = extract_first(s, c, grids[n], both[n]);
-    }
-    for (int turn = 0; turn < 2 * repeat && !status; turn++) {
-        status = extract(s, grids[turn % 2], both[turn % 2], &data);
-        s->times[turn % 2 * repeat + turn / 2] = data.timings.total_ms;
-    }
+    for (int n = 0; n < 2 && !status; n++) status = extract_new(s, c, both[n], NULL);
+    for (int turn = 0; turn < 2 * repeat && !status; turn++)
+        status = extract_new(s, c, both[turn % 2], &s->times[turn % 2 * repeat + turn / 2]);
     if (!status) *ratio = spread_of(s->times + repeat, repeat).median / spread_of(s->times, repeat).median;
-    for (int n = 0; n < 2; n++) tc_grid_destroy(grids[n]);
     return status;
 }
 
@@ -278,8 +281,11 @@ static int cases_make(search *s) {
     if (o->input) status = samples_read(o, &s->cases[s->case_count++].s);
     for (int f = 0; f < o->field_count && !o->input; f++)
         for (int type = 0; type < o->type_count; type++)
-            for (int size = 0; size < o->dims_count && !status; size++)
-                status = samples_make(o->fields[f], o->dims[size], o->types[type], &s->cases[s->case_count++].s);
+            for (int size = 0; size < o->dims_count && !status; size++) {
+                samples *made = &s->cases[s->case_count++].s;
+                status = samples_describe(o->fields[f], o->dims[size], o->types[type], made);
+                if (!status) status = samples_make(made);
+            }
     for (int n = 0; n < s->case_count && !status; n++) status = reference_hash(s, &s->cases[n]);
     return status;
 }
