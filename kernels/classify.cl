@@ -121,7 +121,7 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
                            found
 #endif
                 );
-            halo_make(&s, t, samples, k.scratch);
+            halo_make(&s, t, samples, ranges, k.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_count(&s, t, z, k, cells, offsets, triangle_offsets, &sums

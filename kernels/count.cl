@@ -44,12 +44,14 @@ inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z
     return brick_words(number, k.bricks[number].sign, k.words) + row_place(s, y, z);
 }
 
-inline_always void halo_make(const slab *s, tile t, global const BITS *samples, global ulong *scratch) {
+inline_always void halo_make(const slab *s, tile t, global const BITS *samples, global const brick_range *ranges,
+                             global ulong *scratch) {
     if (t.y1 < s->ny)
-        for (uint z = t.z0; z < t.z1; z++) row_words_make(s, t.y1, z, samples, scratch + halo_row(s, t, z, 0), 1);
+        for (uint z = t.z0; z < t.z1; z++)
+            row_words_make(s, t.y1, z, samples, ranges, scratch + halo_row(s, t, z, 0), 1);
     if (t.z1 < s->nz)
         for (uint y = t.y0; y < min(t.y1 + 1, s->ny); y++)
-            row_words_make(s, y, t.z1, samples, scratch + halo_plane(s, t, y, 0), BRICK_ROWS);
+            row_words_make(s, y, t.z1, samples, ranges, scratch + halo_plane(s, t, y, 0), BRICK_ROWS);
 }
 
 typedef struct emission {
@@ -100,43 +102,35 @@ inline_always ulong tile_word(const slab *s, tile t, uint y, uint z, uint w, til
     return *tile_row(s, t, y, z, w, k) & word_valid(s, w);
 }
 
-inline_always bool rows_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, ulong uniform) {
-    lanes differ = (vload8(0, tile_row(s, t, y, z, w, k)) ^ uniform) & rows_valid(s, y, w);
-    if (w + 1 < s->words_x)
-        differ |= (vload8(0, tile_row(s, t, y, z, w + 1, k)) ^ uniform) & rows_valid(s, y, w + 1) & 1ul;
+/* Whether the samples that follow a uniform brick in x, y or z have one on the other side. */
+inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, ulong uniform) {
+    const uint up = y + BRICK_ROWS, deep = z + BRICK_PLANES;
+    lanes differ = 0;
+    for (uint plane = z; plane <= deep && plane < s->nz; plane++) {
+        if (plane == deep) differ |= (vload8(0, tile_row(s, t, y, plane, w, k)) ^ uniform) & rows_valid(s, y, w);
+        if (w + 1 < s->words_x)
+            differ |= (vload8(0, tile_row(s, t, y, plane, w + 1, k)) ^ uniform) & rows_valid(s, y, w + 1) & 1ul;
+        if (up < s->ny) {
+            differ.s0 |= (*tile_row(s, t, up, plane, w, k) ^ uniform) & word_valid(s, w);
+            if (w + 1 < s->words_x) differ.s0 |= (*tile_row(s, t, up, plane, w + 1, k) ^ uniform) & 1ul;
+        }
+    }
     return lanes_any(differ) != 0;
 }
 
-inline_always bool row_differs(const slab *s, tile t, uint y, uint z, uint w, tile_words k, ulong uniform) {
-    ulong differ = (*tile_row(s, t, y, z, w, k) ^ uniform) & word_valid(s, w);
-    if (w + 1 < s->words_x) differ |= (*tile_row(s, t, y, z, w + 1, k) ^ uniform) & 1ul;
-    return differ != 0;
-}
-
-/* Whether the halo beside a uniform brick has a sample on the other side. */
-inline_always bool halo_differs(const slab *s, tile t, uint y, uint z, uint w, tile_words k, ulong uniform) {
-    uint up = y + BRICK_ROWS, deep = z + BRICK_PLANES;
-    bool differ = false;
-    if (up >= t.y1 && up < s->ny)
-        for (uint plane = z; plane < min(deep, t.z1); plane++) differ |= row_differs(s, t, up, plane, w, k, uniform);
-    if (deep >= t.z1 && deep < s->nz) {
-        differ |= rows_differ(s, t, y, deep, w, k, uniform);
-        if (up < s->ny) differ |= row_differs(s, t, up, deep, w, k, uniform);
-    }
-    return differ;
-}
-
-/* Whether a brick may emit something: not where it and its neighbours at higher x, y and z are all on one side. */
+/* Whether a brick emits something, or, where it is mixed, may. The bricks at higher x, y and z tell at once where they
+ * are of this tile and on its side. */
 inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    uint number = brick_index(s, y, z, w), sign = k.bricks[number].sign;
+    const uint number = brick_index(s, y, z, w), sign = k.bricks[number].sign;
     if (sign == SIGN_MIXED) return true;
-    uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
-    uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
+    const uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
+    const uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
     global const brick_state *here = k.bricks + number, *behind = here + deep;
-    uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
-                  (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
-                  (behind[up + across].sign ^ sign);
-    return differ || halo_differs(s, t, y, z, w, k, sign == SIGN_INSIDE ? ~0ul : 0);
+    const uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
+                        (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
+                        (behind[up + across].sign ^ sign);
+    const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);
+    return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign_word(sign));
 }
 
 /* Rows y to y + 7 and y + 1 to y + 8. */

@@ -30,10 +30,11 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         uint end = min(run + RUN_BRICKS, active_count);
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
             uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
-            corner brick = {number % s.words_x * 64, number / s.words_x % s.bricks_y * BRICK_ROWS,
-                            s.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES};
+#if WORK_ITEMS == 1
+            if (n + 1 < active_count) brick_prefetch(&s, active[n + 1], brick_corner(&s, active[n + 1]), k1);
+#endif
             if (n < end && number >= s.brick_first && number < s.brick_last)
-                brick_emit(&s, number, brick, samples, k1, cases, mesh, &work);
+                brick_emit(&s, number, brick_corner(&s, number), samples, k1, cases, mesh, &work);
         }
     }
 }

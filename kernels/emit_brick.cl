@@ -18,9 +18,9 @@
 #define LIST_STEP   2 /* items stored at once */
 #define BATCH_EDGES 1024
 #define BATCH_STEP  16
-#define CASE_STEP   15 /* indices copied at once: most cubes emit up to five triangles */
+#define CASE_STEP   15 /* indices copied at once: most cubes emit up to six triangles */
 #define CASE_MOST   30
-#define CASE_EXACT  8 /* last cubes of a brick: what is too much of theirs would be another's */
+#define CASE_EXACT  5 /* last cubes of a brick, of which what is too much, five triangles at most, is another's */
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {
@@ -31,20 +31,19 @@ typedef struct brick_work {
     ulong crossed[BRICK_PLANES][6][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
-    uint number[6 * NUMBER_TYPE];
-    uint list[LIST_EDGES + LIST_STEP]; /* edges: bits as in PLACE, type from bit 14 on; cubes: see cubes_list */
+    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_TYPES];
+    uint list[LIST_EDGES + LIST_STEP]; /* edges as PLACE has them; cubes: see cubes_list */
     ushort cases[LIST_CUBES];
-    ulong row_start[BRICK_PLANES * 16];
 #ifdef REAL
-    edge_way way[12];
-    uint place[BATCH_EDGES];
+    ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of PLACE */
+    long step[64];           /* by its bits 14 to 19 */
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
 #endif
 } brick_work;
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) {
 #ifdef REAL
-    for (uint n = 0; n < 12; n++) work->way[n] = edge_way_of(s, n / 2, n % 2);
+    for (uint n = 0; n < 64; n++) work->step[n] = place_step(s, n << 14);
 #endif
 }
 
@@ -92,51 +91,42 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 
 /* --------------------------------------------------------------------------------------------------- vertex numbers */
 
-inline_always uint number_place(uint type, uint y, uint z) {
-    return type * NUMBER_TYPE + (z * NUMBER_ROWS + y) * NUMBER_COLUMNS;
-}
+/* Of a row's first sample; those of the others and of types follow as NUMBER_TYPES has it. */
+inline_always uint sample_place(uint y, uint z) { return (z * NUMBER_ROWS + y) * NUMBER_COLUMNS; }
 
 /* Numbers the crossed edges of a row of another brick. */
 inline_always void row_number(uint *number, ulong crossed, uint first) {
-    while (crossed) {
-        for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) number[lowest_bit(crossed)] = first++;
-    }
+    do {
+#pragma unroll
+        for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1)
+            number[NUMBER_TYPES * lowest_bit(crossed)] = first++;
+    } while (crossed);
 }
 
 /* Lists and numbers the brick's own vertices; returns how many there are. */
-inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, brick_work *work) {
+inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, code = y << 7 | z << 11;
-        work->row_start[code >> 7] = row_start(s, c.y + y, c.z + z) + c.x;
+        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
+        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_TYPES * sample_place(y, z);
+#pragma unroll
         for (uint type = 0; type < 6; type++) {
+            const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
-            uint *number = work->number + number_place(type, y, z), end = count + (uint)popcount(crossed);
-            for (; count < end; count += LIST_STEP)
+            uint end = count + (uint)popcount(crossed);
+            do {
+#pragma unroll
                 for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) {
                     uint bit = lowest_bit(crossed);
-                    work->list[count + n] = code + (type << 14) + bit;
-                    number[bit] = first + count + n;
+                    work->list[count + n] = (bit & 1 ? codes[1] : codes[0]) + bit;
+                    number[NUMBER_TYPES * bit + type] = first + count + n;
                 }
+                count += LIST_STEP;
+            } while (crossed);
             count = end;
         }
     }
     return count;
-}
-
-/* Numbers what the rows from y on in plane z cross of one type, seen from the brick that they are in. */
-inline_always void rows_number(const slab *s, uint y, uint z, uint w, uint type, const crossings *k, corner c,
-                               row_results k1, brick_work *work) {
-    ulong crossed[BRICK_ROWS];
-    vstore8(k->type[type], 0, crossed);
-    for (uint rows = lanes_nonzero(k->type[type]); rows; rows &= rows - 1) {
-        uint n = lowest_bit(rows), first = number_of(owner_of(s, y + n, z, w, k1), type);
-        uint *number = work->number + number_place(type, y + n - c.y, z - c.z);
-        if (64 * w == c.x)
-            row_number(number, crossed[n], first);
-        else
-            number[64] = first; /* the only one there */
-    }
 }
 
 /* Crossings of the next plane that the brick's cubes have. */
@@ -149,9 +139,15 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
 #if MISSING
     crossings_keep(s, k1.cells, c.y, z, w, &k);
 #endif
-    rows_number(s, c.y, z, w, 0, &k, c, k1, work);
-    rows_number(s, c.y, z, w, 1, &k, c, k1, work);
-    rows_number(s, c.y, z, w, 3, &k, c, k1, work);
+    ulong crossed[3][BRICK_ROWS];
+    vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
+    for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
+        uint y = lowest_bit(rows), *number = work->number + NUMBER_TYPES * sample_place(y, BRICK_PLANES);
+        owner o = owner_of(s, c.y + y, z, w, k1);
+        row_number(number, crossed[0][y], number_of(o, 0));
+        row_number(number + 1, crossed[1][y], number_of(o, 1));
+        row_number(number + 3, crossed[2][y], number_of(o, 3));
+    }
 }
 
 /* Crossings of the next row of each plane. */
@@ -161,53 +157,62 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
     const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
     if (y >= s->ny) return;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
-        const uint z = c.z + n;
-        const ulong a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
-        crossings k = {{0, 0, 0, 0, 0, 0}};
-        k.type[0].s0 = (a0 ^ a1) & has_x;
-        if (n < BRICK_PLANES && z + 1 < s->nz) {
-            const ulong c0 = signs->rows[1][n + 1].at.s0, c1 = signs->rows[1][n + 1].next.s0;
-            k.type[2].s0 = a0 ^ c0;
-            k.type[4].s0 = (even_cubes(s, y, z) & (a0 ^ c1)) | (~even_cubes(s, y, z) & (a1 ^ c0));
-            k.type[4].s0 &= has_x;
-        }
+        const bool has_z = n < BRICK_PLANES && c.z + n + 1 < s->nz;
+        const ulong even = even_cubes(s, y, c.z + n), a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
+        const ulong c0 = has_z ? signs->rows[1][n + 1].at.s0 : a0, c1 = has_z ? signs->rows[1][n + 1].next.s0 : 0;
+        ulong x = (a0 ^ a1) & has_x, z = a0 ^ c0;
+        ulong xz = has_z ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
 #if MISSING
-        crossings_keep(s, k1.cells, y, z, w, &k);
+        crossings k = {{x, 0, z, 0, xz, 0}};
+        crossings_keep(s, k1.cells, y, c.z + n, w, &k);
+        x = k.type[0].s0, z = k.type[2].s0, xz = k.type[4].s0;
 #endif
-        rows_number(s, y, z, w, 0, &k, c, k1, work);
-        rows_number(s, y, z, w, 2, &k, c, k1, work);
-        rows_number(s, y, z, w, 4, &k, c, k1, work);
+        if (!(x | z | xz)) continue;
+        owner o = owner_of(s, y, c.z + n, w, k1);
+        uint *number = work->number + NUMBER_TYPES * sample_place(BRICK_ROWS, n);
+        row_number(number, x, number_of(o, 0));
+        row_number(number + 2, z, number_of(o, 2));
+        row_number(number + 4, xz, number_of(o, 4));
     }
 }
 
-/* The first word's first samples of the rows in the next brick in x. */
+/* The first samples of the rows in the next brick in x. */
 inline_always lanes column_of(sample_rows rows) { return rows.next >> 63; }
 
-/* Crossings of the next column, of rows y, y + 1 and planes z, z + 1. Last, since row_number uses the place. */
+/* Numbers the first edge of one type of the rows from y on in plane z of word w. */
+inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, corner c, row_results k1,
+                                brick_work *work) {
+    for (; rows; rows &= rows - 1) {
+        uint row = y + lowest_bit(rows);
+        uint place = NUMBER_TYPES * (sample_place(row - c.y, z - c.z) + 64) + type;
+        work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
+    }
+}
+
+/* Crossings of the next column, of rows y, y + 1 and planes z, z + 1. Last, since others store too much there. */
 inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
     const uint w = c.x / 64 + 1;
     if (w >= s->words_x) return;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
         const uint z = c.z + n;
-        const bool has_z = n < BRICK_PLANES && z + 1 < s->nz;
         const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
         const lanes a = column_of(signs->rows[0][n]), b = column_of(signs_up(signs, n));
         crossings k = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
         k.type[1] = (a ^ b) & has_y;
-        if (has_z) {
-            const lanes below = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
-            k.type[2] = a ^ below;
-            k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ below) & has_y;
+        if (n < BRICK_PLANES && z + 1 < s->nz) {
+            const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
+            k.type[2] = a ^ behind;
+            k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
             up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
         }
 #if MISSING
         crossings_keep(s, k1.cells, c.y, z, w, &k);
         crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
 #endif
-        rows_number(s, c.y, z, w, 1, &k, c, k1, work);
-        rows_number(s, c.y, z, w, 2, &k, c, k1, work);
-        rows_number(s, c.y, z, w, 5, &k, c, k1, work);
-        if (c.y + BRICK_ROWS < s->ny) rows_number(s, c.y + BRICK_ROWS, z, w, 2, &up, c, k1, work);
+        column_store(s, c.y, z, w, 1, lanes_nonzero(k.type[1]), c, k1, work);
+        column_store(s, c.y, z, w, 2, lanes_nonzero(k.type[2]), c, k1, work);
+        column_store(s, c.y, z, w, 5, lanes_nonzero(k.type[5]), c, k1, work);
+        if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
     }
 }
 
@@ -215,27 +220,23 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
 
 #ifdef REAL
 
-/* The samples at the ends of listed edges, and where the edges are. */
-inline_always void batch_gather(const slab *s, const uint *list, uint count, global const BITS *samples,
-                                brick_work *work) {
+/* The samples at the ends of listed edges. */
+inline_always void batch_gather(const uint *list, uint count, global const BITS *samples, brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        uint code = list[n], odd = (code ^ code >> 7 ^ code >> 11 ^ s->parity) & 1;
-        const edge_way *way = &work->way[2 * (code >> 14) + odd];
-        global const BITS *start = samples + work->row_start[code >> 7 & 0x7f] + (code & 0x7f);
-        work->place[n] = (code & 0x3fff) + way->place;
-        work->a[n] = start[way->from];
-        work->b[n] = start[way->to];
+        global const BITS *from = samples + work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        work->a[n] = *from;
+        work->b[n] = from[work->step[list[n] >> 14]];
     }
 }
 
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
-inline_always void batch_store(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
-                               mesh_buffers mesh, const brick_work *work) {
+inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out,
+                               global const BITS *samples, mesh_buffers mesh, const brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
         for (uint n = 0; n < BATCH_STEP; n++) {
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
-            position_make(s, brick, work->place[first + n], t[n], positions + 3 * n);
+            position_make(s, brick, list[first + n], t[n], positions + 3 * n);
         }
         global float *position = mesh.positions + 3 * (out + first);
         uint left = min(count - first, (uint)BATCH_STEP);
@@ -245,32 +246,20 @@ inline_always void batch_store(const slab *s, corner brick, uint count, ulong ou
             for (uint n = 0; n < 3 * left; n++) position[n] = positions[n];
 #if NORMALS
         for (uint n = 0; n < left; n++)
-            normal_store(samples, s, brick, work->place[first + n], t[n], mesh.normals + 3 * (out + first + n));
+            normal_store(samples, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
 #endif
-    }
-}
-
-/* Asks for the samples at the ends of the rows' edges ahead of their use, a row of 64 by cache lines. */
-inline_always void rows_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
-    uint before = 0;
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
-        uint here = mask & ((1u << BRICK_ROWS) - 1), rows = here | before;
-        before = here;
-        for (rows |= rows << 1; rows; rows &= rows - 1) {
-            uint y = c.y + lowest_bit(rows);
-            if (y >= s->ny) continue;
-            size_t address = (size_t)(samples + row_start(s, y, c.z + n) + c.x);
-            for (uint line = 0; line < sizeof(BITS); line++) __builtin_prefetch((const void *)(address + 64 * line));
-        }
     }
 }
 
 inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
                                  mesh_buffers mesh, brick_work *work) {
+    for (uint z = 0; z < BRICK_PLANES; z++)
+        for (uint y = 0; y <= BRICK_ROWS; y++)
+            work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
-        batch_gather(s, work->list + first, batch, samples, work);
-        batch_store(s, brick, batch, out + first, samples, mesh, work);
+        batch_gather(work->list + first, batch, samples, work);
+        batch_store(s, brick, work->list + first, batch, out + first, samples, mesh, work);
     }
 }
 
@@ -284,12 +273,14 @@ inline_always uint cubes_list(uint mask, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
-        uint code = y << 7 | z << 11 | number_place(0, y, z) << 14;
+        uint code = y << 7 | z << 11 | sample_place(y, z) << 14;
         ulong active = work->active[z][y];
         uint end = count + (uint)popcount(active);
-        for (; count < end; count += LIST_STEP)
+        do {
+#pragma unroll
             for (uint n = 0; n < LIST_STEP; n++, active &= active - 1)
-                work->list[count + n] = code + lowest_bit(active) * (1 + (1u << 14));
+                work->list[count++] = code + lowest_bit(active) * (1 + (1u << 14));
+        } while (active);
         count = end;
     }
     return count;
@@ -308,7 +299,7 @@ inline_always void cases_find(const slab *s, uint count, brick_work *work) {
 /* Loops as written: gathers cost more than what they replace. */
 inline_always void triangles_emit(uint count, global const ushort *cases, global uint *index, const brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        const uint *number = work->number + (work->list[n] >> 14);
+        const uint *number = work->number + NUMBER_TYPES * (work->list[n] >> 14);
         global const ushort *entry = cases + CASE_ITEMS * work->cases[n];
         uint indices = 3u * *entry++;
         if (n + CASE_EXACT < count) {
@@ -344,18 +335,48 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
     }
 }
 
+inline_always void line_prefetch(global const void *address) { __builtin_prefetch((const void *)(size_t)address); }
+
+/* The samples of the rows that emit and of those that their edges lead to. */
+inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
+    uint before = 0;
+    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
+        uint here = mask & ((1u << BRICK_ROWS) - 1), rows = here | before;
+        before = here;
+        for (rows |= rows << 1; rows; rows &= rows - 1) {
+            uint y = min(c.y + lowest_bit(rows), s->ny - 1);
+            global const BITS *row = samples + row_start(s, y, c.z + n) + c.x;
+            for (uint sample = 0; sample < 64; sample += 64 / sizeof(BITS)) line_prefetch(row + sample);
+        }
+    }
+}
+
+/* Asks ahead for sign words and offsets. */
+inline_always void brick_prefetch(const slab *s, uint number, corner c, row_results k1) {
+    uint up = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
+         deep = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
+    for (uint line = 0; line < BRICK_WORDS; line += 8) {
+        line_prefetch(k1.words + (ulong)BRICK_WORDS * number + line);
+        line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up) + line);
+        line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up) + line);
+    }
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + deep));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + deep));
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up + deep));
+}
+
 inline_always void brick_emit(const slab *s, uint number, corner c, global const BITS *samples, row_results k1,
                               global const ushort *cases, mesh_buffers mesh, brick_work *work) {
     brick_signs signs;
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;
 #ifdef REAL
-    rows_prefetch(s, c, state.rows, samples);
+    samples_prefetch(s, c, state.rows, samples);
 #endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
-    uint count = edges_list(s, c, state.rows, first, work);
+    uint count = edges_list(s, state.rows, first, work);
 #ifdef REAL
     vertices_emit(s, c, count, first - s->vertex_window, samples, mesh, work);
 #endif

@@ -13,18 +13,19 @@
 /* All vertices of a row of 64 samples, in order, from place `out` in the mesh on. */
 inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint w, const crossings *k, ulong out,
                                 global const BITS *samples, mesh_buffers mesh) {
-    ulong even = even_cubes(s, y, z), start = row_start(s, y, z) + 64ul * w;
+    ulong even = even_cubes(s, y, z);
     uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
     for (uint type = 0; type < 6; type++) {
         for (ulong crossed = k->type[type]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            edge_way way = edge_way_of(s, type, !(even >> bit & 1));
-            BITS a = samples[start + bit + way.from], b = samples[start + bit + way.to];
+            uint place = edge_place(type, !(even >> bit & 1)) + row + bit;
+            ulong from = row_start(s, brick.y + (place >> 7 & 0xf), z) + brick.x + (place & 0x7f);
+            BITS a = samples[from], b = samples[from + place_step(s, place)];
             float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
-            position_make(s, brick, way.place + row + bit, t, position);
+            position_make(s, brick, place, t, position);
             for (uint n = 0; n < 3; n++) mesh.positions[3 * out + n] = position[n];
 #if NORMALS
-            normal_store(samples, s, brick, way.place + row + bit, t, mesh.normals + 3 * out);
+            normal_store(samples, s, brick, place, t, mesh.normals + 3 * out);
 #endif
         }
     }

@@ -20,6 +20,12 @@ typedef struct row_results {
     global const brick_state *bricks;
 } row_results;
 
+inline_always corner brick_corner(const slab *s, uint number) {
+    corner c = {number % s->words_x * 64, number / s->words_x % s->bricks_y * BRICK_ROWS,
+                s->word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
+    return c;
+}
+
 inline_always uint brick_vertices(const slab *s, uint z, uint number, row_results k1) {
     return (z < s->z1 ? s->vertex_base : s->vertex_base_next) + k1.bricks[number].vertices;
 }
@@ -38,23 +44,32 @@ inline_always owner owner_of(const slab *s, uint y, uint z, uint w, row_results 
 
 inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
-/* From which sample to which an edge of a type runs, seen from the sample that owns it: places in the buffer, and in
- * the brick as PLACE has it. Diagonals differ with the parity of the cube. */
 #ifdef REAL
-typedef struct edge_way {
-    ulong from, to;
-    uint place;
-} edge_way;
 
-inline_always edge_way edge_way_of(const slab *s, uint type, bool odd) {
-    const ulong y = s->nx, z = (ulong)s->nx * s->ny;
-    const edge_way ways[12] = {
-        {0, 1, PLACE(0, 0, 0, 1, 0, 0)},     {0, 1, PLACE(0, 0, 0, 1, 0, 0)},     {0, y, PLACE(0, 0, 0, 0, 1, 0)},
-        {0, y, PLACE(0, 0, 0, 0, 1, 0)},     {0, z, PLACE(0, 0, 0, 0, 0, 1)},     {0, z, PLACE(0, 0, 0, 0, 0, 1)},
-        {0, y + 1, PLACE(0, 0, 0, 1, 1, 0)}, {1, y, PLACE(1, 0, 0, -1, 1, 0)},    {0, z + 1, PLACE(0, 0, 0, 1, 0, 1)},
-        {1, z, PLACE(1, 0, 0, -1, 0, 1)},    {0, y + z, PLACE(0, 0, 0, 0, 1, 1)}, {y, z, PLACE(0, 1, 0, 0, -1, 1)}};
-    return ways[2 * type + odd];
+/* Where an edge of a type lies, seen from the sample that owns it. Diagonals differ with the parity of the cube. */
+inline_always uint edge_place(uint type, bool odd) {
+    switch (type) {
+    case 0:
+        return PLACE(0, 0, 0, 1, 0, 0);
+    case 1:
+        return PLACE(0, 0, 0, 0, 1, 0);
+    case 2:
+        return PLACE(0, 0, 0, 0, 0, 1);
+    case 3:
+        return odd ? PLACE(1, 0, 0, -1, 1, 0) : PLACE(0, 0, 0, 1, 1, 0);
+    case 4:
+        return odd ? PLACE(1, 0, 0, -1, 0, 1) : PLACE(0, 0, 0, 1, 0, 1);
+    default:
+        return odd ? PLACE(0, 1, 0, 0, -1, 1) : PLACE(0, 0, 0, 0, 1, 1);
+    }
 }
+
+/* How far apart the samples at the ends of an edge are in the buffer. */
+inline_always long place_step(const slab *s, uint place) {
+    long x = (long)(place >> 14 & 3) - 1, y = (long)(place >> 16 & 3) - 1, z = (long)(place >> 18 & 3) - 1;
+    return x + (y + z * s->ny) * s->nx;
+}
+
 #endif
 
 /* The signs of a cube's corners, corner n in bit n. */

@@ -43,6 +43,13 @@ inline_always uint range_sign(const slab *s, brick_range range) {
     return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
 }
 
+inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
+
+/* Of the brick that a word is in, of any tile; mixed on the first visit. */
+inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global const brick_range *ranges) {
+    return s->ranges_known ? range_sign(s, ranges[s->range_offset + brick_index(s, y, z, w)]) : SIGN_MIXED;
+}
+
 inline_always uint keys_least(BITS16 keys) {
     PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
     PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
@@ -111,6 +118,22 @@ inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, glo
 
 #define RUN_BRICKS_X 8
 
+/* Asks for the samples of `count` words. */
+inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint count, global const BITS *samples) {
+    global const BITS *row = samples + row_start(s, min(y, s->ny - 1), min(z, s->nz - 1)) + 64ul * w;
+    for (uint line = 0; line < count * sizeof(BITS); line++)
+        __builtin_prefetch((const void *)((size_t)row + 64 * line));
+}
+
+/* The row that comes eight places after one of a brick: in its next plane, or of the next brick in y. Memory is far
+ * away, and what it foresees by itself ends with a page. */
+inline_always void row_prefetch_ahead(const slab *s, uint y0, uint z0, uint w, uint count, uint place,
+                                      global const BITS *samples) {
+    bool last = place + BRICK_ROWS >= BRICK_WORDS;
+    row_prefetch(s, y0 + place % BRICK_ROWS + (last ? BRICK_ROWS : 0), last ? z0 : z0 + place / BRICK_ROWS + 1, w,
+                 count, samples);
+}
+
 /* Words, ranges and signs of `count` bricks from w on, seen for the first time. */
 inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
                              global ulong *words, global brick_state *bricks, global brick_range *ranges,
@@ -121,6 +144,7 @@ inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count
     for (uint place = 0; place < BRICK_WORDS; place++) {
         uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
         bool exists = y < s->ny && z < s->z1;
+        row_prefetch_ahead(s, y0, z0, w, count, place, samples);
         for (uint n = 0; n < count && exists; n++) {
             samples64 bits = samples_load64(samples, s, y, z, w + n), keys = keys64(bits, s);
             word[n][place] = word_make(bits, s);
@@ -145,15 +169,20 @@ inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count
     }
 }
 
-/* Of bricks whose ranges are known. */
+/* Of bricks whose ranges are known: those that are mixed are asked for first. */
 inline_always void run_visit_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
                                    global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
-    uint first = brick_index(s, y0, z0, w);
+    uint first = brick_index(s, y0, z0, w), mixed = 0;
     for (uint n = 0; n < count; n++) {
         uint sign = range_sign(s, ranges[s->range_offset + first + n]);
         brick_sign_store(first + n, sign, bricks);
-        if (sign == SIGN_MIXED) brick_words_make(s, y0, z0, w + n, samples, words + (ulong)BRICK_WORDS * (first + n));
+        if (sign != SIGN_MIXED) continue;
+        mixed |= 1u << n;
+        for (uint place = 0; place < BRICK_WORDS; place++)
+            row_prefetch(s, y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, w + n, 1, samples);
     }
+    for (uint n = 0; n < count; n++)
+        if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + (ulong)BRICK_WORDS * (first + n));
 }
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
@@ -169,11 +198,14 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         }
 }
 
-/* A row of words, each 'stride' words after the last. */
-inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples, global ulong *out,
-                                  uint stride) {
-    for (uint w = 0; w < s->words_x; w++)
-        out[(ulong)stride * w] = word_make(samples_load64(samples, s, y, z, w), s) & word_valid(s, w);
+/* A row of words, each `stride` words after the last. */
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
+                                  global const brick_range *ranges, global ulong *out, uint stride) {
+    for (uint w = 0; w < s->words_x; w++) {
+        uint sign = sign_known(s, y, z, w, ranges);
+        ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
+        out[(ulong)stride * w] = word & word_valid(s, w);
+    }
 }
 
 #else
@@ -250,13 +282,16 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
 }
 
 /* A row of words, each `stride` words after the last. */
-inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples, global ulong *out,
-                                  uint stride) {
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
+                                  global const brick_range *ranges, global ulong *out, uint stride) {
     for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
-        uint part = first + (uint)get_local_id(0);
-        if (part < ROW_PARTS * s->words_x)
-            ((global ushort *)(out + (ulong)stride * (part / ROW_PARTS)))[part % ROW_PARTS] =
-                (ushort)word_part(samples, s, y, z, part);
+        uint part = first + (uint)get_local_id(0), w = part / ROW_PARTS;
+        if (w < s->words_x) {
+            uint sign = sign_known(s, y, z, w, ranges);
+            uint bits = sign == SIGN_MIXED ? word_part(samples, s, y, z, part)
+                                           : (uint)((sign_word(sign) & word_valid(s, w)) >> (16 * (part % ROW_PARTS)));
+            ((global ushort *)(out + (ulong)stride * w))[part % ROW_PARTS] = (ushort)bits;
+        }
     }
 }
 

@@ -46,8 +46,8 @@ typedef struct brick_range {
 enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
- * NUMBER_ROWS x NUMBER_PLANES rows for each of the six types of edges. */
-enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_TYPE = 65 * 9 * 5 };
+ * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and two more. */
+enum { NUMBER_TYPES = 8, NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
 
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {

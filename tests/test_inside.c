@@ -59,6 +59,13 @@ static bool pattern_is_inside(tc_type type, inside_range range, uint64_t pattern
     return ((pattern - range.low) & type_mask(type)) <= (range.span & type_mask(type));
 }
 
+/* The upper 32 bits of a key, likewise. */
+static uint32_t key_of(tc_type type, inside_range range, uint64_t pattern) {
+    uint64_t sign = UINT64_C(1) << (type_bits(type) - 1);
+    uint64_t key = type < TC_F32 ? pattern ^ range.key_flip : pattern & sign ? ~pattern : pattern | sign;
+    return (uint32_t)((key & type_mask(type)) >> (type_bits(type) == 64 ? 32 : 0));
+}
+
 /* ----------------------------------------------------------------------------------------------------- what to try */
 
 static void value_add(double value) {
@@ -128,7 +135,7 @@ static unsigned patterns_add_isovalue(tc_type type, double isovalue) {
 
 static void expect_isovalue(tc_type type, double isovalue) {
     inside_range range = inside_range_of(type, isovalue);
-    unsigned wrong = 0, in = 0, out = 0, kept = patterns_add_isovalue(type, isovalue);
+    unsigned wrong = 0, keys_wrong = 0, in = 0, out = 0, kept = patterns_add_isovalue(type, isovalue);
     uint64_t culprit = 0;
     for (unsigned n = 0; n < pattern_count; n++) {
         double value = value_of(type, patterns[n]);
@@ -138,8 +145,14 @@ static void expect_isovalue(tc_type type, double isovalue) {
         out += !inside;
         if (!range.uniform && pattern_is_inside(type, range, patterns[n]) != inside && wrong++ == 0)
             culprit = patterns[n];
+        uint32_t key = key_of(type, range, patterns[n]);
+        keys_wrong += !range.uniform && (inside ? key < range.key_outside : key >= range.key_inside);
     }
     pattern_count = kept;
+    EXPECT(range.key_inside - range.key_outside <= (type == TC_F64), "%s, isovalue %.17g: keys from %x to %x in doubt",
+           tc_type_name(type), isovalue, range.key_outside, range.key_inside);
+    EXPECT(keys_wrong == 0, "%s, isovalue %.17g: %u keys are on the wrong side", tc_type_name(type), isovalue,
+           keys_wrong);
     EXPECT(wrong == 0, "%s, isovalue %.17g: %u patterns are on the wrong side, the first %llx", tc_type_name(type),
            isovalue, wrong, (unsigned long long)culprit);
     EXPECT(!range.uniform || in == 0 || out == 0,

@@ -82,7 +82,7 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles) {
 static uint16_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->options.work_items > 1) return edge;
-    return (uint16_t)(e.type * NUMBER_TYPE + (e.dz * NUMBER_ROWS + e.dy) * NUMBER_COLUMNS + e.dx);
+    return (uint16_t)(((e.dz * NUMBER_ROWS + e.dy) * NUMBER_COLUMNS + e.dx) * NUMBER_TYPES + e.type);
 }
 
 /* Per case the number of triangles, then their edges; the rest is never used, but read. */
