@@ -26,6 +26,7 @@ static void test_null_everywhere(tc_context *context, tc_grid *grid) {
     tc_extract_options how;
     tc_mesh *mesh = NULL;
     tc_grid *none = NULL;
+    tc_device_mesh device_mesh = {.struct_size = sizeof device_mesh};
     tc_context *no_context = NULL;
     tc_counts counts = {.struct_size = sizeof counts};
     tc_mesh_data data = {.struct_size = sizeof data};
@@ -50,6 +51,9 @@ static void test_null_everywhere(tc_context *context, tc_grid *grid) {
     EXPECT_REFUSED(tc_count(NULL, &how, &counts), TC_ERROR_ARGUMENT, "tc_count without grid");
     EXPECT_REFUSED(tc_count(grid, NULL, &counts), TC_ERROR_ARGUMENT, "tc_count without options");
     EXPECT_REFUSED(tc_count(grid, &how, NULL), TC_ERROR_ARGUMENT, "tc_count without counts");
+    EXPECT_REFUSED(tc_emit(NULL, &how, &device_mesh, NULL), TC_ERROR_ARGUMENT, "tc_emit without grid");
+    EXPECT_REFUSED(tc_emit(grid, NULL, &device_mesh, NULL), TC_ERROR_ARGUMENT, "tc_emit without options");
+    EXPECT_REFUSED(tc_emit(grid, &how, NULL, NULL), TC_ERROR_ARGUMENT, "tc_emit without mesh");
     EXPECT_REFUSED(tc_extract(NULL, &how, &mesh), TC_ERROR_ARGUMENT, "tc_extract without grid");
     EXPECT_REFUSED(tc_extract(grid, NULL, &mesh), TC_ERROR_ARGUMENT, "tc_extract without options");
     EXPECT_REFUSED(tc_extract(grid, &how, NULL), TC_ERROR_ARGUMENT, "tc_extract without a place");

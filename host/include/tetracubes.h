@@ -103,6 +103,8 @@ typedef int (*tc_progress)(void *user, const char *stage, double fraction);
 
 struct _cl_context;
 struct _cl_command_queue;
+struct _cl_event;
+struct _cl_mem;
 
 typedef struct tc_context_options {
     size_t struct_size; /* set by tc_context_options_init; a caller built against an older header still works */
@@ -183,6 +185,10 @@ typedef struct tc_grid_options {
                             (triangles keep their outward side); default: identity. Used as float32 */
     int has_nodata;      /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
     double nodata;       /* missing corner is left out whole */
+    struct _cl_mem *cl_samples; /* instead of samples: a buffer of the context's cl_context, retained until
+                                   tc_grid_destroy; commands that write it come first in the context's queue, or are
+                                   complete. Not for the reference engine */
+    uint64_t cl_samples_offset; /* in samples, of the first one in that buffer */
 } tc_grid_options;
 
 typedef struct tc_grid tc_grid;
@@ -191,7 +197,8 @@ typedef struct tc_grid tc_grid;
 TC_API void tc_grid_options_init(tc_grid_options *options);
 
 /* Checks the description and makes the samples available to the device. TC_ERROR_DATA for a grid of one sample along
- * an axis and for sizes that overflow. */
+ * an axis and for sizes that overflow. Samples may not change while the grid lives: it remembers what it has seen of
+ * them, so that further isovalues leave most unread. */
 TC_API tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **grid);
 TC_API void tc_grid_destroy(tc_grid *grid);
 
@@ -251,6 +258,25 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
  */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+/* -------------------------------------------------------------------------------------------------- on the device */
+
+/* Buffers of the context's cl_context that a mesh goes to: three floats per vertex, three indices of 32 bits per
+ * triangle, as in tc_mesh_data. Buffers for nothing may be NULL. */
+typedef struct tc_device_mesh {
+    size_t struct_size; /* set by the caller: sizeof(tc_device_mesh) */
+    struct _cl_mem *positions;
+    struct _cl_mem *normals; /* where the options ask for normals */
+    struct _cl_mem *triangles;
+} tc_device_mesh;
+
+/* Emits what tc_count has counted for the same grid and options, with no other call on the context's grids in between
+ * (TC_ERROR_ARGUMENT otherwise, and for buffers that are too small): count, allocate, emit. Only enqueues; *done, the
+ * caller's to release, is complete when the mesh is there; NULL: none is made. The one point where the host waits is in
+ * tc_count, which reads the sizes. Needs a device that holds the grid and its mesh whole (TC_ERROR_MEMORY), and fp64
+ * for u32, i32 and f64 samples (TC_ERROR_DEVICE). */
+TC_API tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
+                         struct _cl_event **done);
 
 #ifdef __cplusplus
 }

@@ -48,6 +48,7 @@ struct tc_context {
     cl_command_queue queue;
     program *programs;
     workspace work;
+    const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
 

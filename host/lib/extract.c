@@ -25,6 +25,8 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
     if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
     status = grid_describe(&o, grid);
     grid->context = context;
+    if (!status && o.cl_samples && context->options.engine != TC_ENGINE_OPENCL)
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine takes samples, not cl_samples");
     if (!status && context->options.engine == TC_ENGINE_OPENCL) status = structured_grid_create(grid);
     if (status) {
         tc_grid_destroy(grid);
@@ -60,6 +62,18 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     counts->mesh_bytes = counts->vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                          counts->triangle_count * MESH_BYTES_PER_TRIANGLE;
     return status;
+}
+
+tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
+                  struct _cl_event **done) {
+    tc_extract_options o;
+    if (done) *done = NULL;
+    if (!grid || !mesh || mesh->struct_size < sizeof *mesh)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid, and a mesh with its struct_size set");
+    tc_status status = extract_options_take(&o, options);
+    if (status) return status;
+    if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
+    return structured_emit(grid, &o, mesh, done);
 }
 
 tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **out) {

@@ -96,7 +96,9 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     tc_status status = sizes_check(o);
     if (status) return status;
-    if (!o->samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
+    if (!o->samples && !o->cl_samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
+    if (o->samples && o->cl_samples)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has samples and cl_samples; give one of them");
     if ((uintptr_t)o->samples % tc_type_bytes(o->type))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
                                tc_type_name(o->type));
@@ -106,6 +108,8 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     }
     grid->type = o->type;
     grid->samples = o->samples;
+    grid->cl_samples = o->cl_samples;
+    grid->cl_samples_offset = o->cl_samples_offset;
     grid->has_nodata = o->has_nodata != 0;
     grid->nodata = o->nodata;
     return matrix_take(o->matrix, grid);

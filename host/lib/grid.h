@@ -15,7 +15,9 @@ struct tc_grid {
     int64_t dims[3];
     int64_t first[3];
     tc_type type;
-    const void *samples;
+    const void *samples;        /* NULL where they are in cl_samples */
+    struct _cl_mem *cl_samples; /* the caller's, retained by the device path */
+    uint64_t cl_samples_offset;
     bool has_nodata;
     double nodata;
     float matrix[12];       /* rows of the index-to-world map: m0 m1 m2 o */

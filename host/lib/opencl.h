@@ -32,6 +32,8 @@
     X(GetKernelWorkGroupInfo)                                                                                          \
     X(SetKernelArg)                                                                                                    \
     X(CreateBuffer)                                                                                                    \
+    X(RetainMemObject)                                                                                                 \
+    X(GetMemObjectInfo)                                                                                                \
     X(ReleaseMemObject)                                                                                                \
     X(EnqueueReadBuffer)                                                                                               \
     X(EnqueueWriteBuffer)                                                                                              \
@@ -39,6 +41,7 @@
     X(EnqueueMapBuffer)                                                                                                \
     X(EnqueueUnmapMemObject)                                                                                           \
     X(EnqueueNDRangeKernel)                                                                                            \
+    X(EnqueueMarkerWithWaitList)                                                                                       \
     X(Flush)                                                                                                           \
     X(Finish)
 

@@ -55,7 +55,9 @@ static void tiles_shape(const tc_context *context, slab_plan *plan) {
     plan->scratch_words = (BRICK_ROWS * (plan->tile_rows + 1) + BRICK_PLANES * plan->tile_layers) * plan->words_x;
 }
 
+/* None where they are the caller's. */
 static uint64_t samples_bytes(const slab_plan *plan, const tc_grid *grid) {
+    if (grid->cl_samples) return 0;
     uint64_t planes = plan->samples_whole
                           ? (uint64_t)grid->dims[2]
                           : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
@@ -119,7 +121,7 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_pl
     uint32_t most = (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
     plan->samples_whole = plan->words_whole = true;
     if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
-        plan->samples_whole = false;
+        plan->samples_whole = grid->cl_samples != NULL;
         if (!plan_fits(context, grid, plan, 1, budget / 2, &bytes)) plan->words_whole = false;
         uint32_t layers = layers_fit(context, grid, plan, most, budget / 2);
         if (layers == 0) {

@@ -79,7 +79,7 @@ static tc_status workspace_reserve(run *r) {
     return status;
 }
 
-static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
     *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
     base_fill(r, inside, options->isovalue);
     r->classify_share = emits ? 0.5 : 1;
@@ -94,7 +94,7 @@ static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *opti
     return r->heads ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
 }
 
-static void run_end(run *r) {
+void run_end(run *r) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
     if (r->context->info.shares_host_memory) { /* windows in memory that is not ours to keep */
@@ -129,20 +129,25 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     return status ? status : slab_save(r, slab_index);
 }
 
+void totals_add(run *r) {
+    r->vertex_count = r->triangle_count = r->active_cell_count = 0;
+    for (uint32_t n = 0; n < r->plan->slab_count; n++) {
+        const uint32_t *head = r->heads + n * STATE_WORDS;
+        r->vertex_count += head[STATE_VERTICES];
+        r->triangle_count += head[STATE_TRIANGLES];
+        r->active_cell_count += head[STATE_ACTIVE_CELLS];
+    }
+}
+
 /* The one point where the host waits before the mesh can be allocated. */
 static tc_status totals_read(run *r) {
     uint32_t slabs = r->plan->slab_count;
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.state.memory, CL_TRUE, 0,
                                          slabs * STATE_WORDS * sizeof *r->heads, r->heads, 0, NULL, NULL);
     if (error) return opencl_fail("reading the totals of kernel classify", error);
-    r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    for (uint32_t n = 0; n < slabs; n++) {
-        const uint32_t *head = r->heads + n * STATE_WORDS;
-        r->vertex_count += head[STATE_VERTICES];
-        r->triangle_count += head[STATE_TRIANGLES];
-        r->active_cell_count += head[STATE_ACTIVE_CELLS];
-        if (head[STATE_NONFINITE]) r->grid->device->missing = true;
-    }
+    totals_add(r);
+    for (uint32_t n = 0; n < slabs; n++)
+        if (r->heads[n * STATE_WORDS + STATE_NONFINITE]) r->grid->device->missing = true;
     r->grid->device->ranges_known = true;
     return TC_OK;
 }
@@ -167,6 +172,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
     bool missing = grid->device->missing;
+    grid->context->counted = NULL;
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
@@ -178,15 +184,30 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
+/* For tc_emit; heads NULL: there is no surface. */
+static void counted_keep(tc_grid *grid, const tc_extract_options *options, uint32_t *heads) {
+    free(grid->device->heads);
+    grid->device->heads = heads;
+    grid->device->counted_options = *options;
+    grid->context->counted = grid;
+}
+
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
     run r;
-    if (inside.uniform) return TC_OK;
+    if (inside.uniform) {
+        counted_keep(grid, options, NULL);
+        return TC_OK;
+    }
     tc_status status = classify(&r, grid, options, inside, false);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
     counts->classify_ms = clock_ms() - r.start_ms;
+    if (!status) {
+        counted_keep(grid, options, r.heads);
+        r.heads = NULL;
+    }
     run_end(&r);
     return status;
 }

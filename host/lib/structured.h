@@ -13,6 +13,8 @@ void structured_grid_destroy(tc_grid *grid);
 
 /* As tc_count and tc_extract, with arguments already checked. */
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
+                          struct _cl_event **done);
 tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
 #endif

@@ -38,6 +38,9 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     if (!status && r->normals)
         status = part_open(r, &work->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
     if (!status) status = part_open(r, &work->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
+    r->mesh.positions = work->positions.memory;
+    r->mesh.normals = work->normals.memory;
+    r->mesh.triangles = work->triangles.memory;
     return status;
 }
 
@@ -137,9 +140,9 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
                                          ARGUMENT(work->active.memory),
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(cases->memory),
-                                         ARGUMENT(work->positions.memory),
-                                         ARGUMENT(work->normals.memory),
-                                         ARGUMENT(work->triangles.memory)};
+                                         ARGUMENT(r->mesh.positions),
+                                         ARGUMENT(r->mesh.normals),
+                                         ARGUMENT(r->mesh.triangles)};
     return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
@@ -195,32 +198,48 @@ static tc_status slab_emit_windows(run *r, tc_mesh *mesh, const slab *s, const u
     return status;
 }
 
-tc_status slabs_emit(run *r, tc_mesh *mesh) {
-    mesh_window whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0};
-    bool one_window = window_fits(r, r->vertex_count, r->triangle_count);
+/* Slab n with kernel 1's results, ready for kernel 2; first: vertices and triangles before it. */
+static tc_status slab_emit_prepare(run *r, uint32_t slab_index, const uint64_t first[2], slab *s) {
+    tc_status status = slab_prepare(r, slab_index, s);
+    if (!status) status = slab_restore(r, slab_index);
+    s->vertex_base = (uint32_t)first[0];
+    s->vertex_base_next = (uint32_t)(first[0] + r->heads[slab_index * STATE_WORDS + STATE_VERTICES]);
+    s->brick_last = UINT32_MAX;
+    return status;
+}
+
+/* Slab after slab: all into one window where that is given, else each into windows of its own. */
+static tc_status slabs_emit_into(run *r, tc_mesh *mesh, const mesh_window *whole) {
     uint64_t first[2] = {0, 0};
-    double readback = 0;
-    tc_status status = one_window ? window_open(r, mesh, &whole) : TC_OK;
+    tc_status status = TC_OK;
     for (uint32_t n = 0; n < r->plan->slab_count && !status; n++) {
         const uint32_t *head = r->heads + n * STATE_WORDS;
         slab s;
         if (head[STATE_ACTIVE_BRICKS]) {
-            status = slab_prepare(r, n, &s);
-            if (!status) status = slab_restore(r, n);
-            s.vertex_base = (uint32_t)first[0];
-            s.vertex_base_next = (uint32_t)(first[0] + head[STATE_VERTICES]);
-            s.brick_last = UINT32_MAX;
-            if (!status)
-                status = one_window ? bricks_emit(r, s, &whole, first[1]) : slab_emit_windows(r, mesh, &s, first);
+            status = slab_emit_prepare(r, n, first, &s);
+            if (!status) status = whole ? bricks_emit(r, s, whole, first[1]) : slab_emit_windows(r, mesh, &s, first);
         }
         first[0] += head[STATE_VERTICES];
         first[1] += head[STATE_TRIANGLES];
         if (!status) status = context_progress(r->context, "emit", 0.5 + 0.5 * (n + 1) / r->plan->slab_count);
     }
+    return status;
+}
+
+tc_status slabs_emit_whole(run *r) {
+    const mesh_window whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0};
+    return slabs_emit_into(r, NULL, &whole);
+}
+
+tc_status slabs_emit(run *r, tc_mesh *mesh) {
+    mesh_window whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0};
+    bool one_window = window_fits(r, r->vertex_count, r->triangle_count);
+    tc_status status = one_window ? window_open(r, mesh, &whole) : TC_OK;
+    if (!status) status = slabs_emit_into(r, mesh, one_window ? &whole : NULL);
     cl_int error = cl->Finish(r->context->queue);
     if (!status && error) status = opencl_fail("kernel emit", error);
     if (one_window && !status) {
-        readback = clock_ms();
+        double readback = clock_ms();
         status = window_close(r, mesh, &whole);
         error = cl->Finish(r->context->queue);
         if (!status && error) status = opencl_fail("reading the mesh back", error);

@@ -6,6 +6,7 @@
 
 #include "context.h"
 #include "grid.h"
+#include "inside.h"
 #include "mesh.h"
 #include "slab.h"
 #include "slab_plan.h"
@@ -16,6 +17,8 @@ struct device_grid {
     device_buffer samples; /* the whole grid, where plan.samples_whole */
     device_buffer ranges;  /* of all bricks, made at the first visit */
     bool ranges_known;
+    tc_extract_options counted_options; /* what tc_count left for tc_emit, where context->counted is this grid: */
+    uint32_t *heads;                    /* of all slabs */
     uint64_t sample_offset;
     bool missing; /* some sample is missing: known from the start with nodata, else found by kernel 1 */
 };
@@ -34,6 +37,9 @@ typedef struct run {
     slab base;       /* what all slabs have in common */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
+    struct {
+        cl_mem positions, normals, triangles;
+    } mesh;                 /* what kernel 2 writes to */
     device_buffer *samples; /* whole, or the window of the slab at hand */
     uint64_t vertex_count, triangle_count, active_cell_count;
     double classify_share; /* of the whole call, for progress */
@@ -48,6 +54,17 @@ tc_status slab_save(run *r, uint32_t slab_index);
 tc_status slab_restore(run *r, uint32_t slab_index);
 tc_status slab_store_allocate(run *r);
 void slab_store_release(slab_store *store);
+
+/* Describes an extraction, builds its kernels and provides what they work on, but for the mesh; run_end gives it back.
+ */
+tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
+void run_end(run *r);
+
+/* Adds up the heads of all slabs. */
+void totals_add(run *r);
+
+/* Enqueues kernel 2 over all slabs, the whole mesh going to the buffers of r->mesh. */
+tc_status slabs_emit_whole(run *r);
 
 /* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
 tc_status slabs_emit(run *r, tc_mesh *mesh);

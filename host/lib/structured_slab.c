@@ -43,6 +43,27 @@ static tc_status samples_provide(tc_grid *grid, device_buffer *buffer, uint64_t 
     return error ? opencl_fail("copying samples to the device", error) : TC_OK;
 }
 
+/* The caller's buffer, not counted as ours. */
+static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer, uint64_t *offset) {
+    const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
+    size_t held = 0;
+    cl_int error = cl->GetMemObjectInfo(grid->cl_samples, CL_MEM_SIZE, sizeof held, &held, NULL);
+    if (error) return opencl_fail("asking cl_samples for its size", error);
+    if (grid->cl_samples_offset > held / bytes || held / bytes - grid->cl_samples_offset < count)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "cl_samples has %llu bytes, not %llu samples of %llu after the first %llu",
+                               (unsigned long long)held, (unsigned long long)count, (unsigned long long)bytes,
+                               (unsigned long long)grid->cl_samples_offset);
+    if (!device_makes_vertices(grid->context, grid->type))
+        return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64, so samples of type %s have to be in the host's memory",
+                               grid->context->info.name, tc_type_name(grid->type));
+    error = cl->RetainMemObject(grid->cl_samples);
+    if (error) return opencl_fail("retaining cl_samples", error);
+    buffer->memory = grid->cl_samples;
+    *offset = grid->cl_samples_offset;
+    return TC_OK;
+}
+
 tc_status structured_grid_create(tc_grid *grid) {
     uint64_t ignored[2];
     struct device_grid *device = calloc(1, sizeof *device);
@@ -53,7 +74,9 @@ tc_status structured_grid_create(tc_grid *grid) {
     uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
-    if (!status && device->plan.samples_whole) {
+    if (!status && grid->cl_samples) {
+        status = samples_adopt(grid, &device->samples, &device->sample_offset);
+    } else if (!status && device->plan.samples_whole) {
         status = samples_provide(grid, &device->samples, 0, (uint64_t)grid_sample_count(grid), &device->sample_offset);
         if (!status && !grid->context->info.shares_host_memory) {
             cl_int error = cl->Finish(grid->context->queue);
@@ -65,6 +88,8 @@ tc_status structured_grid_create(tc_grid *grid) {
 
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
+    if (grid->context->counted == grid) grid->context->counted = NULL;
+    free(grid->device->heads);
     buffer_release(grid->context, &grid->device->samples);
     buffer_release(grid->context, &grid->device->ranges);
     free(grid->device);
