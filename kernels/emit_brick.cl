@@ -18,9 +18,9 @@
 #define LIST_STEP   2 /* items stored at once */
 #define BATCH_EDGES 1024
 #define BATCH_STEP  16
-#define CASE_STEP   15 /* indices copied at once: most cubes emit up to six triangles */
+#define CASE_STEP   15 /* indices copied at once: most cubes emit up to five triangles */
 #define CASE_MOST   30
-#define CASE_EXACT  5 /* last cubes of a brick, of which what is too much, five triangles at most, is another's */
+#define CASE_EXACT  4 /* last cubes of a brick, of which what is too much, four triangles at most, is another's */
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {
@@ -47,8 +47,7 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 #endif
 }
 
-/* ------------------------------------------------------------------------------------------------------------- signs
- */
+/* ------------------------------------------------------------------------------------------------------------ signs */
 
 /* The words of the brick that lies so many bricks further on. */
 inline_always global const ulong *words_beside(const slab *s, corner c, uint number, uint across, uint up, uint deep,
@@ -334,8 +333,6 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
         vstore8(active, 0, work->active[n]);
     }
 }
-
-inline_always void line_prefetch(global const void *address) { __builtin_prefetch((const void *)(size_t)address); }
 
 /* The samples of the rows that emit and of those that their edges lead to. */
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {

@@ -121,8 +121,7 @@ inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, glo
 /* Asks for the samples of `count` words. */
 inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint count, global const BITS *samples) {
     global const BITS *row = samples + row_start(s, min(y, s->ny - 1), min(z, s->nz - 1)) + 64ul * w;
-    for (uint line = 0; line < count * sizeof(BITS); line++)
-        __builtin_prefetch((const void *)((size_t)row + 64 * line));
+    for (uint n = 0; n < 64 * count; n += 64 / sizeof(BITS)) line_prefetch(row + n);
 }
 
 /* The row that comes eight places after one of a brick: in its next plane, or of the next brick in y. Memory is far

@@ -26,6 +26,9 @@
 #define group_barrier()
 #define LANES 8
 typedef ulong8 lanes;
+
+/* Asks for the cache line at an address, which need not be one of the buffer's. */
+inline_always void line_prefetch(global const void *address) { __builtin_prefetch((const void *)(size_t)address); }
 #else
 #define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 #define LANES           1

@@ -123,13 +123,16 @@ static void kept_take(tc_context *context) {
     o->tile_bricks = kept.tile_bricks;
 }
 
+/* Polls of an unfinished tile. Recomputing one costs a CPU as long as about 2^17 polls take. */
+static const uint32_t spins = 1u << 14, spins_cpu = 1u << 17;
+
 /* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
 static void defaults_take(tc_context *context) {
     tc_context_options *o = &context->options;
     bool cpu = !strcmp(context->info.type, "cpu");
     if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
     if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
-    if (!o->spin_limit) o->spin_limit = 1u << 14;
+    if (!o->spin_limit) o->spin_limit = cpu ? spins_cpu : spins;
     if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
 }
 
