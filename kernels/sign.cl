@@ -73,6 +73,11 @@ typedef char mask64 __attribute__((ext_vector_type(64)));
 typedef signed_bits signed64 __attribute__((ext_vector_type(64)));
 #endif
 
+constant const samples64 lane64 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+                                   16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
+                                   32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
+                                   48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+
 inline_always samples64 keys64(samples64 bits, const slab *s) {
 #if FLOATING
     return bits ^ (__builtin_astype(__builtin_astype(bits, signed64) >> (FLOATING - 1), samples64) | KEY_SIGN);
@@ -90,8 +95,13 @@ inline_always ulong word_make(samples64 bits, const slab *s) {
 /* 64 samples of a row; those past its end repeat the first. */
 inline_always samples64 samples_load64(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
     uint left = s->nx - 64 * w;
-    global const BITS *first = samples + row_start(s, y, z) + 64ul * w;
+    ulong start = row_start(s, y, z) + 64ul * w;
+    global const BITS *first = samples + start;
     if (left >= 64) return *(global const samples64_unaligned *)first;
+    if (start + 64 <= s->sample_offset + s->sample_count) {
+        samples64 bits = *(global const samples64_unaligned *)first;
+        return lane64 < (BITS)left ? bits : (samples64)bits[0];
+    }
     BITS row[64];
     for (uint n = 0; n < 64; n++) row[n] = first[n < left ? n : 0];
     return *(const samples64_unaligned *)row;

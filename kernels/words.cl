@@ -27,8 +27,10 @@
 #define LANES 8
 typedef ulong8 lanes;
 
-/* Asks for the cache line at an address, which need not be one of the buffer's. */
-inline_always void line_prefetch(global const void *address) { __builtin_prefetch((const void *)(size_t)address); }
+/* Asks for the cache line at an address, which need not be one of the buffer's. Tools may define it empty, too. */
+#ifndef line_prefetch
+#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
+#endif
 #else
 #define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 #define LANES           1

@@ -94,7 +94,7 @@ void buffer_release(tc_context *context, device_buffer *buffer) {
     *buffer = (device_buffer){0};
 }
 
-static void workspace_release(tc_context *context) {
+void workspace_release(tc_context *context) {
     device_buffer *buffers = (device_buffer *)&context->work;
     for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
 }

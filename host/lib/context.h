@@ -48,6 +48,7 @@ struct tc_context {
     cl_command_queue queue;
     program *programs;
     workspace work;
+    const struct tc_grid *served;  /* the grid that the workspace was last used for */
     const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
@@ -73,6 +74,9 @@ void buffer_release(tc_context *context, device_buffer *buffer);
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
+
+/* Gives the buffers back that are kept between extractions. */
+void workspace_release(tc_context *context);
 
 /* Milliseconds of a clock that only runs forward. */
 double clock_ms(void);

@@ -90,7 +90,8 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
     tiles_shape(context, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
-    return *bytes <= budget && largest <= context->info.max_buffer_bytes;
+    uint64_t words = BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
+    return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
 }
 
 /* Most layers per slab that fit, by bisection; 0 where not even one does. */

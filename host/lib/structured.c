@@ -62,6 +62,11 @@ static tc_status workspace_reserve(run *r) {
     const slab_plan *plan = r->plan;
     uint64_t bricks = plan_window_layers(plan) * plan_bricks_per_layer(plan), words = BRICK_WORDS * bricks;
     uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
+    if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
+        cl->Finish(r->context->queue);
+        workspace_release(r->context); /* what another grid has left could make too much of it */
+    }
+    r->context->served = r->grid;
     const struct {
         device_buffer *buffer;
         uint64_t bytes;

@@ -89,6 +89,7 @@ tc_status structured_grid_create(tc_grid *grid) {
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
     if (grid->context->counted == grid) grid->context->counted = NULL;
+    if (grid->context->served == grid) grid->context->served = NULL;
     free(grid->device->heads);
     buffer_release(grid->context, &grid->device->samples);
     buffer_release(grid->context, &grid->device->ranges);
