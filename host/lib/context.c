@@ -72,7 +72,7 @@ tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, 
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
     if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
     if (!bytes) bytes = 1;
-    if (!context->info.shares_host_memory) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
+    if (!context->in_place) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
     host_block block = {0};
     if (buffer->memory) cl->Finish(context->queue); /* commands under way may use the memory that goes */
     buffer_release(context, buffer);
@@ -148,6 +148,7 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     } else if (!status) {
         status = device_open(context, o->device);
     }
+    context->in_place = context->info.shares_host_memory && !o->own_buffers;
     return status ? status : tuning_choose(context);
 }
 

@@ -14,7 +14,7 @@
 typedef struct device_buffer {
     cl_mem memory;
     uint64_t bytes;
-    host_block block; /* where it lies, on devices that share the host's memory */
+    host_block block; /* where it lies, on devices that work in place */
 } device_buffer;
 
 /* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
@@ -43,6 +43,7 @@ typedef struct workspace {
 struct tc_context {
     tc_context_options options; /* strings and OpenCL objects cleared */
     tc_device_info info;
+    bool in_place; /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
     cl_command_queue queue;

@@ -109,7 +109,7 @@ static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     uint64_t budget = context->options.max_memory_bytes;
-    if (!budget) budget = context->info.shares_host_memory ? UINT64_MAX : context->info.global_memory_bytes;
+    if (!budget) budget = context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
     *plan = (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
                         .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
                         .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};

@@ -97,7 +97,7 @@ static tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *opti
 static void run_end(run *r) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (r->context->info.shares_host_memory) { /* windows in memory that is not ours to keep */
+    if (r->context->in_place) { /* windows in memory that is not ours to keep */
         device_buffer *windows[] = {&w->samples, &w->positions, &w->normals, &w->triangles};
         for (int n = 0; n < 4; n++) buffer_release(r->context, windows[n]);
     }

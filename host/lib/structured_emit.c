@@ -24,7 +24,7 @@ static tc_status part_open(run *r, device_buffer *buffer, const host_block *bloc
                            uint32_t *offset, const char *name) {
     *offset = 0;
     if (first == end) return buffer_reserve(r->context, buffer, 4, name);
-    if (!r->context->info.shares_host_memory) return buffer_reserve(r->context, buffer, end - first, name);
+    if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
     uint64_t start = first & ~(page_bytes - 1);
     *offset = (uint32_t)((first - start) / 4);
     return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
@@ -45,7 +45,7 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
 static tc_status part_close(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end) {
     cl_command_queue queue = r->context->queue;
     cl_int error = CL_SUCCESS;
-    if (first < end && !r->context->info.shares_host_memory) {
+    if (first < end && !r->context->in_place) {
         error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, end - first, (char *)block->memory + first, 0,
                                       NULL, NULL);
     } else if (first < end) {
@@ -53,7 +53,7 @@ static tc_status part_close(run *r, device_buffer *buffer, const host_block *blo
             cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
         if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
     }
-    if (r->context->info.shares_host_memory) buffer_release(r->context, buffer);
+    if (r->context->in_place) buffer_release(r->context, buffer);
     return error ? opencl_fail("reading the mesh back", error) : TC_OK;
 }
 
@@ -224,7 +224,7 @@ tc_status slabs_emit(run *r, tc_mesh *mesh) {
         status = window_close(r, mesh, &whole);
         error = cl->Finish(r->context->queue);
         if (!status && error) status = opencl_fail("reading the mesh back", error);
-        mesh->timings.readback_ms = r->context->info.shares_host_memory ? 0 : clock_ms() - readback;
+        mesh->timings.readback_ms = r->context->in_place ? 0 : clock_ms() - readback;
     }
     return status;
 }

@@ -30,7 +30,7 @@ static tc_status samples_provide(tc_grid *grid, device_buffer *buffer, uint64_t 
     tc_context *context = grid->context;
     size_t bytes = tc_type_bytes(grid->type);
     char *start = (char *)(uintptr_t)grid->samples + first * bytes;
-    if (context->info.shares_host_memory) {
+    if (context->in_place) {
         uintptr_t before = (uintptr_t)start & (page_bytes - 1);
         *offset = before / bytes;
         return buffer_wrap(context, buffer, start - before, before + count * bytes, CL_MEM_READ_ONLY, "samples");
@@ -55,7 +55,7 @@ tc_status structured_grid_create(tc_grid *grid) {
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
     if (!status && device->plan.samples_whole) {
         status = samples_provide(grid, &device->samples, 0, (uint64_t)grid_sample_count(grid), &device->sample_offset);
-        if (!status && !grid->context->info.shares_host_memory) {
+        if (!status && !grid->context->in_place) {
             cl_int error = cl->Finish(grid->context->queue);
             if (error) status = opencl_fail("copying samples to the device", error);
         }
