@@ -102,7 +102,7 @@ static void test_unread(void) {
     tc_context *context = context_open(&options);
     uint8_t *samples = mmap(NULL, 128 * plane, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (samples == MAP_FAILED) exit(EXIT_FAILURE);
-    for (size_t n = 0; n < 128 * plane; n++) samples[n] = n < 64 * plane ? 10 : (uint8_t)(n / plane + n % 7);
+    for (size_t n = 0; n < 128 * plane; n++) samples[n] = (uint8_t)(n < 64 * plane ? 10 : n / plane + n % 7);
     tc_grid_options_init(&grid_options);
     memcpy(grid_options.dims, dims, sizeof dims);
     grid_options.type = TC_U8;

@@ -220,7 +220,7 @@ typedef struct tc_counts {
 typedef struct tc_timings {
     double classify_ms; /* kernel 1 over all slabs, reading of totals included */
     double emit_ms;     /* allocation of the mesh, kernel 2 over all slabs */
-    double readback_ms; /* copy to the host; 0 where memory is shared */
+    double readback_ms; /* copy to the host, as far as kernels do not run beside it; 0 where memory is shared */
     double total_ms;    /* first launch to mesh complete where the device left it */
 } tc_timings;
 

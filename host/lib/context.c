@@ -152,6 +152,12 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     return status ? status : tuning_choose(context);
 }
 
+tc_status copies_queue_provide(tc_context *context) {
+    cl_int error = CL_SUCCESS;
+    if (!context->copies) context->copies = cl->CreateCommandQueue(context->context, context->device, 0, &error);
+    return error ? opencl_fail("making a command queue for copies", error) : TC_OK;
+}
+
 tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
     tc_context_options o;
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
@@ -183,6 +189,7 @@ void tc_context_destroy(tc_context *context) {
         workspace_release(context);
         programs_release(context);
     }
+    if (context->copies) cl->ReleaseCommandQueue(context->copies);
     if (context->queue) cl->ReleaseCommandQueue(context->queue);
     if (context->context) cl->ReleaseContext(context->context);
     free(context);

@@ -39,6 +39,9 @@
     X(EnqueueMapBuffer)                                                                                                \
     X(EnqueueUnmapMemObject)                                                                                           \
     X(EnqueueNDRangeKernel)                                                                                            \
+    X(EnqueueMarkerWithWaitList)                                                                                       \
+    X(EnqueueBarrierWithWaitList)                                                                                      \
+    X(ReleaseEvent)                                                                                                    \
     X(Flush)                                                                                                           \
     X(Finish)
 
