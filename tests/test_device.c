@@ -3,6 +3,8 @@
  *
  * Variations: work-group sizes and counts, tiles, waiting of the scan, ways to divide, memory budgets (slabs), matrices
  * and first indices, meshes and grids used again. The reference's meshes are checked whole against their grids.
+ *
+ * Usage: test_device [own_buffers]: with it, samples and meshes are copied even where the device shares the memory.
  */
 #include "engines.h"
 #include "random.h"
@@ -24,6 +26,7 @@ typedef struct subject {
 enum { WAVES, MISSING, EXTREMES, GENTLE, GENTLE_MISSING, SUBJECTS };
 
 static subject subjects[SUBJECTS];
+static int own_buffers; /* of all contexts on the device */
 
 /* -------------------------------------------------------------------------------------------------------- subjects */
 
@@ -113,6 +116,7 @@ static void test_work_shapes(void) {
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
         for (int n = 0; n < 4; n++) {
             tc_context_options_init(&options);
+            options.own_buffers = own_buffers;
             options.work_items = items[i];
             options.work_groups = groups[n];
             options.tile_bricks = tiles[(n + i) % 4];
@@ -130,6 +134,7 @@ static void test_divisions(void) {
         tc_context_options options;
         tc_context *context = NULL;
         tc_context_options_init(&options);
+        options.own_buffers = own_buffers;
         options.division = division;
         tc_status status = tc_context_create(&options, &context);
         tc_context_destroy(context);
@@ -148,6 +153,7 @@ static void test_memory_budgets(const subject *s) {
     unsigned done = 0, refused = 0;
     tc_context_options options;
     tc_context_options_init(&options);
+    options.own_buffers = own_buffers;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
                      24 * s->expected.vertex_count + 12 * s->expected.triangle_count;
     for (options.max_memory_bytes = 16 * whole; options.max_memory_bytes > whole / 200;
@@ -325,6 +331,17 @@ static void test_sphere_converges(tc_context *device) {
     EXPECT(volume_errors[2] < 0.005 * volume, "volume is off by %g", volume_errors[2]);
 }
 
+/* The device is described as it is, also where its sharing of memory is not made use of. */
+static void test_description(const tc_context *device) {
+    tc_device_info told = {.struct_size = sizeof told}, real = {.struct_size = sizeof real};
+    int count = 0;
+    EXPECT(!tc_context_device(device, &told) && !tc_device_count(&count), "no description: %s", tc_message());
+    for (int n = 0; n < count; n++)
+        if (!tc_device_get(n, &real) && real.platform_index == told.platform_index &&
+            real.device_index == told.device_index)
+            EXPECT(!memcmp(&real, &told, sizeof real), "%s is described in two ways", told.name);
+}
+
 /* What the README promises of a device's memory beyond samples and mesh, with what small buffers come to beside it. */
 static void test_memory_per_sample(void) {
     const int64_t dims[3] = {256, 160, 160};
@@ -340,6 +357,7 @@ static void test_memory_per_sample(void) {
         tc_mesh_data data;
         uint64_t peak = 0;
         tc_context_options_init(&options);
+        options.own_buffers = own_buffers;
         tc_grid_options_init(&grid);
         tc_extract_options_init(&how);
         memcpy(grid.dims, dims, sizeof dims);
@@ -361,7 +379,8 @@ static void test_memory_per_sample(void) {
     free(samples);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
+    own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
     if (!device_exists()) return SKIPPED;
     tc_context_options options;
     random_state = 1996;
@@ -371,6 +390,7 @@ int main(void) {
     subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, 46, 97}, 127.5, 0);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32, (int64_t[3]){65, 31, 58}, 0.1, 1);
     tc_context_options_init(&options);
+    options.own_buffers = own_buffers;
     tc_context *reference = reference_open(), *device = context_open(&options);
     test_work_shapes();
     test_divisions();
@@ -378,6 +398,7 @@ int main(void) {
     test_memory_budgets(&subjects[GENTLE_MISSING]);
     test_world_space(reference, device);
     test_reuse(device);
+    test_description(device);
     test_sphere_converges(device);
     test_memory_per_sample();
     tc_context_destroy(reference);

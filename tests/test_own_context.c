@@ -7,6 +7,7 @@
 
 #include <CL/cl.h>
 #include <math.h>
+#include <time.h>
 
 enum { SIZE = 40 };
 
@@ -83,6 +84,12 @@ int main(void) {
     options.cl_context = theirs;
     options.cl_queue = queue;
     for (int n = 0; n < 2 && made; n++) test_extraction(&options, &grid, &expected);
+    options.own_buffers = 1; /* and slabs: another queue, beside the caller's */
+    options.max_memory_bytes = sizeof samples + 12 * (expected.vertex_count + expected.triangle_count);
+    if (made) test_extraction(&options, &grid, &expected);
+    for (int n = 0; n < 100 && (context_references(theirs) > context_before || queue_references(queue) > queue_before);
+         n++) /* an implementation may let go of finished commands a moment later */
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     EXPECT(context_references(theirs) == context_before && queue_references(queue) == queue_before,
            "context or queue are still retained");
 

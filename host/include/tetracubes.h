@@ -78,7 +78,7 @@ typedef struct tc_device_info {
     uint64_t global_memory_bytes;
     uint64_t max_buffer_bytes; /* volumes with larger buffers are processed in slabs */
     uint64_t local_memory_bytes;
-    int shares_host_memory; /* aligned samples are used in place, not copied */
+    int shares_host_memory; /* samples are used in place, not copied, unless the context has own_buffers */
     int has_fp64;           /* without it, vertices of u32, i32 and f64 samples are made on the host */
     int rounds_division;    /* correctly rounded f32 division built in; else the kernels correct it */
 } tc_device_info;
@@ -124,6 +124,9 @@ typedef struct tc_context_options {
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
     tc_progress progress; /* NULL: none */
     void *progress_user;
+    int own_buffers; /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
+                        samples are copied to it and the mesh from it. Slower; runs that path where there is no such
+                        device. Never changes results */
 } tc_context_options;
 
 typedef struct tc_context tc_context;
@@ -224,7 +227,7 @@ typedef struct tc_counts {
 typedef struct tc_timings {
     double classify_ms; /* kernel 1 over all slabs, reading of totals included */
     double emit_ms;     /* allocation of the mesh, kernel 2 over all slabs */
-    double readback_ms; /* copy to the host; 0 where memory is shared */
+    double readback_ms; /* copy to the host, as far as kernels do not run beside it; 0 where memory is shared */
     double total_ms;    /* first launch to mesh complete where the device left it */
 } tc_timings;
 

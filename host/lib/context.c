@@ -72,7 +72,7 @@ tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, 
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
     if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
     if (!bytes) bytes = 1;
-    if (!context->info.shares_host_memory) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
+    if (!context->in_place) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
     host_block block = {0};
     if (buffer->memory) cl->Finish(context->queue); /* commands under way may use the memory that goes */
     buffer_release(context, buffer);
@@ -148,7 +148,14 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     } else if (!status) {
         status = device_open(context, o->device);
     }
+    context->in_place = context->info.shares_host_memory && !o->own_buffers;
     return status ? status : tuning_choose(context);
+}
+
+tc_status copies_queue_provide(tc_context *context) {
+    cl_int error = CL_SUCCESS;
+    if (!context->copies) context->copies = cl->CreateCommandQueue(context->context, context->device, 0, &error);
+    return error ? opencl_fail("making a command queue for copies", error) : TC_OK;
 }
 
 tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
@@ -182,6 +189,7 @@ void tc_context_destroy(tc_context *context) {
         workspace_release(context);
         programs_release(context);
     }
+    if (context->copies) cl->ReleaseCommandQueue(context->copies);
     if (context->queue) cl->ReleaseCommandQueue(context->queue);
     if (context->context) cl->ReleaseContext(context->context);
     free(context);

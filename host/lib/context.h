@@ -14,7 +14,7 @@
 typedef struct device_buffer {
     cl_mem memory;
     uint64_t bytes;
-    host_block block; /* where it lies, on devices that share the host's memory */
+    host_block block; /* where it lies, on devices that work in place */
 } device_buffer;
 
 /* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
@@ -31,21 +31,33 @@ typedef struct kernels {
     cl_kernel classify, cells, emit;
 } kernels;
 
-/* What kernel 1 leaves for kernel 2, and what both need besides samples and mesh. */
+/* What kernel 1 leaves for kernel 2, per word or brick of the window of sign words. */
+typedef struct word_buffers {
+    device_buffer words, offsets, triangle_offsets, bricks, active;
+} word_buffers;
+
+typedef struct mesh_buffers {
+    device_buffer positions, normals, triangles;
+} mesh_buffers;
+
+/* All that kernels need besides samples that fit whole. A second window is in use where copies overlap kernels. */
 typedef struct workspace {
-    device_buffer words, offsets, triangle_offsets, bricks, active; /* per word or brick of the word window */
-    device_buffer cells;                                            /* grids with missing samples */
+    word_buffers words[2];
+    device_buffer samples[2];
+    mesh_buffers mesh[2];
+    device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
-    device_buffer cases[2];                               /* cube table; [1] for mirrored grids */
-    device_buffer samples, positions, normals, triangles; /* windows, on devices with own memory */
+    device_buffer cases[2]; /* cube table; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {
     tc_context_options options; /* strings and OpenCL objects cleared */
     tc_device_info info;
+    bool in_place; /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
     cl_command_queue queue;
+    cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
     const struct tc_grid *served;  /* the grid that the workspace was last used for */
@@ -66,6 +78,9 @@ bool type_is_wide(tc_type type);
 
 /* False where vertices of a wide type have to be made on the host. */
 bool device_makes_vertices(const tc_context *context, tc_type type);
+
+/* Makes the queue of copies, in order like the other, where there is none yet. */
+tc_status copies_queue_provide(tc_context *context);
 
 /* Makes the buffer at least so large; its content is lost where it has to grow. name is for the error. */
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);

@@ -42,6 +42,8 @@
     X(EnqueueUnmapMemObject)                                                                                           \
     X(EnqueueNDRangeKernel)                                                                                            \
     X(EnqueueMarkerWithWaitList)                                                                                       \
+    X(EnqueueBarrierWithWaitList)                                                                                      \
+    X(ReleaseEvent)                                                                                                    \
     X(Flush)                                                                                                           \
     X(Finish)
 

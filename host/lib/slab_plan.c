@@ -27,6 +27,8 @@ uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t s
     return (uint32_t)(plan->samples_whole ? nz : min_u64(slab_end(plan, grid, slab_index) + 2ull, nz));
 }
 
+uint32_t plan_window_count(const slab_plan *plan) { return plan->overlaps && !plan->samples_whole ? 2 : 1; }
+
 uint32_t plan_window_layers(const slab_plan *plan) {
     return plan->words_whole ? plan->layer_count : (uint32_t)min_u64(plan->slab_layers + 1ull, plan->layer_count);
 }
@@ -55,8 +57,7 @@ static void tiles_shape(const tc_context *context, slab_plan *plan) {
     plan->scratch_words = (BRICK_ROWS * (plan->tile_rows + 1) + BRICK_PLANES * plan->tile_layers) * plan->words_x;
 }
 
-/* None where they are the caller's. */
-static uint64_t samples_bytes(const slab_plan *plan, const tc_grid *grid) {
+uint64_t plan_sample_bytes(const slab_plan *plan, const tc_grid *grid) {
     if (grid->cl_samples) return 0;
     uint64_t planes = plan->samples_whole
                           ? (uint64_t)grid->dims[2]
@@ -72,15 +73,16 @@ static bool can_miss_samples(const tc_grid *grid) {
 static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
     uint64_t layers = plan_window_layers(plan);
     uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
-    uint64_t samples = samples_bytes(plan, grid);
+    uint64_t samples = plan_sample_bytes(plan, grid), windows = plan_window_count(plan);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
     uint64_t fixed = 2 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 8 * 4096; /* and buffers from page to page */
     *largest = samples > words ? samples : words;
     uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
-    return samples + words * 2 + words / 4 + cells + (sizeof(brick_state) + 4) * bricks + ranges + state + scratch +
-           fixed;
+    uint64_t word_window = words * 2 + words / 4 + (sizeof(brick_state) + 4) * bricks;
+    return samples * windows + word_window * (plan->words_whole ? 1 : windows) + cells + ranges + state + scratch +
+           fixed * windows;
 }
 
 static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,
@@ -109,10 +111,19 @@ static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_
     return low;
 }
 
+/* The same with sign words whole where one layer per slab leaves room for them, else with windows of them. */
+static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
+                            uint64_t budget) {
+    uint64_t bytes;
+    plan->words_whole = true;
+    plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
+    return layers_fit(context, grid, plan, most, budget);
+}
+
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     uint64_t budget = context->options.max_memory_bytes;
-    if (!budget) budget = context->info.shares_host_memory ? UINT64_MAX : context->info.global_memory_bytes;
+    if (!budget) budget = context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
     *plan = (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
                         .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
                         .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
@@ -121,10 +132,14 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_pl
                                (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
     uint32_t most = (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
     plan->samples_whole = plan->words_whole = true;
+    plan->overlaps = !context->in_place;
     if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
         plan->samples_whole = grid->cl_samples != NULL;
-        if (!plan_fits(context, grid, plan, 1, budget / 2, &bytes)) plan->words_whole = false;
-        uint32_t layers = layers_fit(context, grid, plan, most, budget / 2);
+        uint32_t layers = windows_fit(context, grid, plan, most, budget / 2);
+        if (layers == 0 && plan->overlaps) {
+            plan->overlaps = false;
+            layers = windows_fit(context, grid, plan, most, budget / 2);
+        }
         if (layers == 0) {
             plan_fits(context, grid, plan, 1, budget, &bytes);
             return (tc_status)fail(TC_ERROR_MEMORY,

@@ -42,8 +42,7 @@ static uint64_t state_bytes(const run *r) {
 }
 
 /* Sign words, the constant bricks before them. */
-static tc_status words_reserve(tc_context *context, uint64_t brick_count) {
-    device_buffer *words = &context->work.words;
+static tc_status words_reserve(tc_context *context, device_buffer *words, uint64_t brick_count) {
     const size_t brick_bytes = 8 * BRICK_WORDS;
     uint64_t bytes = brick_bytes * (UNIFORM_BRICKS + brick_count);
     if (words->memory && bytes <= words->bytes) return TC_OK;
@@ -57,35 +56,62 @@ static tc_status words_reserve(tc_context *context, uint64_t brick_count) {
     return status;
 }
 
+typedef struct reservation {
+    device_buffer *buffer;
+    uint64_t bytes;
+    const char *name;
+} reservation;
+
+static tc_status buffers_reserve(tc_context *context, const reservation *buffers, size_t count) {
+    tc_status status = TC_OK;
+    for (size_t n = 0; n < count && !status; n++)
+        status = buffer_reserve(context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
+    return status;
+}
+
+static tc_status word_buffers_reserve(run *r, word_buffers *w) {
+    uint64_t bricks = plan_window_layers(r->plan) * plan_bricks_per_layer(r->plan), words = BRICK_WORDS * bricks;
+    const reservation buffers[] = {{&w->offsets, 8 * words, "vertex offsets"},
+                                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
+                                   {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
+                                   {&w->active, 4 * bricks, "active bricks"}};
+    tc_status status = words_reserve(r->context, &w->words, bricks);
+    return status ? status : buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
+}
+
+/* Windows kept for another grid would come on top of the memory that this one may have. */
+static void windows_trim(run *r) {
+    workspace *w = &r->context->work;
+    uint32_t windows = plan_window_count(r->plan);
+    for (uint32_t n = r->plan->samples_whole ? 0 : windows; n < 2; n++) buffer_release(r->context, &w->samples[n]);
+    if (windows == 2 && !r->plan->words_whole) return;
+    device_buffer *words = (device_buffer *)&w->words[1];
+    for (size_t n = 0; n < sizeof w->words[1] / sizeof *words; n++) buffer_release(r->context, &words[n]);
+}
+
 static tc_status workspace_reserve(run *r) {
     workspace *w = &r->context->work;
     const slab_plan *plan = r->plan;
-    uint64_t bricks = plan_window_layers(plan) * plan_bricks_per_layer(plan), words = BRICK_WORDS * bricks;
     uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
+    const reservation buffers[] = {
+        {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
+        {&w->state, state_bytes(r), "the scan"},
+        {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
+    uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
     if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
         workspace_release(r->context); /* what another grid has left could make too much of it */
     }
     r->context->served = r->grid;
-    const struct {
-        device_buffer *buffer;
-        uint64_t bytes;
-        const char *name;
-    } buffers[] = {{&w->offsets, 8 * words, "vertex offsets"},
-                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
-                   {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
-                   {&w->active, 4 * bricks, "active bricks"},
-                   {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
-                   {&w->state, state_bytes(r), "the scan"},
-                   {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
-    tc_status status = words_reserve(r->context, bricks);
-    for (size_t n = 0; n < sizeof buffers / sizeof *buffers && !status; n++)
-        status = buffer_reserve(r->context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
+    windows_trim(r);
+    tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
+    for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
     return status;
 }
 
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
     *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
+    r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
     r->classify_share = emits ? 0.5 : 1;
     tc_status status = classify_kernels_get(r->context, grid->type, grid->device->missing, &r->kernels);
@@ -102,8 +128,9 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
 void run_end(run *r) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (r->context->info.shares_host_memory) { /* windows in memory that is not ours to keep */
-        device_buffer *windows[] = {&w->samples, &w->positions, &w->normals, &w->triangles};
+    if (r->context->in_place) { /* windows in memory that is not ours to keep */
+        mesh_buffers *mesh = &w->mesh[0];
+        device_buffer *windows[] = {&w->samples[0], &mesh->positions, &mesh->normals, &mesh->triangles};
         for (int n = 0; n < 4; n++) buffer_release(r->context, windows[n]);
     }
     slab_store_release(&r->store);
@@ -112,26 +139,36 @@ void run_end(run *r) {
 
 /* -------------------------------------------------------------------------------------------------- classification */
 
+static slab_place classify_place(const run *r, uint32_t slab_index) {
+    return (slab_place){slab_index, slab_index % plan_window_count(r->plan)};
+}
+
+static tc_status classify_load(run *r, uint32_t slab_index) { return slab_load(r, classify_place(r, slab_index)); }
+
+static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_place(r, slab_index)); }
+
 static tc_status slab_classify(run *r, uint32_t slab_index) {
-    workspace *w = &r->context->work;
+    slab_place place = classify_place(r, slab_index);
+    workspace *work = &r->context->work;
+    word_buffers *w = place_words(r, place);
     slab s;
-    tc_status status = slab_prepare(r, slab_index, &s);
+    slab_describe(r, place, &s);
+    tc_status status = slab_mark_cells(r, place, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(r->samples->memory),
-                                         ARGUMENT(w->cells.memory),
+                                         ARGUMENT(place_samples(r, place)->memory),
+                                         ARGUMENT(work->cells.memory),
                                          ARGUMENT(r->grid->device->ranges.memory),
                                          ARGUMENT(w->words.memory),
                                          ARGUMENT(w->offsets.memory),
                                          ARGUMENT(w->triangle_offsets.memory),
                                          ARGUMENT(w->bricks.memory),
                                          ARGUMENT(w->active.memory),
-                                         ARGUMENT(w->state.memory),
-                                         ARGUMENT(w->scratch.memory),
+                                         ARGUMENT(work->state.memory),
+                                         ARGUMENT(work->scratch.memory),
                                          ARGUMENT(scratch_words)};
-    status = kernel_launch(r, r->kernels.classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
-    return status ? status : slab_save(r, slab_index);
+    return kernel_launch(r, r->kernels.classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
 }
 
 void totals_add(run *r) {
@@ -162,12 +199,8 @@ static tc_status slabs_classify(run *r) {
     cl_int error = cl->EnqueueFillBuffer(r->context->queue, r->context->work.state.memory, &zero, sizeof zero, 0,
                                          state_bytes(r), 0, NULL, NULL);
     if (error) return opencl_fail("clearing the scan", error);
-    tc_status status = TC_OK;
-    for (uint32_t n = 0; n < r->plan->slab_count && !status; n++) {
-        status = slab_classify(r, n);
-        if (!status)
-            status = context_progress(r->context, "classify", r->classify_share * (n + 1) / r->plan->slab_count);
-    }
+    const step_stages stages = {"classify", 0, r->classify_share, classify_load, slab_classify, classify_save};
+    tc_status status = steps_run(r, &stages, r->plan->slab_count, plan_window_count(r->plan) > 1);
     return status ? status : totals_read(r);
 }
 

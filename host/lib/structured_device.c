@@ -38,30 +38,30 @@ static tc_status buffer_check(cl_mem memory, uint64_t bytes, const char *name) {
                            (unsigned long long)held, (unsigned long long)bytes);
 }
 
-static tc_status mesh_check(const run *r) {
+static tc_status mesh_check(const run *r, const tc_device_mesh *mesh) {
     const uint64_t vertex_bytes = r->vertex_count * MESH_BYTES_PER_VERTEX;
     if (r->vertex_count > UINT32_MAX || r->triangle_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
                                "%llu vertices and %llu triangles: numbers of 32 bits do not reach so far",
                                (unsigned long long)r->vertex_count, (unsigned long long)r->triangle_count);
-    tc_status status = buffer_check(r->mesh.positions, vertex_bytes, "positions");
-    if (!status && r->normals) status = buffer_check(r->mesh.normals, vertex_bytes, "normals");
-    if (!status) status = buffer_check(r->mesh.triangles, r->triangle_count * MESH_BYTES_PER_TRIANGLE, "triangles");
+    tc_status status = buffer_check(mesh->positions, vertex_bytes, "positions");
+    if (!status && r->normals) status = buffer_check(mesh->normals, vertex_bytes, "normals");
+    if (!status) status = buffer_check(mesh->triangles, r->triangle_count * MESH_BYTES_PER_TRIANGLE, "triangles");
     return status;
 }
 
 static tc_status surface_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh) {
     run r;
+    mesh_buffers buffers = {.positions = {.memory = mesh->positions},
+                            .normals = {.memory = options->normals ? mesh->normals : NULL},
+                            .triangles = {.memory = mesh->triangles}};
     tc_status status = run_begin(&r, grid, options, inside_range_of(grid->type, options->isovalue), true);
     if (!status) {
         memcpy(r.heads, grid->device->heads, r.plan->slab_count * STATE_WORDS * sizeof *r.heads);
         totals_add(&r);
-        r.mesh.positions = mesh->positions;
-        r.mesh.normals = r.normals ? mesh->normals : NULL;
-        r.mesh.triangles = mesh->triangles;
-        status = mesh_check(&r);
+        status = mesh_check(&r, mesh);
     }
-    if (!status && r.vertex_count) status = slabs_emit_whole(&r);
+    if (!status && r.vertex_count) status = slabs_emit_whole(&r, &buffers);
     free(r.heads);
     return status;
 }

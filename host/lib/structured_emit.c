@@ -1,7 +1,7 @@
 /*
  * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
  * after the other, each a run of whole layers. On devices that share the host's memory a window lies in the mesh
- * itself.
+ * itself; else what a step has emitted is read back while the next step runs.
  */
 #include "structured_run.h"
 
@@ -17,56 +17,86 @@ static const uint64_t page_bytes = 4096;
 typedef struct mesh_window {
     uint64_t vertex0, vertex1, triangle0, triangle1;
     uint32_t position_offset, triangle_offset; /* 32-bit items before them in the buffers */
+    mesh_buffers *buffers;
 } mesh_window;
+
+/* Layers of a slab that are emitted by one launch. */
+typedef struct emit_step {
+    slab_place place;
+    bool opens_slab; /* the first of its slab */
+    uint32_t layer0, layer1;
+    uint64_t slab_vertex, slab_triangle; /* before the slab */
+    mesh_window part;                    /* of the mesh: what the step makes */
+} emit_step;
+
+typedef struct emission {
+    tc_mesh *mesh;
+    mesh_window whole;     /* where one window holds the mesh */
+    uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
+    emit_step *steps;
+    uint32_t step_count;
+    double kernels_end_ms;
+} emission;
 
 /* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
 static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
                            uint32_t *offset, const char *name) {
     *offset = 0;
     if (first == end) return buffer_reserve(r->context, buffer, 4, name);
-    if (!r->context->info.shares_host_memory) return buffer_reserve(r->context, buffer, end - first, name);
+    if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
     uint64_t start = first & ~(page_bytes - 1);
     *offset = (uint32_t)((first - start) / 4);
     return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
 }
 
 static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
-    workspace *work = &r->context->work;
+    mesh_buffers *b = w->buffers;
     uint64_t v0 = w->vertex0 * MESH_BYTES_PER_VERTEX, v1 = w->vertex1 * MESH_BYTES_PER_VERTEX;
     uint64_t t0 = w->triangle0 * MESH_BYTES_PER_TRIANGLE, t1 = w->triangle1 * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = part_open(r, &work->positions, &mesh->positions, v0, v1, &w->position_offset, "vertices");
+    tc_status status = part_open(r, &b->positions, &mesh->positions, v0, v1, &w->position_offset, "vertices");
     if (!status && r->normals)
-        status = part_open(r, &work->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
-    if (!status) status = part_open(r, &work->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
-    r->mesh.positions = work->positions.memory;
-    r->mesh.normals = work->normals.memory;
-    r->mesh.triangles = work->triangles.memory;
+        status = part_open(r, &b->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
+    if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
 
-/* Brings bytes [first, end) of a block to the host: a map and unmap where memory is shared, else a copy. */
-static tc_status part_close(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end) {
+/* Has the host see what the device wrote in its memory. */
+static tc_status part_sync(run *r, device_buffer *buffer) {
     cl_command_queue queue = r->context->queue;
-    cl_int error = CL_SUCCESS;
-    if (first < end && !r->context->info.shares_host_memory) {
-        error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_FALSE, 0, end - first, (char *)block->memory + first, 0,
-                                      NULL, NULL);
-    } else if (first < end) {
-        void *mapped =
-            cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
-        if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
-    }
-    if (r->context->info.shares_host_memory) buffer_release(r->context, buffer);
+    cl_int error;
+    void *mapped =
+        cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
+    if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
+    buffer_release(r->context, buffer);
     return error ? opencl_fail("reading the mesh back", error) : TC_OK;
 }
 
-static tc_status window_close(run *r, tc_mesh *mesh, const mesh_window *w) {
-    workspace *work = &r->context->work;
-    uint64_t v0 = w->vertex0 * MESH_BYTES_PER_VERTEX, v1 = w->vertex1 * MESH_BYTES_PER_VERTEX;
-    uint64_t t0 = w->triangle0 * MESH_BYTES_PER_TRIANGLE, t1 = w->triangle1 * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = part_close(r, &work->positions, &mesh->positions, v0, v1);
-    if (!status && r->normals) status = part_close(r, &work->normals, &mesh->normals, v0, v1);
-    if (!status) status = part_close(r, &work->triangles, &mesh->triangles, t0, t1);
+static tc_status window_sync(run *r, const mesh_window *w) {
+    mesh_buffers *b = w->buffers;
+    tc_status status = w->vertex0 < w->vertex1 ? part_sync(r, &b->positions) : TC_OK;
+    if (!status && r->normals && w->vertex0 < w->vertex1) status = part_sync(r, &b->normals);
+    if (!status && w->triangle0 < w->triangle1) status = part_sync(r, &b->triangles);
+    return status;
+}
+
+/* Copies bytes [first, end) of a block from a buffer that starts with byte `start` of it. */
+static tc_status part_read(run *r, const device_buffer *buffer, const host_block *block, uint64_t start, uint64_t first,
+                           uint64_t end) {
+    if (first == end) return TC_OK;
+    cl_int error = cl->EnqueueReadBuffer(r->copies, buffer->memory, CL_FALSE, first - start, end - first,
+                                         (char *)block->memory + first, 0, NULL, NULL);
+    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+}
+
+/* Copies a part of the mesh from the window that it is in. */
+static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, const mesh_window *part) {
+    const uint64_t bytes = MESH_BYTES_PER_VERTEX, start = w->vertex0 * bytes;
+    const uint64_t v0 = part->vertex0 * bytes, v1 = part->vertex1 * bytes;
+    tc_status status = part_read(r, &w->buffers->positions, &mesh->positions, start, v0, v1);
+    if (!status && r->normals) status = part_read(r, &w->buffers->normals, &mesh->normals, start, v0, v1);
+    if (!status)
+        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * MESH_BYTES_PER_TRIANGLE,
+                           part->triangle0 * MESH_BYTES_PER_TRIANGLE, part->triangle1 * MESH_BYTES_PER_TRIANGLE);
     return status;
 }
 
@@ -74,10 +104,11 @@ static uint64_t window_bytes(const run *r, uint64_t vertices, uint64_t triangles
     return vertices * MESH_BYTES_PER_VERTEX * (r->normals ? 2 : 1) + triangles * MESH_BYTES_PER_TRIANGLE;
 }
 
-static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles) {
+/* One of so many windows of the mesh. */
+static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows) {
     uint64_t most = r->context->info.max_buffer_bytes - page_bytes;
     return vertices * MESH_BYTES_PER_VERTEX <= most && triangles * MESH_BYTES_PER_TRIANGLE <= most &&
-           triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes;
+           triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes / windows;
 }
 
 /* How kernel 2 finds the vertex on an edge of a cube: by its place in cube_edges, or, where a work-item has a brick to
@@ -117,8 +148,9 @@ static tc_status cases_provide(run *r, device_buffer **out) {
 }
 
 /* Emits the active bricks of s among [brick_first, brick_last). */
-static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab_triangle) {
+static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
     workspace *work = &r->context->work;
+    const word_buffers *words = place_words(r, place);
     device_buffer *cases;
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
@@ -131,119 +163,237 @@ static tc_status bricks_emit(run *r, slab s, const mesh_window *w, uint64_t slab
     s.position_offset = w->position_offset;
     s.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(r->samples->memory),
+                                         ARGUMENT(place_samples(r, place)->memory),
                                          ARGUMENT(work->cells.memory),
-                                         ARGUMENT(work->words.memory),
-                                         ARGUMENT(work->offsets.memory),
-                                         ARGUMENT(work->triangle_offsets.memory),
-                                         ARGUMENT(work->bricks.memory),
-                                         ARGUMENT(work->active.memory),
+                                         ARGUMENT(words->words.memory),
+                                         ARGUMENT(words->offsets.memory),
+                                         ARGUMENT(words->triangle_offsets.memory),
+                                         ARGUMENT(words->bricks.memory),
+                                         ARGUMENT(words->active.memory),
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(cases->memory),
-                                         ARGUMENT(r->mesh.positions),
-                                         ARGUMENT(r->mesh.normals),
-                                         ARGUMENT(r->mesh.triangles)};
+                                         ARGUMENT(w->buffers->positions.memory),
+                                         ARGUMENT(w->buffers->normals.memory),
+                                         ARGUMENT(w->buffers->triangles.memory)};
     return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
-/* Where the layers of a slab begin in it: layer_count + 1 pairs of vertices and triangles. */
-static tc_status layers_read(run *r, const slab *s, uint32_t layer_count, uint64_t (*begins)[2]) {
-    uint64_t bricks = plan_bricks_per_layer(r->plan), first = (s->z0 - s->word_z) / BRICK_PLANES * bricks;
-    const uint32_t *head = r->heads + s->head_offset;
-    for (uint32_t n = 0; n < layer_count; n++) {
-        brick_state brick;
-        cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.bricks.memory, CL_TRUE,
-                                             sizeof brick * (first + n * bricks), sizeof brick, &brick, 0, NULL, NULL);
-        if (error) return opencl_fail("reading sums of layers", error);
-        begins[n][0] = brick.vertices, begins[n][1] = brick.triangles;
-    }
-    begins[layer_count][0] = head[STATE_VERTICES];
-    begins[layer_count][1] = head[STATE_TRIANGLES];
-    return TC_OK;
+/* ----------------------------------------------------------------------------------------------------------- steps */
+
+/* The first brick of every layer: what is before it in its slab. */
+static tc_status layers_read(run *r, brick_state *layers) {
+    const uint64_t bricks = plan_bricks_per_layer(r->plan);
+    const device_buffer *buffer = &r->context->work.words[0].bricks;
+    cl_int error = CL_SUCCESS;
+    for (uint32_t n = 0; n < r->plan->layer_count && !error; n++)
+        if (!r->plan->words_whole)
+            memcpy(&layers[n], r->store.bricks + n * bricks * sizeof *layers, sizeof *layers);
+        else
+            error = cl->EnqueueReadBuffer(r->context->queue, buffer->memory, CL_FALSE, n * bricks * sizeof *layers,
+                                          sizeof *layers, &layers[n], 0, NULL, NULL);
+    cl_int finish_error = cl->Finish(r->context->queue);
+    if (!error) error = finish_error;
+    return error ? opencl_fail("reading sums of layers", error) : TC_OK;
 }
 
-/* A slab in as few windows as memory allows; `first` are the vertices and triangles before it. */
-static tc_status slab_emit_windows(run *r, tc_mesh *mesh, const slab *s, const uint64_t first[2]) {
-    uint32_t layer_count = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
-    uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
-    uint64_t(*begins)[2] = malloc((layer_count + 1) * sizeof *begins);
-    if (!begins) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of layers");
-    tc_status status = layers_read(r, s, layer_count, begins);
-    for (uint32_t from = 0, to; from < layer_count && !status; from = to) {
-        for (to = from + 1; to < layer_count; to++)
-            if (!window_fits(r, begins[to + 1][0] - begins[from][0], begins[to + 1][1] - begins[from][1])) break;
-        mesh_window w = {first[0] + begins[from][0],
-                         first[0] + begins[to][0],
-                         first[1] + begins[from][1],
-                         first[1] + begins[to][1],
-                         0,
-                         0};
-        if (!window_fits(r, w.vertex1 - w.vertex0, w.triangle1 - w.triangle0)) {
-            uint64_t bytes = window_bytes(r, w.vertex1 - w.vertex0, w.triangle1 - w.triangle0);
-            status = (tc_status)fail(TC_ERROR_MEMORY,
-                                     "a layer of this surface has %llu bytes, more than the memory "
-                                     "budget leaves (%llu) or a buffer may have (%llu)",
-                                     (unsigned long long)bytes, (unsigned long long)r->plan->mesh_bytes,
-                                     (unsigned long long)r->context->info.max_buffer_bytes);
-            break;
+static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
+    uint32_t layers = r->plan->layer_count - slab_index * r->plan->slab_layers;
+    return layers < r->plan->slab_layers ? layers : r->plan->slab_layers;
+}
+
+/* Vertices and triangles before a layer of the slab, or before the next slab. */
+static void layer_begin(const run *r, const brick_state *layers, uint32_t slab_index, uint32_t layer, uint64_t at[2]) {
+    const uint32_t *head = r->heads + slab_index * STATE_WORDS;
+    const brick_state *brick = &layers[slab_index * r->plan->slab_layers + layer];
+    bool end = layer == slab_layer_count(r, slab_index);
+    at[0] = layer == 0 ? 0 : end ? head[STATE_VERTICES] : brick->vertices;
+    at[1] = layer == 0 ? 0 : end ? head[STATE_TRIANGLES] : brick->triangles;
+}
+
+/* The part of the mesh that layers [step->layer0, layer1) of the slab make. */
+static void step_end(const run *r, const brick_state *layers, emit_step *step, uint32_t layer1) {
+    uint64_t from[2], to[2];
+    layer_begin(r, layers, step->place.slab_index, step->layer0, from);
+    layer_begin(r, layers, step->place.slab_index, layer1, to);
+    step->layer1 = layer1;
+    step->part.vertex0 = step->slab_vertex + from[0];
+    step->part.vertex1 = step->slab_vertex + to[0];
+    step->part.triangle0 = step->slab_triangle + from[1];
+    step->part.triangle1 = step->slab_triangle + to[1];
+}
+
+static bool step_fits(const run *r, const emission *e, const emit_step *step) {
+    const mesh_window *part = &step->part;
+    return e->window_count == 0 ||
+           window_fits(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0, e->window_count);
+}
+
+static tc_status layer_refuse(const run *r, const mesh_window *part) {
+    return (tc_status)fail(
+        TC_ERROR_MEMORY,
+        "a layer of this surface has %llu bytes, more than the memory budget leaves (%llu) or a buffer may have (%llu)",
+        (unsigned long long)window_bytes(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0),
+        (unsigned long long)r->plan->mesh_bytes, (unsigned long long)r->context->info.max_buffer_bytes);
+}
+
+/* Cuts a slab into as few steps as windows allow; false, with the last step that of the layer that is too large, where
+ * they do not. */
+static bool slab_cut(const run *r, emission *e, const brick_state *layers, emit_step first) {
+    const uint32_t layer_count = slab_layer_count(r, first.place.slab_index);
+    for (uint32_t from = 0; from < layer_count; from = e->steps[e->step_count - 1].layer1) {
+        emit_step *step = &e->steps[e->step_count++], longer;
+        *step = first;
+        step->opens_slab = from == 0;
+        step->layer0 = from;
+        step_end(r, layers, step, e->window_count ? from + 1 : layer_count);
+        if (!step_fits(r, e, step)) return false;
+        for (longer = *step; step->layer1 < layer_count; *step = longer) {
+            step_end(r, layers, &longer, step->layer1 + 1);
+            if (!step_fits(r, e, &longer)) break;
         }
-        slab part = *s;
-        part.brick_first = (s->z0 - s->word_z) / BRICK_PLANES * bricks + from * bricks;
-        part.brick_last = part.brick_first + (to - from) * bricks;
-        status = window_open(r, mesh, &w);
-        if (!status) status = bricks_emit(r, part, &w, first[1]);
-        if (!status) status = window_close(r, mesh, &w);
     }
-    free(begins);
-    return status;
+    return true;
 }
 
-/* Slab n with kernel 1's results, ready for kernel 2; first: vertices and triangles before it. */
-static tc_status slab_emit_prepare(run *r, uint32_t slab_index, const uint64_t first[2], slab *s) {
-    tc_status status = slab_prepare(r, slab_index, s);
-    if (!status) status = slab_restore(r, slab_index);
-    s->vertex_base = (uint32_t)first[0];
-    s->vertex_base_next = (uint32_t)(first[0] + r->heads[slab_index * STATE_WORDS + STATE_VERTICES]);
-    s->brick_last = UINT32_MAX;
-    return status;
-}
-
-/* Slab after slab: all into one window where that is given, else each into windows of its own. */
-static tc_status slabs_emit_into(run *r, tc_mesh *mesh, const mesh_window *whole) {
-    uint64_t first[2] = {0, 0};
-    tc_status status = TC_OK;
-    for (uint32_t n = 0; n < r->plan->slab_count && !status; n++) {
+static bool slabs_cut(const run *r, emission *e, const brick_state *layers) {
+    uint32_t active = 0;
+    emit_step first = {0};
+    bool fits = true;
+    e->step_count = 0;
+    for (uint32_t n = 0; n < r->plan->slab_count && fits; n++) {
         const uint32_t *head = r->heads + n * STATE_WORDS;
-        slab s;
+        first.place = (slab_place){n, active % plan_window_count(r->plan)};
         if (head[STATE_ACTIVE_BRICKS]) {
-            status = slab_emit_prepare(r, n, first, &s);
-            if (!status) status = whole ? bricks_emit(r, s, whole, first[1]) : slab_emit_windows(r, mesh, &s, first);
+            fits = slab_cut(r, e, layers, first);
+            active++;
         }
-        first[0] += head[STATE_VERTICES];
-        first[1] += head[STATE_TRIANGLES];
-        if (!status) status = context_progress(r->context, "emit", 0.5 + 0.5 * (n + 1) / r->plan->slab_count);
+        first.slab_vertex += head[STATE_VERTICES];
+        first.slab_triangle += head[STATE_TRIANGLES];
+    }
+    return fits;
+}
+
+/* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one. */
+static tc_status steps_plan(run *r, emission *e, bool whole) {
+    brick_state *layers = calloc(r->plan->layer_count, sizeof *layers);
+    e->steps = calloc(r->plan->layer_count, sizeof *e->steps);
+    tc_status status = TC_OK;
+    if (!layers || !e->steps) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of layers");
+    e->window_count = whole ? 0 : r->plan->overlaps ? 2 : 1;
+    if (!status && !whole) status = layers_read(r, layers);
+    if (!status && !slabs_cut(r, e, layers)) {
+        e->window_count = 1;
+        if (!r->plan->overlaps || !slabs_cut(r, e, layers)) status = layer_refuse(r, &e->steps[e->step_count - 1].part);
+    }
+    free(layers);
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------- emission */
+
+static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
+    buffer_release(context, &b->positions);
+    buffer_release(context, &b->normals);
+    buffer_release(context, &b->triangles);
+}
+
+/* Windows as large as the largest step needs: they would grow while copies from them are under way. */
+static tc_status windows_reserve(run *r, emission *e) {
+    mesh_window largest = {0};
+    tc_status status = TC_OK;
+    for (uint32_t n = 0; n < e->step_count; n++) {
+        const mesh_window *part = &e->steps[n].part;
+        const uint64_t vertices = part->vertex1 - part->vertex0, triangles = part->triangle1 - part->triangle0;
+        if (vertices > largest.vertex1) largest.vertex1 = vertices;
+        if (triangles > largest.triangle1) largest.triangle1 = triangles;
+    }
+    for (uint32_t n = 0; n < e->window_count && !status; n++) {
+        largest.buffers = &r->context->work.mesh[n];
+        status = window_open(r, e->mesh, &largest);
     }
     return status;
 }
 
-tc_status slabs_emit_whole(run *r) {
-    const mesh_window whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0};
-    return slabs_emit_into(r, NULL, &whole);
+/* Buffers kept from an extraction with other windows would come on top of the memory that these may have. */
+static tc_status windows_begin(run *r, emission *e) {
+    mesh_buffers *buffers = r->context->work.mesh;
+    mesh_buffers_release(r->context, &buffers[1]);
+    if (e->window_count) mesh_buffers_release(r->context, &buffers[0]);
+    for (uint32_t n = 0; n < e->step_count && e->window_count; n++)
+        e->steps[n].part.buffers = &buffers[n % e->window_count];
+    e->whole = (mesh_window){0, r->vertex_count, 0, r->triangle_count, 0, 0, &buffers[0]};
+    if (!e->window_count) return window_open(r, e->mesh, &e->whole);
+    return r->context->in_place ? TC_OK : windows_reserve(r, e);
+}
+
+static tc_status emit_load(run *r, uint32_t n) {
+    const emit_step *step = &r->emission->steps[n];
+    if (!step->opens_slab) return TC_OK;
+    tc_status status = slab_load(r, step->place);
+    return status ? status : slab_restore(r, step->place);
+}
+
+static void step_describe(const run *r, const emit_step *step, slab *s) {
+    const uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
+    slab_describe(r, step->place, s);
+    s->vertex_base = (uint32_t)step->slab_vertex;
+    s->vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->head_offset + STATE_VERTICES]);
+    s->brick_first = ((s->z0 - s->word_z) / BRICK_PLANES + step->layer0) * bricks;
+    s->brick_last = s->brick_first + (step->layer1 - step->layer0) * bricks;
+}
+
+static tc_status step_emit(run *r, uint32_t n) {
+    emission *e = r->emission;
+    emit_step *step = &e->steps[n];
+    slab s;
+    step_describe(r, step, &s);
+    tc_status status = step->opens_slab ? slab_mark_cells(r, step->place, &s) : TC_OK;
+    if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
+    if (status) return status;
+    return bricks_emit(r, step->place, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
+}
+
+/* The last copy is timed: it begins when all kernels have ended. */
+static tc_status emit_unload(run *r, uint32_t n) {
+    emission *e = r->emission;
+    const emit_step *step = &e->steps[n];
+    if (n + 1 == e->step_count) {
+        cl_int error = cl->Finish(r->context->queue);
+        if (error) return opencl_fail("kernel emit", error);
+        e->kernels_end_ms = clock_ms();
+    }
+    if (r->context->in_place) return e->window_count ? window_sync(r, &step->part) : TC_OK;
+    return window_read(r, e->mesh, e->window_count ? &step->part : &e->whole, &step->part);
+}
+
+/* Steps may only overlap where what they have loaded does not share a window. */
+static tc_status steps_emit(run *r, emission *e) {
+    const step_stages stages = {"emit", 0.5, 0.5, emit_load, step_emit, emit_unload};
+    tc_status status = windows_begin(r, e);
+    if (!status) status = steps_run(r, &stages, e->step_count, r->plan->overlaps && e->window_count != 1);
+    if (!status && r->context->in_place && !e->window_count) status = window_sync(r, &e->whole);
+    cl_int error = cl->Finish(r->context->queue);
+    if (!status && error) status = opencl_fail("reading the mesh back", error);
+    if (!status && !r->context->in_place) e->mesh->timings.readback_ms = clock_ms() - e->kernels_end_ms;
+    return status;
+}
+
+tc_status slabs_emit_whole(run *r, mesh_buffers *buffers) {
+    emission e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
+    r->emission = &e;
+    tc_status status = steps_plan(r, &e, true);
+    for (uint32_t n = 0; n < e.step_count && !status; n++) status = step_emit(r, n);
+    free(e.steps);
+    r->emission = NULL;
+    return status;
 }
 
 tc_status slabs_emit(run *r, tc_mesh *mesh) {
-    mesh_window whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0};
-    bool one_window = window_fits(r, r->vertex_count, r->triangle_count);
-    tc_status status = one_window ? window_open(r, mesh, &whole) : TC_OK;
-    if (!status) status = slabs_emit_into(r, mesh, one_window ? &whole : NULL);
-    cl_int error = cl->Finish(r->context->queue);
-    if (!status && error) status = opencl_fail("kernel emit", error);
-    if (one_window && !status) {
-        double readback = clock_ms();
-        status = window_close(r, mesh, &whole);
-        error = cl->Finish(r->context->queue);
-        if (!status && error) status = opencl_fail("reading the mesh back", error);
-        mesh->timings.readback_ms = r->context->info.shares_host_memory ? 0 : clock_ms() - readback;
-    }
+    emission e = {.mesh = mesh};
+    r->emission = &e;
+    tc_status status = steps_plan(r, &e, window_fits(r, r->vertex_count, r->triangle_count, 1));
+    if (!status) status = steps_emit(r, &e);
+    free(e.steps);
+    r->emission = NULL;
     return status;
 }

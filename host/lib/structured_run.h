@@ -19,7 +19,6 @@ struct device_grid {
     bool ranges_known;
     tc_extract_options counted_options; /* what tc_count left for tc_emit, where context->counted is this grid: */
     uint32_t *heads;                    /* of all slabs */
-    uint64_t sample_offset;
     bool missing; /* some sample is missing: known from the start with nodata, else found by kernel 1 */
 };
 
@@ -37,23 +36,48 @@ typedef struct run {
     slab base;       /* what all slabs have in common */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
-    struct {
-        cl_mem positions, normals, triangles;
-    } mesh;                 /* what kernel 2 writes to */
-    device_buffer *samples; /* whole, or the window of the slab at hand */
+    cl_command_queue copies; /* takes copies to and from the device; may be the queue of kernels */
+    struct emission *emission;
     uint64_t vertex_count, triangle_count, active_cell_count;
     double classify_share; /* of the whole call, for progress */
     double start_ms;       /* kernels are built by then */
 } run;
 
-/* The slab's parameters; its samples and, with missing samples, its present cells are on their way to the device. */
-tc_status slab_prepare(run *r, uint32_t slab_index, slab *out);
+/* A slab and the window that it is in: below plan_window_count. */
+typedef struct slab_place {
+    uint32_t slab_index, window;
+} slab_place;
+
+/* The buffers of a place, which are those of all slabs where they are whole. */
+device_buffer *place_samples(const run *r, slab_place place);
+word_buffers *place_words(const run *r, slab_place place);
+
+/* Brings the slab's samples to the device. */
+tc_status slab_load(run *r, slab_place place);
+
+/* The slab's parameters; its samples are loaded. */
+void slab_describe(const run *r, slab_place place, slab *out);
+
+/* Marks the slab's present cells, where samples may be missing. */
+tc_status slab_mark_cells(run *r, slab_place place, const slab *s);
 
 /* Moves kernel 1's results of a slab from or to the store, where windows are in use. */
-tc_status slab_save(run *r, uint32_t slab_index);
-tc_status slab_restore(run *r, uint32_t slab_index);
+tc_status slab_save(run *r, slab_place place);
+tc_status slab_restore(run *r, slab_place place);
 tc_status slab_store_allocate(run *r);
 void slab_store_release(slab_store *store);
+
+/* What a stage does in each of its steps (structured_steps.c). */
+typedef struct step_stages {
+    const char *name;    /* for progress */
+    double begin, share; /* of the whole call */
+    tc_status (*load)(run *r, uint32_t step);
+    tc_status (*compute)(run *r, uint32_t step);
+    tc_status (*unload)(run *r, uint32_t step);
+} step_stages;
+
+/* All steps, in order; overlaps: copies run beside the kernels of other steps, which use other windows. */
+tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool overlaps);
 
 /* Describes an extraction, builds its kernels and provides what they work on, but for the mesh; run_end gives it back.
  */
@@ -63,8 +87,8 @@ void run_end(run *r);
 /* Adds up the heads of all slabs. */
 void totals_add(run *r);
 
-/* Enqueues kernel 2 over all slabs, the whole mesh going to the buffers of r->mesh. */
-tc_status slabs_emit_whole(run *r);
+/* Enqueues kernel 2 over all slabs, the whole mesh going to these buffers; samples and sign words are whole. */
+tc_status slabs_emit_whole(run *r, mesh_buffers *buffers);
 
 /* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
 tc_status slabs_emit(run *r, tc_mesh *mesh);

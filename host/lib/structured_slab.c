@@ -23,28 +23,36 @@ tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const 
 
 /* --------------------------------------------------------------------------------------------------------- samples */
 
-/* Makes samples [first, first + count) available: in place where the device shares the host's memory (the buffer starts
- * at a page's boundary, *offset samples before the first), else by a copy that is only enqueued. */
-static tc_status samples_provide(tc_grid *grid, device_buffer *buffer, uint64_t first, uint64_t count,
-                                 uint64_t *offset) {
+static char *samples_start(const tc_grid *grid, uint64_t first) {
+    return (char *)(uintptr_t)grid->samples + first * tc_type_bytes(grid->type);
+}
+
+/* Samples in the buffer before sample `first`: one that is used in place starts at a page's boundary. */
+static uint64_t samples_offset(const tc_grid *grid, uint64_t first) {
+    if (grid->cl_samples) return grid->cl_samples_offset + first;
+    uintptr_t before = (uintptr_t)samples_start(grid, first) & (page_bytes - 1);
+    return grid->context->in_place ? before / tc_type_bytes(grid->type) : 0;
+}
+
+/* Makes samples [first, first + count) available: in place where the device can, else by a copy that is only enqueued.
+ */
+static tc_status samples_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, uint64_t first,
+                                 uint64_t count) {
     tc_context *context = grid->context;
     size_t bytes = tc_type_bytes(grid->type);
-    char *start = (char *)(uintptr_t)grid->samples + first * bytes;
-    if (context->info.shares_host_memory) {
+    char *start = samples_start(grid, first);
+    if (context->in_place) {
         uintptr_t before = (uintptr_t)start & (page_bytes - 1);
-        *offset = before / bytes;
         return buffer_wrap(context, buffer, start - before, before + count * bytes, CL_MEM_READ_ONLY, "samples");
     }
-    *offset = 0;
-    tc_status status = buffer_reserve(context, buffer, count * bytes, "samples");
+    tc_status status = buffer_reserve(context, buffer, plan_sample_bytes(&grid->device->plan, grid), "samples");
     if (status) return status;
-    cl_int error =
-        cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_FALSE, 0, count * bytes, start, 0, NULL, NULL);
+    cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, count * bytes, start, 0, NULL, NULL);
     return error ? opencl_fail("copying samples to the device", error) : TC_OK;
 }
 
 /* The caller's buffer, not counted as ours. */
-static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer, uint64_t *offset) {
+static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
     const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
     size_t held = 0;
     cl_int error = cl->GetMemObjectInfo(grid->cl_samples, CL_MEM_SIZE, sizeof held, &held, NULL);
@@ -60,7 +68,6 @@ static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer, uint64_t *o
     error = cl->RetainMemObject(grid->cl_samples);
     if (error) return opencl_fail("retaining cl_samples", error);
     buffer->memory = grid->cl_samples;
-    *offset = grid->cl_samples_offset;
     return TC_OK;
 }
 
@@ -75,10 +82,10 @@ tc_status structured_grid_create(tc_grid *grid) {
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
     if (!status && grid->cl_samples) {
-        status = samples_adopt(grid, &device->samples, &device->sample_offset);
+        status = samples_adopt(grid, &device->samples);
     } else if (!status && device->plan.samples_whole) {
-        status = samples_provide(grid, &device->samples, 0, (uint64_t)grid_sample_count(grid), &device->sample_offset);
-        if (!status && !grid->context->info.shares_host_memory) {
+        status = samples_provide(grid, grid->context->queue, &device->samples, 0, (uint64_t)grid_sample_count(grid));
+        if (!status && !grid->context->in_place) {
             cl_int error = cl->Finish(grid->context->queue);
             if (error) status = opencl_fail("copying samples to the device", error);
         }
@@ -97,17 +104,41 @@ void structured_grid_destroy(tc_grid *grid) {
     grid->device = NULL;
 }
 
+device_buffer *place_samples(const run *r, slab_place place) {
+    return r->plan->samples_whole ? &r->grid->device->samples : &r->context->work.samples[place.window];
+}
+
+word_buffers *place_words(const run *r, slab_place place) {
+    return &r->context->work.words[r->plan->words_whole ? 0 : place.window];
+}
+
 /* One bit per cube whose corners are present, for the planes that kernels 1 and 2 look at. */
-static tc_status cells_make(run *r, const slab *s) {
+tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
     workspace *work = &r->context->work;
+    if (!r->grid->device->missing) return TC_OK;
     const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
-    const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(r->samples->memory), ARGUMENT(work->cells.memory),
-                                         ARGUMENT(planes)};
+    const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(place_samples(r, place)->memory),
+                                         ARGUMENT(work->cells.memory), ARGUMENT(planes)};
     return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, 4);
 }
 
-tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
-    struct device_grid *device = r->grid->device;
+static uint64_t slab_first_sample(const run *r, uint32_t slab_index) {
+    return (uint64_t)r->base.nx * r->base.ny * slab_samples_begin(r->plan, slab_index);
+}
+
+static uint64_t slab_sample_count(const run *r, uint32_t slab_index) {
+    uint64_t end = (uint64_t)r->base.nx * r->base.ny * slab_samples_end(r->plan, r->grid, slab_index);
+    return end - slab_first_sample(r, slab_index);
+}
+
+tc_status slab_load(run *r, slab_place place) {
+    if (r->plan->samples_whole) return TC_OK;
+    return samples_provide(r->grid, r->copies, place_samples(r, place), slab_first_sample(r, place.slab_index),
+                           slab_sample_count(r, place.slab_index));
+}
+
+void slab_describe(const run *r, slab_place place, slab *out) {
+    const uint32_t slab_index = place.slab_index;
     slab *s = out;
     *s = r->base;
     s->z0 = slab_begin(r->plan, slab_index);
@@ -121,18 +152,8 @@ tc_status slab_prepare(run *r, uint32_t slab_index, slab *out) {
     s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
     s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
-    uint64_t plane = (uint64_t)s->nx * s->ny;
-    s->sample_count = plane * (slab_samples_end(r->plan, r->grid, slab_index) - s->sample_z);
-    tc_status status = TC_OK;
-    if (r->plan->samples_whole) {
-        r->samples = &device->samples;
-        s->sample_offset = device->sample_offset;
-    } else {
-        r->samples = &r->context->work.samples;
-        status = samples_provide(r->grid, r->samples, plane * s->sample_z, s->sample_count, &s->sample_offset);
-    }
-    if (!status && device->missing) status = cells_make(r, s);
-    return status;
+    s->sample_offset = samples_offset(r->grid, slab_first_sample(r, slab_index));
+    s->sample_count = slab_sample_count(r, slab_index);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- store */
@@ -163,7 +184,7 @@ void slab_store_release(slab_store *store) {
 static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint8_t *host, uint64_t first,
                              uint64_t count, bool save) {
     if (count == 0) return TC_OK;
-    cl_command_queue queue = r->context->queue;
+    cl_command_queue queue = r->copies;
     cl_mem memory = buffer->memory;
     cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL)
                         : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL);
@@ -171,9 +192,10 @@ static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint
 }
 
 /* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */
-static tc_status slab_move(run *r, uint32_t slab_index, bool save) {
+static tc_status slab_move(run *r, slab_place place, bool save) {
     if (r->plan->words_whole) return TC_OK;
-    workspace *work = &r->context->work;
+    word_buffers *work = place_words(r, place);
+    const uint32_t slab_index = place.slab_index;
     uint64_t layer0 = slab_begin(r->plan, slab_index) / BRICK_PLANES;
     uint64_t layer1 = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
     uint64_t layer_end = !save && layer1 < r->plan->layer_count ? layer1 + 1 : layer1;
@@ -196,6 +218,6 @@ static tc_status slab_move(run *r, uint32_t slab_index, bool save) {
     return status;
 }
 
-tc_status slab_save(run *r, uint32_t slab_index) { return slab_move(r, slab_index, true); }
+tc_status slab_save(run *r, slab_place place) { return slab_move(r, place, true); }
 
-tc_status slab_restore(run *r, uint32_t slab_index) { return slab_move(r, slab_index, false); }
+tc_status slab_restore(run *r, slab_place place) { return slab_move(r, place, false); }
