@@ -6,7 +6,11 @@
  * patterns), which the host derives from the 16 cases of a tetrahedron.
  */
 
-#define RUN_BRICKS 8 /* active bricks that a group takes at once */
+/* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,
+ * page by page, and a new page does not hold up two of them. */
+#define RUN_LEAST      8
+#define RUN_MOST       512
+#define RUNS_PER_GROUP 16
 
 /* Bricks outside [brick_first, brick_last) are left to another launch, where the mesh is larger than a buffer can be.
  */
@@ -21,13 +25,15 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
     global uint *head = state + s.head_offset;
     active += s.active_offset;
     uint active_count = head[STATE_ACTIVE_BRICKS], lid = (uint)get_local_id(0), run = 0;
+    const uint run_bricks =
+        clamp(active_count / (RUNS_PER_GROUP * (uint)get_num_groups(0)), (uint)RUN_LEAST, (uint)RUN_MOST);
     brick_work_begin(&s, &work);
     while (run < active_count) {
         group_barrier();
-        if (lid == 0) shared[0] = RUN_BRICKS * atomic_inc(&head[STATE_EMIT_TICKET]);
+        if (lid == 0) shared[0] = run_bricks * atomic_inc(&head[STATE_EMIT_TICKET]);
         group_barrier();
         run = shared[0];
-        uint end = min(run + RUN_BRICKS, active_count);
+        uint end = min(run + run_bricks, active_count);
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
             uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
 #if WORK_ITEMS == 1
