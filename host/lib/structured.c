@@ -207,10 +207,10 @@ static tc_status slabs_classify(run *r) {
 /* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with
  * missing cells, and remembered as such. */
 static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+    grid->context->counted = NULL; /* from here on the workspace is not what was counted */
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
     bool missing = grid->device->missing;
-    grid->context->counted = NULL;
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
