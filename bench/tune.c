@@ -63,8 +63,7 @@ typedef struct search {
     int tried;
 } search;
 
-/* -------------------------------------------------------------------------------------------------------- extraction
- */
+/* ------------------------------------------------------------------------------------------------------- extraction */
 
 static int setting_open(const search *s, const tc_tuning *tuning, setting *out) {
     tc_context_options options;
@@ -125,8 +124,7 @@ static int reference_hash(const search *s, tune_case *c) {
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------------------- comparison
- */
+/* ------------------------------------------------------------------------------------------------------- comparison */
 
 /* Extracts from a new grid, of which nothing is known; *ms NULL: checked instead of timed. */
 static int extract_new(const search *s, const tune_case *c, setting *with, double *ms) {
@@ -163,8 +161,7 @@ static int settings_compare(const search *s, setting *a, setting *b, double *rat
     return 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ search
- */
+/* ----------------------------------------------------------------------------------------------------------- search */
 
 static void show(const search *s, const tc_tuning *t, double ratio, const char *note) {
     progress_clear();
@@ -221,8 +218,7 @@ static int parameters_search(search *s) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ report
- */
+/* ----------------------------------------------------------------------------------------------------------- report */
 
 static int report_best(const search *s, double ratio) {
     const tc_tuning *t = &s->best.tuning;

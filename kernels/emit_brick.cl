@@ -90,9 +90,6 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 
 /* --------------------------------------------------------------------------------------------------- vertex numbers */
 
-/* Of a row's first sample; those of the others and of types follow as NUMBER_TYPES has it. */
-inline_always uint sample_place(uint y, uint z) { return (z * NUMBER_ROWS + y) * NUMBER_COLUMNS; }
-
 /* Numbers the crossed edges of a row of another brick. */
 inline_always void row_number(uint *number, ulong crossed, uint first) {
     do {
@@ -107,7 +104,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_TYPES * sample_place(y, z);
+        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, z);
 #pragma unroll
         for (uint type = 0; type < 6; type++) {
             const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
@@ -141,7 +138,7 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     ulong crossed[3][BRICK_ROWS];
     vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
     for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
-        uint y = lowest_bit(rows), *number = work->number + NUMBER_TYPES * sample_place(y, BRICK_PLANES);
+        uint y = lowest_bit(rows), *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
         row_number(number, crossed[0][y], number_of(o, 0));
         row_number(number + 1, crossed[1][y], number_of(o, 1));
@@ -168,7 +165,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
 #endif
         if (!(x | z | xz)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
-        uint *number = work->number + NUMBER_TYPES * sample_place(BRICK_ROWS, n);
+        uint *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, BRICK_ROWS, n);
         row_number(number, x, number_of(o, 0));
         row_number(number + 2, z, number_of(o, 2));
         row_number(number + 4, xz, number_of(o, 4));
@@ -183,7 +180,7 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint place = NUMBER_TYPES * (sample_place(row - c.y, z - c.z) + 64) + type;
+        uint place = NUMBER_TYPES * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
         work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
     }
 }
@@ -272,7 +269,7 @@ inline_always uint cubes_list(uint mask, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
-        uint code = y << 7 | z << 11 | sample_place(y, z) << 14;
+        uint code = y << 7 | z << 11 | NUMBER_PLACE(0, y, z) << 14;
         ulong active = work->active[z][y];
         uint end = count + (uint)popcount(active);
         do {

@@ -49,6 +49,9 @@ enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
  * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and two more. */
 enum { NUMBER_TYPES = 8, NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
 
+/* Of a sample, counted in samples. */
+#define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
+
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
     STATE_TICKET,      /* next tile of kernel 1 */

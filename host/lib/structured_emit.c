@@ -116,7 +116,7 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uin
 static uint16_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->options.work_items > 1) return edge;
-    return (uint16_t)(((e.dz * NUMBER_ROWS + e.dy) * NUMBER_COLUMNS + e.dx) * NUMBER_TYPES + e.type);
+    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES + e.type);
 }
 
 /* Per case the number of triangles, then their edges; the rest is never used, but read. */

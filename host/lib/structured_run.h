@@ -79,8 +79,7 @@ typedef struct step_stages {
 /* All steps, in order; overlaps: copies run beside the kernels of other steps, which use other windows. */
 tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool overlaps);
 
-/* Describes an extraction, builds its kernels and provides what they work on, but for the mesh; run_end gives it back.
- */
+/* Describes an extraction, builds its kernels and provides what they work on but the mesh; run_end gives it back. */
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
 void run_end(run *r);
 

@@ -34,8 +34,7 @@ static uint64_t samples_offset(const tc_grid *grid, uint64_t first) {
     return grid->context->in_place ? before / tc_type_bytes(grid->type) : 0;
 }
 
-/* Makes samples [first, first + count) available: in place where the device can, else by a copy that is only enqueued.
- */
+/* Makes samples [first, first + count) available: in place where the device can, else by a copy, only enqueued. */
 static tc_status samples_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, uint64_t first,
                                  uint64_t count) {
     tc_context *context = grid->context;
