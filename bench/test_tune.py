@@ -12,7 +12,7 @@ import tempfile
 
 BENCH = sys.argv[1]
 NAMES = ["work_items", "work_groups", "tile_bricks"]
-CASE = ["--field", "gyroid", "--dims", "33", "--type", "u8", "--repeat", "1"]
+CASE = ["--field", "gyroid", "--dims", "97", "--type", "u8", "--repeat", "1"]
 checks = failures = 0
 
 
@@ -26,7 +26,7 @@ def expect(condition, text):
 
 def bench(cache, *arguments):
     environment = dict(os.environ, TETRACUBES_CACHE_DIR=cache)
-    return subprocess.run([BENCH, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=280,
+    return subprocess.run([BENCH, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=560,
                           env=environment, check=False)
 
 

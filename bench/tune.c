@@ -1,11 +1,12 @@
 /*
  * tune.c - a search for launch parameters, one after the other
  *
- * It starts from what contexts launch with at present, then tries, for each parameter in turn, every value of its list
- * beside the best so far, and goes through the parameters again until nothing changes. Two sets of parameters are
- * compared by taking turns, extraction by extraction, so that whatever else the machine does hits both; the figure is
- * the mean over all cases, geometric, of the ratio of their medians. A new set has to be clearly faster, twice: among
- * equals the first stays. One that is far slower in one case is given up. Every set's mesh has to be the reference's.
+ * It starts from what contexts launch with at present, then tries, for each parameter in turn, the smaller values of
+ * its list and the larger ones beside the best so far, each way until one is far slower, and goes through the
+ * parameters again until nothing changes. Two sets of parameters are compared by taking turns, extraction by
+ * extraction, so that whatever else the machine does hits both; the figure is the mean over all cases, geometric, of
+ * the ratio of their medians. A new set has to be clearly faster, twice: among equals the first stays. One that is far
+ * slower in one case is given up. Every set's mesh has to be the reference's.
  */
 #include "tune.h"
 
@@ -28,7 +29,7 @@ enum { ROUNDS_MOST = 3, VALUES_MOST = 8 };
 /* Ratios of times; those of one set to itself are mostly closer to 1. */
 static const double clearly_faster = 0.97, far_slower = 1.5;
 
-/* Values that are tried; per_unit: times the device's compute units. Ends at the first 0 behind the first value. */
+/* Values that are tried, ascending; per_unit: times the device's compute units. Zeros fill up the list. */
 static const struct {
     const char *name;
     size_t place;
@@ -40,6 +41,10 @@ static const struct {
     {"tile_bricks", offsetof(tc_tuning, tile_bricks), false, {0, 8, 32, 128, 512}},
 };
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
+
+static uint32_t *tuning_value(tc_tuning *tuning, int parameter) {
+    return (uint32_t *)((char *)tuning + parameters[parameter].place);
+}
 
 /* One set of parameters: its context, and the mesh whose memory is used again. */
 typedef struct setting {
@@ -171,21 +176,22 @@ static void show(const search *s, const tc_tuning *t, double ratio, const char *
     fflush(stdout);
 }
 
-/* Takes the place of the best where it is clearly faster. A set that the device cannot do is passed over. */
-static int candidate_try(search *s, const tc_tuning *tuning, bool *better) {
+/* Takes the place of the best where it is clearly faster: *ratio, of their times. A set that the device cannot do is
+ * passed over. */
+static int candidate_try(search *s, const tc_tuning *tuning, double *ratio) {
     setting trial;
-    double ratio = 1, again = 0;
+    double again = 0;
+    *ratio = 1;
     int status = setting_open(s, tuning, &trial);
-    if (!status) status = settings_compare(s, &s->best, &trial, &ratio);
-    if (!status && ratio < clearly_faster) status = settings_compare(s, &s->best, &trial, &again);
-    ratio = fmax(ratio, again);
+    if (!status) status = settings_compare(s, &s->best, &trial, ratio);
+    if (!status && *ratio < clearly_faster) status = settings_compare(s, &s->best, &trial, &again);
+    *ratio = fmax(*ratio, again);
     if (progress_cancelled()) status = progress_status();
     if (!status) {
-        *better = ratio < clearly_faster;
-        show(s, &trial.tuning, ratio, *better ? "  better" : "");
+        show(s, &trial.tuning, *ratio, *ratio < clearly_faster ? "  better" : "");
         s->tried++;
     }
-    if (!status && *better) {
+    if (!status && *ratio < clearly_faster) {
         setting before = s->best;
         s->best = trial;
         trial = before;
@@ -194,16 +200,20 @@ static int candidate_try(search *s, const tc_tuning *tuning, bool *better) {
     return status == STATUS_CHECK || progress_cancelled() ? status : 0;
 }
 
-static int parameter_search(search *s, int n, bool *changed) {
-    for (int v = 0; v < VALUES_MOST && (!v || parameters[n].values[v]); v++) {
-        bool better = false;
+/* From the present value of parameter n, one way through its list: up or down. */
+static int parameter_search(search *s, int n, bool up, bool *changed) {
+    uint32_t unit = parameters[n].per_unit ? s->device.compute_units : 1;
+    uint32_t present = *tuning_value(&s->best.tuning, n);
+    double ratio = 1;
+    for (int step = 0; step < VALUES_MOST && ratio <= far_slower; step++) {
+        int v = up ? step : VALUES_MOST - 1 - step;
         tc_tuning tuning = s->best.tuning;
-        uint32_t *value = (uint32_t *)((char *)&tuning + parameters[n].place), before = *value;
-        *value = parameters[n].values[v] * (parameters[n].per_unit ? s->device.compute_units : 1);
-        if (*value == before) continue;
-        int status = candidate_try(s, &tuning, &better);
+        uint32_t value = parameters[n].values[v] * unit;
+        if ((v && !value) || (up ? value <= present : value >= present)) continue;
+        *tuning_value(&tuning, n) = value;
+        int status = candidate_try(s, &tuning, &ratio);
         if (status) return status;
-        *changed |= better;
+        *changed |= ratio < clearly_faster;
     }
     return 0;
 }
@@ -213,7 +223,7 @@ static int parameters_search(search *s) {
     int status = 0;
     for (int round = 0; round < ROUNDS_MOST && changed && !status; round++) {
         changed = false;
-        for (int n = 0; n < PARAMETERS && !status; n++) status = parameter_search(s, n, &changed);
+        for (int n = 0; n < 2 * PARAMETERS && !status; n++) status = parameter_search(s, n / 2, n % 2, &changed);
     }
     return status;
 }
