@@ -192,6 +192,14 @@ typedef struct tc_grid_options {
                                    tc_grid_destroy; commands that write it come first in the context's queue, or are
                                    complete. Not for the reference engine */
     uint64_t cl_samples_offset; /* in samples, of the first one in that buffer */
+
+    /* Rectilinear and curvilinear grids; finite, borrowed as the samples are. With neither the grid is uniform. */
+    const float
+        *axes[3];        /* rectilinear: dims[a] positions along each axis, rising or falling; in place of the matrix */
+    const float *points; /* curvilinear: x, y, z of every sample, in place of the matrix */
+    const uint8_t *blanked_samples; /* one per sample, nonzero: missing, as one that is not finite; NULL: none */
+    const uint8_t *blanked_cells;   /* one per cube, (dims[0] - 1) (dims[1] - 1) (dims[2] - 1) of them, x fastest;
+                                       nonzero: the cube is left out; NULL: none */
 } tc_grid_options;
 
 typedef struct tc_grid tc_grid;
@@ -207,10 +215,18 @@ TC_API void tc_grid_destroy(tc_grid *grid);
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
+/* How cubes are cut. */
+typedef enum tc_method {
+    TC_METHOD_TETRA = 0,  /* five tetrahedra per cube */
+    TC_METHOD_HYBRID = 1, /* structured grids: vertices on edges of cubes only, about 2.4 times fewer triangles; where
+                             marching cubes are ambiguous the tetrahedra decide, so that topology is the same */
+} tc_method;
+
 typedef struct tc_extract_options {
     size_t struct_size;
     double isovalue; /* finite; inside means sample >= isovalue, exactly */
     int normals;     /* nonzero: a unit normal per vertex, the negated gradient (zero where that vanishes) */
+    tc_method method;
 } tc_extract_options;
 
 /* What classification alone tells. */
@@ -261,6 +277,66 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
  */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+/* ---------------------------------------------------------------------------------------------- unstructured grids */
+
+/* Cells of any kind, in VTK's numbering of types and of the points in a cell. All arrays are borrowed during the call.
+ */
+typedef struct tc_cells {
+    size_t struct_size; /* set by the caller: sizeof(tc_cells) */
+    uint64_t point_count;
+    const float *points; /* x, y, z each */
+    uint64_t cell_count;
+    const uint8_t *types;
+    const int64_t *offsets; /* cell_count + 1: where in `connectivity` the points of a cell begin */
+    const int64_t *connectivity;
+    const uint8_t *blanked_points; /* nonzero: missing; cells that contain one are left out whole. NULL: none */
+    const uint8_t *blanked_cells;  /* nonzero: left out; NULL: none */
+} tc_cells;
+
+/* A conforming tetrahedral complex: tetrahedra of one cell follow each other, in the order of the cells. Where a cell's
+ * volume is positive, v0 v1 v2 wind counter-clockwise seen from v3's other side: (v1 - v0) x (v2 - v0) . (v3 - v0) > 0
+ * unless the cell is folded; where it is negative they have been turned over. */
+typedef struct tc_complex {
+    size_t struct_size; /* set by the caller: sizeof(tc_complex) */
+    uint64_t tetrahedron_count;
+    const uint32_t *tetrahedra; /* 4 points each */
+    const uint32_t *cells;      /* of each tetrahedron: the cell it is part of */
+    uint64_t flat_cell_count;   /* cells of fewer than three dimensions, skipped */
+    uint64_t curved_cell_count; /* quadratic and higher cells, of which the corners were used */
+    uint64_t blanked_cell_count;
+    uint64_t inverted_cell_count; /* of negative volume, turned over */
+    uint64_t folded_cell_count;   /* whose tetrahedra differ in sign */
+} tc_complex;
+
+/* Cuts cells into tetrahedra: the diagonal of every quadrilateral face goes through its smallest point number, so that
+ * neighbours agree whatever their types (Dompierre, Labbe, Vallet, Camarero 1999). Tetrahedra, hexahedra, voxels,
+ * wedges, pyramids, and their quadratic kin by their corners. TC_ERROR_DATA for points out of range, cells with a wrong
+ * number of points and 3D types that are none of these; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The
+ * complex, zeroed on failure, is freed by tc_complex_release. */
+TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex);
+
+/* The same of a structured grid: five tetrahedra per cube, mirrored on alternate cubes, as the structured path does. Of
+ * the options only sizes, parity (first), coordinates and what is missing matter. Points are the samples. */
+TC_API tc_status tc_tetrahedralize_grid(const tc_grid_options *grid, tc_complex *complex);
+TC_API void tc_complex_release(tc_complex *complex);
+
+typedef struct tc_complex_options {
+    size_t struct_size; /* set by tc_complex_options_init */
+    uint64_t point_count;
+    const float *points; /* x, y, z each, finite; borrowed until tc_grid_destroy, as the next three are */
+    tc_type type;
+    const void *samples; /* one per point; tetrahedra with a sample that is not finite are left out */
+    uint64_t tetrahedron_count;
+    const uint32_t *tetrahedra; /* 4 points each, ordered as in tc_complex */
+} tc_complex_options;
+
+TC_API void tc_complex_options_init(tc_complex_options *options);
+
+/* A grid that tc_count and tc_extract take like a structured one, without normals, and by TC_METHOD_TETRA only.
+ * Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03 12 13 23); triangles
+ * follow their tetrahedra. Crossings go from the lower to the higher point number. */
+TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */
 

@@ -1,5 +1,5 @@
 /*
- * volume.h - what every reader produces: the samples of a uniform grid in memory, native byte order, x fastest
+ * volume.h - what the readers of images produce: the samples of a uniform grid in memory, native byte order, x fastest
  */
 #ifndef VOLUME_H
 #define VOLUME_H
@@ -24,10 +24,12 @@ typedef struct volume {
 /* What the command line says about the input. */
 typedef struct read_request {
     const char *path;
-    int64_t dims[3];   /* raw: required; all 0 where not given */
-    int type;          /* raw: a tc_type; -1 where not given */
-    int big_endian;    /* raw: 1 big, 0 little */
-    uint64_t skip;     /* raw: bytes before the samples */
+    const char
+        *path2;      /* the second input of formats in two files (Plot3D: grid, then solution); NULL where not given */
+    int64_t dims[3]; /* raw: required; all 0 where not given */
+    int type;        /* raw: a tc_type; -1 where not given */
+    int big_endian;  /* raw: 1 big, 0 little */
+    uint64_t skip;   /* raw: bytes before the samples */
     double spacing[3]; /* raw; 1, 1, 1 by default */
     double origin[3];  /* raw; 0, 0, 0 by default */
     int component;     /* of data with several values per sample; -1 where not given */

@@ -1,0 +1,76 @@
+/*
+ * dataset.h - what every reader produces: grids, one or more blocks of them, with their fields in memory
+ *
+ * Values are in native byte order, tuple by tuple; points of structured blocks run x fastest. Whatever a block points
+ * to belongs to its dataset: memory that readers take from dataset_allocate, or the mapped file where values can be
+ * used in place.
+ */
+#ifndef DATASET_H
+#define DATASET_H
+
+#include "volume.h"
+
+typedef struct dataset_field {
+    const char *name; /* "" where the format has no names */
+    int on_cells;     /* a tuple per cell, not per point */
+    int components;   /* values per tuple: 1 for a scalar */
+    tc_type type;     /* 64-bit integers have become f64 */
+    const void *values;
+} dataset_field;
+
+enum grid_kind { GRID_UNIFORM, GRID_RECTILINEAR, GRID_CURVILINEAR, GRID_UNSTRUCTURED };
+
+typedef struct dataset_block {
+    enum grid_kind kind;
+    int64_t point_count, cell_count;
+
+    int64_t dims[3];      /* all but unstructured: points along x, y, z; cells are cubes between them */
+    int64_t first[3];     /* extent index of the first point */
+    double matrix[3][4];  /* uniform: index space to world, as tc_grid_options.matrix */
+    const float *axes[3]; /* rectilinear: dims[a] positions along each axis */
+    const float *points;  /* curvilinear and unstructured: x, y, z of every point */
+
+    const uint8_t *cell_types;   /* unstructured: VTK's numbers of cell types */
+    const int64_t *cell_offsets; /* cell_count + 1: where in cell_points the points of a cell begin */
+    const int64_t *cell_points;  /* each checked to be below point_count */
+
+    const uint8_t *blanked_points, *blanked_cells; /* nonzero: missing; NULL: none */
+    dataset_field *fields;
+    int field_count;
+} dataset_block;
+
+typedef struct dataset {
+    dataset_block *blocks;
+    int block_count;
+    char format[24];  /* "NRRD", "VTK legacy", "VTK XML", "Plot3D", ... */
+    char space[64];   /* the file's name of its world space, or "" */
+    char notice[256]; /* something the user should know about how the file was read, or "" */
+
+    volume image; /* of the readers of uniform images: owns what their one block points to */
+    void *mapping;
+    size_t mapping_bytes;
+    struct dataset_memory *memory; /* list of all that dataset_allocate gave */
+} dataset;
+
+/* Reads the file, or the files of request->paths, in the format that content, else ending, tells. Returns 0 and a
+ * dataset to be released, or an exit status (exit_status.h) with its text (failure.h), *out zeroed. */
+int dataset_read(const read_request *request, dataset *out);
+
+/* Frees or unmaps all and zeroes *d. */
+void dataset_release(dataset *d);
+
+/* Memory that lives as long as the dataset, page-aligned and in huge pages where large; NULL, with STATUS_FAILED's text
+ * set, where there is none. 0 bytes: memory all the same. */
+void *dataset_allocate(dataset *d, uint64_t bytes);
+
+/* A copy of the text that lives as long as the dataset. */
+char *dataset_text(dataset *d, const char *text);
+
+/* Adds a zeroed block or field; *out stays valid until the next is added. 0 or STATUS_FAILED. */
+int dataset_block_add(dataset *d, dataset_block **out);
+int dataset_field_add(dataset_block *block, dataset_field **out);
+
+/* Adds to the notice: sentences are joined by "; ", what has no room is left out. */
+void dataset_notice(dataset *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif
