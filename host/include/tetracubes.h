@@ -278,6 +278,20 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
 
+/* Another field on a grid's samples. */
+typedef struct tc_field {
+    size_t struct_size; /* set by the caller: sizeof(tc_field) */
+    tc_type type;
+    int components;     /* values per sample, next to each other */
+    const void *values; /* as many tuples as the grid has samples */
+} tc_field;
+
+/* Carries a field onto the surface: out[vertex][component], a + t (b - a) in double with the t that placed the vertex,
+ * in the order in which tc_extract makes vertices. out has room for value_count floats, which must be what that takes
+ * (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread, whatever the engine; not for grids with cl_samples. */
+TC_API tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
+                          uint64_t value_count);
+
 /* ---------------------------------------------------------------------------------------------- unstructured grids */
 
 /* Cells of any kind, in VTK's numbering of types and of the points in a cell. All arrays are borrowed during the call.

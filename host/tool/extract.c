@@ -65,7 +65,7 @@ static int check_overwrite(const options *o, const char *path) {
 }
 
 static int check_output(const options *o) {
-    const mesh_write_options how = {o->format, o->soup};
+    const mesh_write_options how = {.format = o->format, .soup = o->soup};
     if (o->isovalue_count > 1 && !strchr(o->output, '%'))
         return fail(STATUS_USAGE, "-o %s: with several isovalues the name needs a %%, which stands for the isovalue",
                     o->output);
@@ -264,7 +264,7 @@ static int check_surface(const job *j, const tc_mesh_data *m, surface_report *s,
 }
 
 static int write_surface(job *j, const tc_mesh_data *m, surface_report *s) {
-    const mesh_write_options how = {j->o->format, j->o->soup};
+    const mesh_write_options how = {.format = j->o->format, .soup = j->o->soup};
     s->path = output_path(j->o, s->iso);
     if (!s->path) return fail(STATUS_FAILED, "out of memory for the name of the output");
     double begin = now_ms();

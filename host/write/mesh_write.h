@@ -10,9 +10,18 @@
 
 #include "tetracubes.h"
 
+/* Values on the vertices, for PLY and VTP. */
+typedef struct mesh_field {
+    const char *name;
+    int components;
+    const float *values; /* tuple by tuple */
+} mesh_field;
+
 typedef struct mesh_write_options {
-    const char *format; /* "ply", "stl" or "obj", in any case; NULL: the file's ending */
+    const char *format; /* "ply", "stl", "obj" or "vtp", in any case; NULL: the file's ending */
     int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
+    const mesh_field *fields;
+    int field_count;
 } mesh_write_options;
 
 /* 0 where path's ending (or options->format) is a format that can be written, else STATUS_USAGE with a text that names
@@ -22,5 +31,19 @@ int mesh_write_check(const char *path, const mesh_write_options *options);
 /* Writes positions, normals (where the mesh has them and the format takes them: PLY, OBJ) and triangles, whose indices
  * must be below vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
+
+/* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */
+typedef struct complex_file {
+    uint64_t point_count;
+    const float *points; /* x, y, z each */
+    uint64_t tetrahedron_count;
+    const uint32_t *tetrahedra;         /* 4 points each */
+    const struct dataset_field *fields; /* of the points: host/read/dataset.h */
+    int field_count;
+} complex_file;
+
+/* 0 where path ends with .vtu, else STATUS_USAGE: to be called before any work is done. */
+int complex_write_check(const char *path);
+int complex_write(const char *path, const complex_file *complex);
 
 #endif
