@@ -178,42 +178,92 @@ inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count
     }
 }
 
-/* Of bricks whose ranges are known: those that are mixed are asked for first. */
-inline_always void run_visit_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
-                                   global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
-    uint first = brick_index(s, y0, z0, w), mixed = 0;
-    for (uint n = 0; n < count; n++) {
-        uint sign = range_sign(s, ranges[s->range_offset + first + n]);
-        brick_sign_store(first + n, sign, bricks);
-        if (sign != SIGN_MIXED) continue;
+/* The sign that a run of bricks has in common. */
+inline_always uint run_sign(const slab *s, global const brick_range *ranges, uint count) {
+    brick_range whole = ranges[0];
+    if (count == RUN_BRICKS_X) {
+        uint16 r = vload16(0, (global const uint *)ranges);
+        uint4 low = min(r.even.lo, r.even.hi), high = max(r.odd.lo, r.odd.hi);
+        whole.low = min(min(low.x, low.y), min(low.z, low.w));
+        whole.high = max(max(high.x, high.y), max(high.z, high.w));
+    }
+    for (uint n = 1; n < count && count != RUN_BRICKS_X; n++) {
+        whole.low = min(whole.low, ranges[n].low);
+        whole.high = max(whole.high, ranges[n].high);
+    }
+    return range_sign(s, whole);
+}
+
+/* Signs of bricks whose ranges are known. Returns which are mixed, whose samples it asks for. */
+inline_always uint run_sign_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
+                                  global brick_state *bricks, global const brick_range *ranges) {
+    const uint first = brick_index(s, y0, z0, w);
+    const uint sign = run_sign(s, ranges + s->range_offset + first, count);
+    uint mixed = 0;
+    for (uint n = 0; n < count; n++) brick_sign_store(first + n, sign, bricks);
+    for (uint n = 0; n < count && sign == SIGN_MIXED; n++) {
+        uint own = range_sign(s, ranges[s->range_offset + first + n]);
+        bricks[first + n].sign = own;
+        if (own != SIGN_MIXED) continue;
         mixed |= 1u << n;
         for (uint place = 0; place < BRICK_WORDS; place++)
             row_prefetch(s, y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, w + n, 1, samples);
     }
-    for (uint n = 0; n < count; n++)
-        if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + (ulong)BRICK_WORDS * (first + n));
+    return mixed;
+}
+
+inline_always void run_words_make(const slab *s, uint y0, uint z0, uint w, uint mixed, global const BITS *samples,
+                                  global ulong *words) {
+    ulong first = brick_index(s, y0, z0, w);
+    for (uint n = 0; mixed >> n; n++)
+        if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + BRICK_WORDS * (first + n));
+}
+
+/* A layer whose ranges are known: words are made one run behind, when their samples have come. */
+inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, global const BITS *samples,
+                                    global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
+    uint asked = 0, asked_y = y0, asked_w = 0;
+    for (uint y = y0; y < y1; y += BRICK_ROWS)
+        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
+            uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
+            uint mixed = run_sign_again(s, y, z, w, count, samples, bricks, ranges);
+            run_words_make(s, asked_y, z, asked_w, asked, samples, words);
+            asked = mixed, asked_y = y, asked_w = w;
+        }
+    run_words_make(s, asked_y, z, asked_w, asked, samples, words);
 }
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
+    if (s->ranges_known) {
+        layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
+        return;
+    }
     for (uint y = y0; y < y1; y += BRICK_ROWS)
-        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
-            uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
-            if (s->ranges_known)
-                run_visit_again(s, y, z, w, count, samples, words, bricks, ranges);
-            else
-                run_visit(s, y, z, w, count, samples, words, bricks, ranges, nonfinite);
-        }
+        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X)
+            run_visit(s, y, z, w, min((uint)RUN_BRICKS_X, s->words_x - w), samples, words, bricks, ranges, nonfinite);
 }
 
-/* A row of words, each `stride` words after the last. */
+/* A word of any tile. */
+inline_always ulong word_at(const slab *s, uint y, uint z, uint w, uint sign, global const BITS *samples) {
+    ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
+    return word & word_valid(s, w);
+}
+
+/* The words of a row, and those of the rows y to y + 7, below y1, brick by brick. */
 inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
-                                  global const brick_range *ranges, global ulong *out, uint stride) {
+                                  global const brick_range *ranges, global ulong *out) {
+    for (uint w = 0; w < s->words_x; w++) out[w] = word_at(s, y, z, w, sign_known(s, y, z, w, ranges), samples);
+}
+
+inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
+                                   global const brick_range *ranges, global ulong *out) {
     for (uint w = 0; w < s->words_x; w++) {
         uint sign = sign_known(s, y, z, w, ranges);
-        ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
-        out[(ulong)stride * w] = word & word_valid(s, w);
+        vstore8((lanes)(sign_word(sign) & word_valid(s, w)), w, out);
+        for (uint n = 0; n < BRICK_ROWS && sign == SIGN_MIXED && y + n < y1; n++)
+            out[BRICK_ROWS * w + n] = word_at(s, y + n, z, w, sign, samples);
     }
 }
 
@@ -291,8 +341,8 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
 }
 
 /* A row of words, each `stride` words after the last. */
-inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
-                                  global const brick_range *ranges, global ulong *out, uint stride) {
+inline_always void row_words_spread(const slab *s, uint y, uint z, global const BITS *samples,
+                                    global const brick_range *ranges, global ulong *out, uint stride) {
     for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
         uint part = first + (uint)get_local_id(0), w = part / ROW_PARTS;
         if (w < s->words_x) {
@@ -302,6 +352,18 @@ inline_always void row_words_make(const slab *s, uint y, uint z, global const BI
             ((global ushort *)(out + (ulong)stride * w))[part % ROW_PARTS] = (ushort)bits;
         }
     }
+}
+
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
+                                  global const brick_range *ranges, global ulong *out) {
+    row_words_spread(s, y, z, samples, ranges, out, 1);
+}
+
+/* The words of the rows y to y + 7, below y1, brick by brick. */
+inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
+                                   global const brick_range *ranges, global ulong *out) {
+    for (uint n = 0; n < BRICK_ROWS && y + n < y1; n++)
+        row_words_spread(s, y + n, z, samples, ranges, out + n, BRICK_ROWS);
 }
 
 #endif
