@@ -13,7 +13,8 @@
  */
 #if WORK_ITEMS == 1
 
-#define LIST_EDGES  (BRICK_WORDS * 64 * 6)
+#define NUMBER_STEP NUMBER_TYPES(HYBRID)
+#define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
 #define LIST_CUBES  (BRICK_WORDS * 64)
 #define LIST_STEP   2 /* items stored at once */
 #define BATCH_EDGES 1024
@@ -28,10 +29,10 @@ typedef struct brick_signs {
 } brick_signs;
 
 typedef struct brick_work {
-    ulong crossed[BRICK_PLANES][6][BRICK_ROWS];
+    ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
-    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_TYPES];
+    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP];
     uint list[LIST_EDGES + LIST_STEP]; /* edges as PLACE has them; cubes: see cubes_list */
     ushort cases[LIST_CUBES];
 #ifdef REAL
@@ -95,7 +96,7 @@ inline_always void row_number(uint *number, ulong crossed, uint first) {
     do {
 #pragma unroll
         for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1)
-            number[NUMBER_TYPES * lowest_bit(crossed)] = first++;
+            number[NUMBER_STEP * lowest_bit(crossed)] = first++;
     } while (crossed);
 }
 
@@ -104,9 +105,9 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, z);
+        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
 #pragma unroll
-        for (uint type = 0; type < 6; type++) {
+        for (uint type = 0; type < EDGE_TYPES; type++) {
             const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
@@ -115,7 +116,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
                 for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) {
                     uint bit = lowest_bit(crossed);
                     work->list[count + n] = (bit & 1 ? codes[1] : codes[0]) + bit;
-                    number[NUMBER_TYPES * bit + type] = first + count + n;
+                    number[NUMBER_STEP * bit + type] = first + count + n;
                 }
                 count += LIST_STEP;
             } while (crossed);
@@ -138,11 +139,11 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     ulong crossed[3][BRICK_ROWS];
     vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
     for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
-        uint y = lowest_bit(rows), *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, BRICK_PLANES);
+        uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
         row_number(number, crossed[0][y], number_of(o, 0));
         row_number(number + 1, crossed[1][y], number_of(o, 1));
-        row_number(number + 3, crossed[2][y], number_of(o, 3));
+        if (!HYBRID) row_number(number + 3, crossed[2][y], number_of(o, 3));
     }
 }
 
@@ -157,7 +158,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         const ulong even = even_cubes(s, y, c.z + n), a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
         const ulong c0 = has_z ? signs->rows[1][n + 1].at.s0 : a0, c1 = has_z ? signs->rows[1][n + 1].next.s0 : 0;
         ulong x = (a0 ^ a1) & has_x, z = a0 ^ c0;
-        ulong xz = has_z ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
+        ulong xz = has_z && !HYBRID ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
 #if MISSING
         crossings k = {{x, 0, z, 0, xz, 0}};
         crossings_keep(s, k1.cells, y, c.z + n, w, &k);
@@ -165,10 +166,10 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
 #endif
         if (!(x | z | xz)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
-        uint *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, BRICK_ROWS, n);
+        uint *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, BRICK_ROWS, n);
         row_number(number, x, number_of(o, 0));
         row_number(number + 2, z, number_of(o, 2));
-        row_number(number + 4, xz, number_of(o, 4));
+        if (!HYBRID) row_number(number + 4, xz, number_of(o, 4));
     }
 }
 
@@ -180,7 +181,7 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint place = NUMBER_TYPES * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
+        uint place = NUMBER_STEP * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
         work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
     }
 }
@@ -198,7 +199,7 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (n < BRICK_PLANES && z + 1 < s->nz) {
             const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
             k.type[2] = a ^ behind;
-            k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
+            if (!HYBRID) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
             up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
         }
 #if MISSING
@@ -305,7 +306,7 @@ inline_always void cases_find(const slab *s, uint count, brick_work *work) {
 /* Loops as written: gathers cost more than what they replace. */
 inline_always void triangles_emit(uint count, global const ushort *cases, global uint *index, const brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        const uint *number = work->number + NUMBER_TYPES * (work->list[n] >> 14);
+        const uint *number = work->number + NUMBER_STEP * (work->list[n] >> 14);
         global const ushort *entry = cases + CASE_ITEMS * work->cases[n];
         uint indices = 3u * *entry++;
         if (n + CASE_EXACT < count) {
@@ -336,7 +337,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
         crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &k);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
-        for (uint type = 0; type < 6; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
+        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
         vstore8(active, 0, work->active[n]);
     }
 }

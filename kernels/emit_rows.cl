@@ -15,7 +15,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
                                 grid_arrays in, mesh_buffers mesh) {
     ulong even = even_cubes(s, y, z);
     uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
-    for (uint type = 0; type < 6; type++) {
+    for (uint type = 0; type < EDGE_TYPES; type++) {
         for (ulong crossed = k->type[type]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
             uint place = edge_place(type, !(even >> bit & 1)) + row + bit;
@@ -106,10 +106,10 @@ inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_resu
 inline_always void crossings_beside(const cube_rows *r, crossings *b, crossings *c, crossings *d) {
     b->type[0] = r->b0 ^ r->b1;
     b->type[2] = r->b0 ^ r->d0;
-    b->type[4] = choose(r->even, r->b1 ^ r->d0, r->b0 ^ r->d1);
+    if (!HYBRID) b->type[4] = choose(r->even, r->b1 ^ r->d0, r->b0 ^ r->d1);
     c->type[0] = r->c0 ^ r->c1;
     c->type[1] = r->c0 ^ r->d0;
-    c->type[3] = choose(r->even, r->c1 ^ r->d0, r->c0 ^ r->d1);
+    if (!HYBRID) c->type[3] = choose(r->even, r->c1 ^ r->d0, r->c0 ^ r->d1);
     d->type[0] = r->d0 ^ r->d1;
 }
 

@@ -46,8 +46,9 @@ typedef struct brick_range {
 enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
- * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and two more. */
-enum { NUMBER_TYPES = 8, NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
+ * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and one or two more. */
+#define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
+enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
 
 /* Of a sample, counted in samples. */
 #define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))

@@ -51,7 +51,7 @@ typedef struct workspace {
     mesh_buffers mesh[2];
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
-    device_buffer cases[2]; /* cube table; [1] for mirrored grids */
+    device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {
@@ -73,8 +73,9 @@ struct tc_context {
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
 /* The kernels for a grid, built when first asked for, owned by the context (program.c). */
-tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out);
-tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, bool missing, bool normals, kernels *out);
+tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out);
+tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, tc_method method, bool missing, bool normals,
+                          kernels *out);
 void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */

@@ -47,6 +47,8 @@ static tc_status extract_options_take(tc_extract_options *o, const tc_extract_op
     tc_status status = options_take(o, sizeof *o, options, "extract options");
     if (!status && !isfinite(o->isovalue))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
+    if (!status && o->method != TC_METHOD_TETRA && o->method != TC_METHOD_HYBRID)
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
     return status;
 }
 

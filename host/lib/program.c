@@ -29,17 +29,19 @@ static const type_text type_texts[] = {
 };
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
-static void classify_options_write(const tc_context *context, tc_type type, bool missing, char *out, size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u", type_texts[type].bits,
-             type_texts[type].floating, missing, context->options.work_items);
+static void classify_options_write(const tc_context *context, tc_type type, tc_method method, bool missing, char *out,
+                                   size_t bytes) {
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d",
+             type_texts[type].bits, type_texts[type].floating, missing, context->options.work_items,
+             method == TC_METHOD_HYBRID);
 }
 
-static void emit_options_write(const tc_context *context, const tc_grid *grid, bool missing, bool normals, char *out,
-                               size_t bytes) {
+static void emit_options_write(const tc_context *context, const tc_grid *grid, tc_method method, bool missing,
+                               bool normals, char *out, size_t bytes) {
     char common[128];
     const tc_type type = grid->type;
     bool wide = type_is_wide(type), vertices = device_makes_vertices(context, type);
-    classify_options_write(context, type, missing, common, sizeof common);
+    classify_options_write(context, type, method, missing, common, sizeof common);
     snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%d%s", common,
              context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
              vertices ? "-DREAL=" : "",
@@ -136,19 +138,20 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     return TC_OK;
 }
 
-tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out) {
+tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out) {
     char options[sizeof context->programs->options];
     const program *p;
-    classify_options_write(context, type, missing, options, sizeof options);
+    classify_options_write(context, type, method, missing, options, sizeof options);
     tc_status status = program_get(context, options, classify_sources, "classify", missing, &p);
     if (!status) out->classify = p->kernel, out->cells = p->cells;
     return status;
 }
 
-tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, bool missing, bool normals, kernels *out) {
+tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method method, bool missing, bool normals,
+                          kernels *out) {
     char options[sizeof context->programs->options];
     const program *p;
-    emit_options_write(context, grid, missing, normals, options, sizeof options);
+    emit_options_write(context, grid, method, missing, normals, options, sizeof options);
     tc_status status = program_get(context, options, emit_sources, "emit", false, &p);
     if (!status) out->emit = p->kernel;
     return status;

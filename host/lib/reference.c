@@ -3,7 +3,8 @@
  * triangles of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
- * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order.
+ * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
+ * are those of cubes, and triangles come from the table of a cube.
  */
 #include "reference.h"
 
@@ -25,7 +26,9 @@ typedef struct reference {
     bool complete;    /* no sample is missing */
     uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
     tc_mesh *mesh;    /* NULL: count only */
-    bool normals;
+    bool normals, hybrid;
+    int edge_types; /* with vertices: of each sample the first so many */
+    cube_case hybrid_cases[2][256];
     uint64_t vertex_count, triangle_count, active_cell_count;
 } reference;
 
@@ -192,7 +195,7 @@ static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
 
 static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
-    for (int type = 0; type < EDGES_PER_SAMPLE; type++)
+    for (int type = 0; type < r->edge_types; type++)
         for (int64_t x = x0; x < x1; x++) {
             int64_t owner[3] = {x, y, z}, a[3], b[3];
             if (!edge_exists(r, owner, type)) continue;
@@ -223,6 +226,17 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
     }
 }
 
+static void cube_emit(reference *r, const int64_t cube[3], const cube_case *c) {
+    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
+        if (!r->mesh) continue;
+        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
+        for (unsigned m = 0; m < 3; m++) {
+            const owned_edge e = cube_edges[c->edges[n][m]];
+            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
+        }
+    }
+}
+
 static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
     for (int64_t x = x0; x < x1; x++) {
@@ -233,7 +247,8 @@ static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int
             pattern |= (unsigned)sample_inside(r, (int64_t[3]){x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)}) << c;
         if (pattern == 0 || pattern == 255) continue;
         r->active_cell_count++;
-        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++)
+        if (r->hybrid) cube_emit(r, cube, &r->hybrid_cases[cube_parity(r, cube)][pattern]);
+        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE && !r->hybrid; t++)
             tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
     }
 }
@@ -269,6 +284,9 @@ static tc_status layers_run(reference *r, const char *stage, double before, doub
 static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
     *r = (reference){.grid = grid, .isovalue = options->isovalue, .normals = options->normals != 0};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
+    r->hybrid = options->method == TC_METHOD_HYBRID;
+    r->edge_types = r->hybrid ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    if (r->hybrid) hybrid_cases_derive(r->hybrid_cases, grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);

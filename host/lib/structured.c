@@ -113,12 +113,17 @@ static tc_status workspace_reserve(run *r) {
 }
 
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
-    *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
+    *r = (run){.grid = grid,
+               .context = grid->context,
+               .plan = &grid->device->plan,
+               .method = options->method,
+               .normals = options->normals != 0};
     r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
     r->classify_share = emits ? 0.5 : 1;
-    tc_status status = classify_kernels_get(r->context, grid->type, grid->device->missing, &r->kernels);
-    if (!status && emits) status = emit_kernel_get(r->context, grid, grid->device->missing, r->normals, &r->kernels);
+    tc_status status = classify_kernels_get(r->context, grid->type, r->method, grid->device->missing, &r->kernels);
+    if (!status && emits)
+        status = emit_kernel_get(r->context, grid, r->method, grid->device->missing, r->normals, &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);

@@ -116,13 +116,16 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uin
 static uint16_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->options.work_items > 1) return edge;
-    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES + e.type);
+    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES(r->method == TC_METHOD_HYBRID) + e.type);
 }
 
 /* Per case the number of triangles, then their edges; the rest is never used, but read. */
 static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
     cube_case cases[2][256];
-    cube_cases_derive(cases, r->grid->mirrored);
+    if (r->method == TC_METHOD_HYBRID)
+        hybrid_cases_derive(cases, r->grid->mirrored);
+    else
+        cube_cases_derive(cases, r->grid->mirrored);
     memset(items, 0, CASES_BYTES);
     for (int n = 0; n < 2 * 256; n++) {
         const cube_case *c = &cases[n / 256][n % 256];
@@ -133,9 +136,9 @@ static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
     }
 }
 
-/* The cube table, uploaded once per context and winding. */
+/* The cube table, uploaded once per context, method and winding. */
 static tc_status cases_provide(run *r, device_buffer **out) {
-    device_buffer *buffer = &r->context->work.cases[r->grid->mirrored];
+    device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
     uint16_t items[2][256][CASE_ITEMS];
     *out = buffer;
     if (buffer->memory) return TC_OK;

@@ -33,6 +33,7 @@ typedef struct run {
     tc_context *context;
     const slab_plan *plan;
     kernels kernels;
+    tc_method method;
     bool normals;
     slab base;       /* what all slabs have in common */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
