@@ -9,6 +9,7 @@
 
 #include "context.h"
 #include "failure.h"
+#include "sample.h"
 #include "tables.h"
 
 #include <math.h>
@@ -35,26 +36,7 @@ static int64_t sample_index(const reference *r, const int64_t p[3]) {
     return (p[2] * r->dims[1] + p[1]) * r->dims[0] + p[0];
 }
 
-static double value_at(const tc_grid *grid, int64_t n) {
-    switch (grid->type) {
-    case TC_U8:
-        return ((const uint8_t *)grid->samples)[n];
-    case TC_I8:
-        return ((const int8_t *)grid->samples)[n];
-    case TC_U16:
-        return ((const uint16_t *)grid->samples)[n];
-    case TC_I16:
-        return ((const int16_t *)grid->samples)[n];
-    case TC_U32:
-        return ((const uint32_t *)grid->samples)[n];
-    case TC_I32:
-        return ((const int32_t *)grid->samples)[n];
-    case TC_F32:
-        return (double)((const float *)grid->samples)[n];
-    default:
-        return ((const double *)grid->samples)[n];
-    }
-}
+static double value_at(const tc_grid *grid, int64_t n) { return sample_at(grid->samples, grid->type, (uint64_t)n); }
 
 static double sample_value(const reference *r, const int64_t p[3]) { return value_at(r->grid, sample_index(r, p)); }
 
