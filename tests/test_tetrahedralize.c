@@ -363,7 +363,7 @@ int main(void) {
     folded();
     curved_and_flat();
     blanked();
-    for (int n = 0; n < 6; n++) grid_check(n & 1, n & 2, n & 4);
+    for (int n = 0; n < 8; n++) grid_check(n & 1, n & 2, n & 4);
     refusals();
     return EXPECT_DONE();
 }

@@ -40,10 +40,14 @@ typedef struct mesh_buffers {
     device_buffer positions, normals, triangles;
 } mesh_buffers;
 
-/* All that kernels need besides samples that fit whole. A second window is in use where copies overlap kernels. */
+/* What a grid is given by, a value or more per sample or cube. */
+enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, ARRAY_COUNT };
+
+/* All that kernels need besides arrays of the grid that fit whole. A second window is in use where copies overlap
+ * kernels. */
 typedef struct workspace {
     word_buffers words[2];
-    device_buffer samples[2];
+    device_buffer arrays[2][ARRAY_COUNT];
     mesh_buffers mesh[2];
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
@@ -70,7 +74,7 @@ tc_status context_progress(const tc_context *context, const char *stage, double 
 
 /* The kernels for a grid, built when first asked for, owned by the context (program.c). */
 tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out);
-tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out);
+tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, bool missing, bool normals, kernels *out);
 void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */

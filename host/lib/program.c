@@ -6,6 +6,7 @@
 #include "context.h"
 
 #include "failure.h"
+#include "grid.h"
 #include "kernel_sources.h"
 #include "program_cache.h"
 
@@ -33,18 +34,20 @@ static void classify_options_write(const tc_context *context, tc_type type, bool
              type_texts[type].floating, missing, context->options.work_items);
 }
 
-static void emit_options_write(const tc_context *context, tc_type type, bool missing, bool normals, char *out,
+static void emit_options_write(const tc_context *context, const tc_grid *grid, bool missing, bool normals, char *out,
                                size_t bytes) {
     char common[128];
+    const tc_type type = grid->type;
     bool wide = type_is_wide(type), vertices = device_makes_vertices(context, type);
     classify_options_write(context, type, missing, common, sizeof common);
-    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d%s", common,
+    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%d%s", common,
              context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
              vertices ? "-DREAL=" : "",
              !vertices ? ""
              : wide    ? "double"
                        : "float",
-             type_texts[type].value, normals, context->options.division, context->info.has_fp64 ? " -DFP64=1" : "");
+             type_texts[type].value, normals, context->options.division, (int)grid->kind,
+             context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
 static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
@@ -142,10 +145,10 @@ tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, 
     return status;
 }
 
-tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out) {
+tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, bool missing, bool normals, kernels *out) {
     char options[sizeof context->programs->options];
     const program *p;
-    emit_options_write(context, type, missing, normals, options, sizeof options);
+    emit_options_write(context, grid, missing, normals, options, sizeof options);
     tc_status status = program_get(context, options, emit_sources, "emit", false, &p);
     if (!status) out->emit = p->kernel;
     return status;
