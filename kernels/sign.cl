@@ -7,57 +7,12 @@
  * a time, next to each other in x, so that samples are read in long runs, 64 by vectors of Clang's; else four
  * work-items share a row of 64 samples.
  */
-#if FLOATING == 32
-typedef int signed_bits;
-#define SIGNED16 int16
-#elif FLOATING == 64
-typedef long signed_bits;
-#define SIGNED16 long16
-#endif
-
-#if FLOATING
-#define KEY_SIGN ((BITS)1 << (FLOATING - 1))
-/* From here on keys are infinite or NaN, up to its complement too. */
-#define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
-#endif
-
-inline_always uint key_upper(BITS key) {
-#if FLOATING == 64
-    return (uint)(key >> 32);
-#else
-    return (uint)key;
-#endif
-}
-
-/* Where a sample is missing the range tells nothing. */
-inline_always bool range_finite(brick_range range) {
-#if FLOATING
-    return range.high < KEY_INFINITY && range.low > ~KEY_INFINITY;
-#else
-    return true;
-#endif
-}
-
-inline_always uint range_sign(const slab *s, brick_range range) {
-    if (!range_finite(range)) return SIGN_MIXED;
-    return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
-}
-
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 
 /* Of the brick that a word is in, of any tile; mixed on the first visit. */
 inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global const brick_range *ranges) {
     return s->ranges_known ? range_sign(s, ranges[s->range_offset + brick_index(s, y, z, w)]) : SIGN_MIXED;
 }
-
-inline_always uint keys_least(BITS16 keys) {
-    PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
-    PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
-    return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
-}
-
-/* The largest upper half is the complement of the complement's least. */
-inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }
 
 inline_always void brick_sign_store(uint number, uint sign, global brick_state *bricks) {
     brick_state b = {0, 0, 0, sign};
@@ -278,14 +233,6 @@ inline_always BITS16 row_part_load(global const BITS *samples, const slab *s, ui
     BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
     uint left = min(s->nx - 16 * part, 16u);
     return lane < (BITS16)(BITS)left ? bits : (BITS16)bits.s0;
-}
-
-inline_always BITS16 keys16(BITS16 bits, const slab *s) {
-#if FLOATING
-    return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
-#else
-    return bits ^ (BITS)s->key_flip;
-#endif
 }
 
 /* A work-item's part of a brick's words and range. */

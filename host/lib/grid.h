@@ -9,6 +9,7 @@
 #include <stdbool.h>
 
 struct device_grid;
+struct complex_grid;
 
 /* Where positions come from; the kernels know it as GRID. */
 typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEAR = 2 } grid_kind;
@@ -31,6 +32,7 @@ struct tc_grid {
     const uint8_t *blanked_samples, *blanked_cells; /* or NULL */
     bool mirrored;                                  /* negative determinant, or sum of the Jacobians */
     struct device_grid *device;                     /* NULL under the reference engine */
+    struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
 /* Checks the options and fills *grid but for context and device. */

@@ -144,6 +144,7 @@ static float coordinate_at(const reference *r, const int64_t p[3], int row) {
 #define REAL    float
 #define NAME(x) x##_f32
 #define SQRT    sqrtf
+#include "reference_crossing.inc"
 #include "reference_vertex.inc"
 #undef REAL
 #undef NAME
@@ -151,6 +152,7 @@ static float coordinate_at(const reference *r, const int64_t p[3], int row) {
 #define REAL    double
 #define NAME(x) x##_f64
 #define SQRT    sqrt
+#include "reference_crossing.inc"
 #include "reference_vertex.inc"
 
 static void position_between(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
