@@ -4,6 +4,7 @@
 #ifndef COMPLEX_H
 #define COMPLEX_H
 
+#include "carry.h"
 #include "context.h"
 #include "grid.h"
 #include "inside.h"
@@ -39,5 +40,6 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
 /* The scalar reference (reference_complex.c), likewise. */
 tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);
 tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh);
+tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
 #endif

@@ -26,6 +26,7 @@ typedef struct reference {
     bool complete;    /* no sample is missing */
     uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
     tc_mesh *mesh;    /* NULL: count only */
+    const carry *carried;
     bool normals, hybrid;
     int edge_types; /* with vertices: of each sample the first so many */
     cube_case hybrid_cases[2][256];
@@ -172,10 +173,14 @@ static void position_make(const reference *r, const int64_t a[3], const int64_t 
     for (int row = 0; row < 3; row++, m += 4) out[row] = ((m[0] * p[0] + m[1] * p[1]) + m[2] * p[2]) + m[3];
 }
 
-static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
-    bool wide = type_is_wide(r->grid->type);
+static float edge_crossing(const reference *r, const int64_t a[3], const int64_t b[3]) {
     double value_a = sample_value(r, a), value_b = sample_value(r, b);
-    float t = wide ? crossing_f64(value_a, value_b, r->isovalue) : crossing_f32(value_a, value_b, r->isovalue);
+    return type_is_wide(r->grid->type) ? crossing_f64(value_a, value_b, r->isovalue)
+                                       : crossing_f32(value_a, value_b, r->isovalue);
+}
+
+static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
+    const float t = edge_crossing(r, a, b);
     float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
     if (r->grid->kind == GRID_UNIFORM)
         position_make(r, a, b, t, position);
@@ -183,7 +188,7 @@ static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
         position_between(r, a, b, t, position);
     if (!r->normals) return;
     float *normal = (float *)r->mesh->normals.memory + 3 * r->vertex_count;
-    if (wide)
+    if (type_is_wide(r->grid->type))
         normal_f64(r, a, b, t, normal);
     else
         normal_f32(r, a, b, t, normal);
@@ -207,6 +212,9 @@ static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t 
                 *edge_id(r, owner, type) = (uint32_t)r->vertex_count;
                 vertex_emit(r, a, b);
             }
+            if (r->carried)
+                carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b),
+                             edge_crossing(r, a, b));
             r->vertex_count++;
         }
 }
@@ -350,6 +358,21 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
         r.mesh = mesh;
         for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
     }
+    reference_end(&r);
+    return status;
+}
+
+tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                          uint64_t *vertex_count) {
+    reference r;
+    const double layer_count = (double)((grid->dims[2] + BRICK_Z - 1) / BRICK_Z);
+    tc_status status = reference_begin(&r, grid, options);
+    r.carried = c;
+    for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
+        layer_run(&r, layer, row_number);
+        status = context_progress(grid->context, "carry", (double)(layer + 1) / layer_count);
+    }
+    *vertex_count = r.vertex_count;
     reference_end(&r);
     return status;
 }

@@ -23,6 +23,7 @@ typedef struct reference {
     edge_entry *table; /* open addressing, half full at most */
     uint64_t table_size;
     tc_mesh *mesh; /* NULL: count only */
+    const carry *carried;
     uint64_t vertex_count, triangle_count, active_count;
 } reference;
 
@@ -62,9 +63,13 @@ static tc_status table_grow(reference *r) {
     return grown ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
 }
 
-static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
+static float edge_crossing(const reference *r, uint32_t low, uint32_t high) {
     const double a = grid_value_at(r->grid, low), b = grid_value_at(r->grid, high);
-    float t = type_is_wide(r->grid->type) ? crossing_f64(a, b, r->isovalue) : crossing_f32(a, b, r->isovalue);
+    return type_is_wide(r->grid->type) ? crossing_f64(a, b, r->isovalue) : crossing_f32(a, b, r->isovalue);
+}
+
+static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
+    const float t = edge_crossing(r, low, high);
     const float *p0 = r->grid->complex->points + 3 * (uint64_t)low, *p1 = r->grid->complex->points + 3 * (uint64_t)high;
     float *out = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
@@ -79,6 +84,7 @@ static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *num
     if (!e->taken) {
         *e = (edge_entry){low, high, (uint32_t)r->vertex_count, 1};
         if (r->mesh) vertex_emit(r, low, high);
+        if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
         r->vertex_count++;
     }
     *number = e->number;
@@ -151,6 +157,16 @@ tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_count
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_count;
     counts->classify_ms = clock_ms() - start;
+    free(r.table);
+    return status;
+}
+
+tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+    reference r;
+    tc_status status = reference_begin(&r, grid, isovalue);
+    r.carried = c;
+    if (!status) status = tetrahedra_run(&r, "carry", 0, 1);
+    *vertex_count = r.vertex_count;
     free(r.table);
     return status;
 }
