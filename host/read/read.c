@@ -197,22 +197,23 @@ static int wrap_image(dataset *d) {
 }
 
 /* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. */
-static int read_pair(const read_request *request, const mapping *file, dataset *out) {
-    readers read = find_readers(request, file);
-    if (read.image || read.grid)
-        return fail(STATUS_USAGE, "%s: holds all it has in one file: two inputs are a Plot3D grid and its solution",
-                    request->path);
-    return plot3d_read(request, file, out);
+static int refuse_pair(const read_request *request) {
+    return fail(STATUS_USAGE,
+                "%s: holds all it has in one file, '%s' is a second one: two inputs are a Plot3D grid and its solution",
+                request->path, request->path2);
 }
+
+static int is_known(readers r) { return r.image || r.grid; }
 
 int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
     mapping file;
+    if (request->path2 && is_known(readers_of_ending(request->path))) return refuse_pair(request);
     int status = mapping_open(request->path, &file);
     if (status) return status;
     readers read = find_readers(request, &file);
     if (request->path2) {
-        status = read_pair(request, &file, out);
+        status = is_known(read) ? refuse_pair(request) : plot3d_read(request, &file, out);
     } else if (read.image) {
         status = read.image(request, &file, &out->image);
         if (!status) status = wrap_image(out);
