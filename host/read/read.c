@@ -61,14 +61,12 @@ static int begins_as_nifti(const mapping *file) {
 static int begins_as_vtk_xml(const mapping *file) {
     enum { PROLOG = 4096 };
     size_t size = file->size < PROLOG ? file->size : PROLOG;
-    return size && file->bytes[0] != '\0' && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
+    return size && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
 }
 
-static int ends_with_plot3d(const char *path) {
-    static const char *const endings[] = {".xyz", ".x", ".g", ".p3d", ".q", ".f", ".bin"};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (ends_with(path, endings[i])) return 1;
-    return 0;
+/* Endings of Plot3D's files that are no use alone, or may be anything. */
+static int ends_as_half_of_a_pair(const char *path) {
+    return ends_with(path, ".q") || ends_with(path, ".f") || ends_with(path, ".bin");
 }
 
 #ifndef HAVE_NIFTI
@@ -96,7 +94,8 @@ static readers readers_of_ending(const char *path) {
         {".hdr", {nifti_read, NULL}},     {".img", {nifti_read, NULL}},   {".hdr.gz", {nifti_read, NULL}},
         {".img.gz", {nifti_read, NULL}},  {".raw", {raw_read, NULL}},     {".vtk", {NULL, vtk_legacy_read}},
         {".vti", {NULL, vtk_xml_read}},   {".vtr", {NULL, vtk_xml_read}}, {".vts", {NULL, vtk_xml_read}},
-        {".vtu", {NULL, vtk_xml_read}},
+        {".vtu", {NULL, vtk_xml_read}},   {".xyz", {NULL, plot3d_read}},  {".x", {NULL, plot3d_read}},
+        {".g", {NULL, plot3d_read}},      {".p3d", {NULL, plot3d_read}},
     };
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
         if (ends_with(path, endings[i].ending)) return endings[i].read;
@@ -118,23 +117,11 @@ static readers find_readers(const read_request *request, const mapping *file) {
 static const char *name_of_unread(const char *path, const mapping *file) {
     static const struct {
         const char *ending, *name;
-    } endings[] = {{".ex2", "Exodus"},
-                   {".e", "Exodus"},
-                   {".exo", "Exodus"},
-                   {".cgns", "CGNS"},
-                   {".pvti", "a list of the pieces of a parallel run (give the pieces)"},
-                   {".pvtr", "a list of the pieces of a parallel run (give the pieces)"},
-                   {".pvts", "a list of the pieces of a parallel run (give the pieces)"},
-                   {".pvtu", "a list of the pieces of a parallel run (give the pieces)"},
-                   {".vtm", "a list of VTK files (give one of them)"},
-                   {".pvd", "a list of VTK files (give one of them)"},
-                   {".vtp", "a surface (VTK PolyData)"},
-                   {".stl", "a surface (STL)"},
-                   {".ply", "a surface (PLY)"},
-                   {".obj", "a surface (OBJ)"},
-                   {".dcm", "DICOM"},
-                   {".xdmf", "XDMF"},
-                   {".msh", "a mesh of Gmsh or Fluent"},
+    } endings[] = {{".ex2", "Exodus"},          {".e", "Exodus"},
+                   {".exo", "Exodus"},          {".cgns", "CGNS"},
+                   {".stl", "a surface (STL)"}, {".ply", "a surface (PLY)"},
+                   {".obj", "a surface (OBJ)"}, {".dcm", "DICOM"},
+                   {".xdmf", "XDMF"},           {".msh", "a mesh of Gmsh or Fluent"},
                    {".case", "EnSight"}};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
         if (ends_with(path, endings[i].ending)) return endings[i].name;
@@ -149,8 +136,11 @@ static int refuse_unknown(const char *path, const mapping *file) {
     if (name)
         return fail(STATUS_INPUT, "%s: is %s, which this program does not read; it reads %s", path, name,
                     volume_formats());
-    if (ends_with_plot3d(path))
-        return fail(STATUS_USAGE, "%s: Plot3D needs two inputs: the grid, then its solution or function file", path);
+    if (ends_as_half_of_a_pair(path))
+        return fail(STATUS_USAGE,
+                    "%s: Plot3D needs two inputs, the grid, then its solution or function file; samples without a "
+                    "header need --dims and --type",
+                    path);
     return fail(STATUS_INPUT,
                 "%s: its format is not known; this program reads %s; for samples without a header give --dims and "
                 "--type",
@@ -166,7 +156,7 @@ int volume_read(const read_request *request, volume *out) {
     if (read.image)
         status = read.image(request, &file, out);
     else if (read.grid)
-        status = fail(STATUS_INPUT, "%s: is no image in a format that is read here: NRRD, MetaImage, NIfTI or raw",
+        status = fail(STATUS_INPUT, "%s: is no image; of images this program reads raw, NRRD, MetaImage and NIfTI",
                       request->path);
     else
         status = refuse_unknown(request->path, &file);
@@ -196,24 +186,27 @@ static int wrap_image(dataset *d) {
     return 0;
 }
 
-/* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. */
+/* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. What begins as NIfTI may be
+ * a grid of 348 points along x. */
+static int may_be_plot3d(readers r) {
+    return r.image == nifti_read || (!r.image && (!r.grid || r.grid == plot3d_read));
+}
+
 static int refuse_pair(const read_request *request) {
     return fail(STATUS_USAGE,
                 "%s: holds all it has in one file, '%s' is a second one: two inputs are a Plot3D grid and its solution",
                 request->path, request->path2);
 }
 
-static int is_known(readers r) { return r.image || r.grid; }
-
 int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
     mapping file;
-    if (request->path2 && is_known(readers_of_ending(request->path))) return refuse_pair(request);
+    if (request->path2 && !may_be_plot3d(readers_of_ending(request->path))) return refuse_pair(request);
     int status = mapping_open(request->path, &file);
     if (status) return status;
     readers read = find_readers(request, &file);
     if (request->path2) {
-        status = is_known(read) ? refuse_pair(request) : plot3d_read(request, &file, out);
+        status = may_be_plot3d(read) ? plot3d_read(request, &file, out) : refuse_pair(request);
     } else if (read.image) {
         status = read.image(request, &file, &out->image);
         if (!status) status = wrap_image(out);
