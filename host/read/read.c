@@ -36,7 +36,11 @@ const char *volume_formats(void) {
            " (gzip)"
 #endif
 #endif
-           ", VTK legacy, VTK XML (.vti .vtr .vts .vtu), Plot3D (grid and solution)";
+           ", VTK legacy"
+#ifdef HAVE_EXPAT
+           ", VTK XML (.vti .vtr .vts .vtu)"
+#endif
+           ", Plot3D (grid and solution)";
 }
 
 static int ends_with(const char *path, const char *ending) {

@@ -7,10 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int count_names(const char *text) {
-    int count = 1;
+static size_t count_names(const char *text) {
+    size_t count = 1;
     for (; *text; text++) count += *text == ',';
     return count;
+}
+
+/* How far the next name goes: as far as the longest name of a field that fits, as names may have commas; else to the
+ * next comma. */
+static size_t name_length(const char *text, const char *const *known, int known_count) {
+    size_t longest = 0;
+    for (int n = 0; n < known_count; n++) {
+        size_t length = strlen(known[n]);
+        int fits = strncmp(text, known[n], length) == 0 && (text[length] == ',' || !text[length]);
+        if (fits && length > longest) longest = length;
+    }
+    return longest ? longest : strcspn(text, ",");
 }
 
 static int select_one(const options *o, dataset *d, carried *out, const char *name) {
@@ -24,17 +36,31 @@ static int select_one(const options *o, dataset *d, carried *out, const char *na
     return 0;
 }
 
+static int select_all(const options *o, dataset *d, carried *out, char *names) {
+    const char **known;
+    int status = 0, known_count = common_field_names(d, &known);
+    if (known_count < 0) return STATUS_FAILED;
+    for (char *at = names, *end; !status; at = end + 1) {
+        end = at + name_length(at, known, known_count);
+        int is_last = !*end;
+        *end = '\0';
+        status = select_one(o, d, out, at);
+        if (is_last) break;
+    }
+    free(known);
+    return status;
+}
+
 int carry_select(const options *o, dataset *d, carried *out) {
     *out = (carried){0};
     if (!o->carry) return 0;
-    size_t count = (size_t)count_names(o->carry);
-    char *names = strdup(o->carry), *rest = names, *name;
+    size_t count = count_names(o->carry);
+    char *names = strdup(o->carry);
     out->from = calloc(count, sizeof *out->from);
     out->fields = calloc(count, sizeof *out->fields);
     out->values = calloc(count, sizeof *out->values);
     int is_there = names && out->from && out->fields && out->values;
-    int status = is_there ? 0 : fail(STATUS_FAILED, "out of memory for the fields to carry");
-    while (!status && (name = strsep(&rest, ","))) status = select_one(o, d, out, name);
+    int status = is_there ? select_all(o, d, out, names) : fail(STATUS_FAILED, "out of memory for the fields to carry");
     free(names);
     return status;
 }

@@ -39,6 +39,10 @@ static void include_corners(bounds *all, const dataset_block *b) {
     }
 }
 
+double describe_spacing(const dataset_block *b, int axis) {
+    return hypot(hypot(b->matrix[0][axis], b->matrix[1][axis]), b->matrix[2][axis]);
+}
+
 static bounds bounds_of(const dataset_block *b) {
     bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int axis = 0; b->kind == GRID_RECTILINEAR && axis < 3; axis++)
@@ -155,7 +159,16 @@ static void cells_text(const dataset_block *b) {
     printf("%s\n", b->cell_count ? "" : "none");
 }
 
-static void block_text(const dataset_block *b) {
+void describe_place_text(const dataset *d, const dataset_block *b) {
+    printf("spacing      ");
+    for (int axis = 0; axis < 3; axis++) printf(" %.9g", describe_spacing(b, axis));
+    printf("\nworld space   %s\n", d->space[0] ? d->space : "not named");
+    for (int r = 0; r < 3; r++)
+        printf("%s%.9g i + %.9g j + %.9g k + %.9g\n", r ? "              " : "index->world  ", b->matrix[r][0],
+               b->matrix[r][1], b->matrix[r][2], b->matrix[r][3]);
+}
+
+static void block_text(const dataset *d, const dataset_block *b) {
     bounds all = bounds_of(b);
     uint64_t points = count_set(b->blanked_points, b->point_count), cells = count_set(b->blanked_cells, b->cell_count);
     printf("grid          %s, ", kind_names[b->kind]);
@@ -167,18 +180,19 @@ static void block_text(const dataset_block *b) {
         if (b->first[0] || b->first[1] || b->first[2])
             printf("first point   %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     }
+    if (b->kind == GRID_UNIFORM) describe_place_text(d, b);
     if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
     if (b->point_count)
         printf("bounds        %.9g %.9g %.9g to %.9g %.9g %.9g\n", all.low[0], all.low[1], all.low[2], all.high[0],
                all.high[1], all.high[2]);
-    printf("fields        %s\n", b->field_count ? "" : "none");
+    printf(b->field_count ? "fields\n" : "fields        none\n");
     for (int n = 0; n < b->field_count; n++) field_text(b, &b->fields[n]);
 }
 
 void describe_blocks_text(const dataset *d) {
     for (int n = 0; n < d->block_count; n++) {
         if (d->block_count > 1) printf("block %d of %d\n", n, d->block_count);
-        block_text(&d->blocks[n]);
+        block_text(d, &d->blocks[n]);
     }
 }
 

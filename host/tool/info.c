@@ -23,12 +23,6 @@ typedef struct facts {
     statistics s;
 } facts;
 
-/* Distance of neighbouring samples in world space: the length of the matrix's columns. */
-static void spacing_of(const dataset_block *b, double spacing[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        spacing[axis] = hypot(hypot(b->matrix[0][axis], b->matrix[1][axis]), b->matrix[2][axis]);
-}
-
 static json_t *histogram_json(const statistics *s) {
     json_t *counts = json_array();
     for (int n = 0; n < s->bin_count; n++) json_array_append_new(counts, json_integer((json_int_t)s->bins[n]));
@@ -61,9 +55,9 @@ static const dataset_block *only_block(const dataset *d) {
 }
 
 static void add_grid(json_t *object, const dataset_block *b) {
-    double spacing[3] = {0};
+    double spacing[3];
     int is_uniform = b && b->kind == GRID_UNIFORM;
-    if (is_uniform) spacing_of(b, spacing);
+    for (int axis = 0; axis < 3; axis++) spacing[axis] = is_uniform ? describe_spacing(b, axis) : 0.0;
     json_object_set_new(object, "dims", b ? report_integers(b->dims) : json_null());
     json_object_set_new(object, "first", b ? report_integers(b->first) : json_null());
     json_object_set_new(object, "spacing", is_uniform ? report_reals(spacing, 3) : json_null());
@@ -122,23 +116,19 @@ static void print_suggestions(const statistics *s) {
 
 static void print_image(const facts *f) {
     const dataset_block *b = f->d->blocks;
-    double spacing[3];
-    spacing_of(b, spacing);
     printf("dimensions    %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", b->dims[0], b->dims[1], b->dims[2],
            tc_type_name(b->fields->type));
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
-    printf("spacing       %.9g %.9g %.9g\n", spacing[0], spacing[1], spacing[2]);
-    printf("world space   %s\n", f->d->space[0] ? f->d->space : "not named");
-    for (int r = 0; r < 3; r++)
-        printf("%s%.9g i + %.9g j + %.9g k + %.9g\n", r ? "              " : "index->world  ", b->matrix[r][0],
-               b->matrix[r][1], b->matrix[r][2], b->matrix[r][3]);
+    describe_place_text(f->d, b);
 }
 
 static void print_field(const facts *f) {
     const statistics *s = &f->s;
     if (!f->field) {
-        printf("isovalues     choose a field by --field NAME, a component by --component C\n");
+        printf("isovalues     %s\n", f->d->block_count && f->d->blocks->field_count
+                                         ? "choose a field by --field NAME, a component by --component C"
+                                         : "none: there is no field");
         return;
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
