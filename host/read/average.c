@@ -3,6 +3,7 @@
 #include "cell_types.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "layout.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,12 +54,12 @@ static int is_present(const sums *s, int64_t cell, const int64_t *points, int64_
 static void add_cell(sums *s, int64_t cell, const int64_t *points, int64_t point_count) {
     uint64_t components = (uint64_t)s->of_cells->components;
     if (!is_present(s, cell, points, point_count)) return;
-    for (int64_t n = 0; n < point_count; n++) {
-        double *total = s->total + (uint64_t)points[n] * components;
-        for (uint64_t c = 0; c < components; c++)
-            total[c] += value_at(s->of_cells->type, s->of_cells->values, (uint64_t)cell * components + c);
-        if (s->cells[points[n]] < UINT32_MAX) s->cells[points[n]]++;
+    for (uint64_t c = 0; c < components; c++) {
+        double value = value_at(s->of_cells->type, s->of_cells->values, (uint64_t)cell * components + c);
+        for (int64_t n = 0; n < point_count; n++) s->total[(uint64_t)points[n] * components + c] += value;
     }
+    for (int64_t n = 0; n < point_count; n++)
+        if (s->cells[points[n]] < UINT32_MAX) s->cells[points[n]]++;
 }
 
 static void add_structured(sums *s) {
@@ -105,7 +106,7 @@ int average_to_points(dataset *d, const dataset_block *b, const uint8_t *blanked
         return fail(STATUS_FAILED, "field \"%s\" has more values than memory can hold", out->name);
     s.total = calloc(count ? count : 1, sizeof *s.total);
     s.cells = calloc(b->point_count ? (size_t)b->point_count : 1, sizeof *s.cells);
-    void *values = s.total && s.cells ? dataset_allocate(d, count * tc_type_bytes(out->type)) : NULL;
+    void *values = s.total && s.cells ? dataset_allocate(d, count * element_bytes((int)out->type)) : NULL;
     if (values) {
         if (b->kind == GRID_UNSTRUCTURED)
             add_unstructured(&s);

@@ -3,6 +3,7 @@
 #include "average.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "layout.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -100,7 +101,7 @@ static int check_component(const dataset *d, const char *path, const dataset_fie
 /* One component in contiguous memory; the field's own where it has no other. */
 static int take_component(dataset *d, const dataset_block *b, const dataset_field *f, int component,
                           dataset_field *out) {
-    size_t bytes = tc_type_bytes(f->type), stride = bytes * (size_t)f->components;
+    size_t bytes = element_bytes((int)f->type), stride = bytes * (size_t)f->components;
     *out = *f;
     if (f->components == 1) return 0;
     uint64_t count = tuple_count(b, f);
