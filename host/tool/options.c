@@ -77,7 +77,8 @@ static const option table[] = {
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},
     {"--normals", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(normals), NULL,
-     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ)"},
+     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ,\n"
+     "VTP); structured grids only"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,

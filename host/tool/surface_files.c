@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 enum { ALL_BLOCKS = -1 };
@@ -52,16 +51,9 @@ static int check_overwrite(const options *o, const char *path) {
     return 0;
 }
 
-/* Formats that hold no values beside the geometry. */
-static int check_carry(const options *o) {
-    const char *format = o->format ? o->format : ending_of(o->output);
-    format += *format == '.';
-    if (!o->carry || (strcasecmp(format, "stl") != 0 && strcasecmp(format, "obj") != 0)) return 0;
-    return fail(STATUS_USAGE, "--carry: %s files hold no fields: write .vtp or .ply", format);
-}
-
 int surface_files_check(const options *o) {
-    const mesh_write_options how = {.format = o->format, .soup = o->soup};
+    const mesh_field some = {.name = "", .components = 1};
+    const mesh_write_options how = {o->format, o->soup, &some, o->carry != NULL};
     if (o->carry && !o->output) return fail(STATUS_USAGE, "--carry puts fields into the mesh's file: give -o FILE");
     if (o->separate_blocks && !o->output) return fail(STATUS_USAGE, "--blocks names files: give -o FILE");
     if (!o->output) return 0;
@@ -74,7 +66,6 @@ int surface_files_check(const options *o) {
                 return fail(STATUS_USAGE, "--iso: %s is given twice and both would be written to one file",
                             o->isovalues[a].text);
     int status = mesh_write_check(o->output, &how);
-    if (!status) status = check_carry(o);
     for (size_t n = 0; n < o->isovalue_count && !status; n++) {
         char *path = file_name(o, &o->isovalues[n], ALL_BLOCKS);
         status = path ? check_overwrite(o, path) : STATUS_FAILED;
