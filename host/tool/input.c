@@ -5,6 +5,7 @@
 #include "failure.h"
 
 #include <stdlib.h>
+#include <sys/stat.h>
 
 static int check_operands(const options *o) {
     if (o->operand_count == 0)
@@ -55,6 +56,16 @@ int input_select(const options *o, dataset *d, scalar *out) {
     if (!status && out->is_averaged && !o->quiet)
         message("field '%s' is of cells: averaged to the points between them", out->name);
     return status;
+}
+
+int input_overwrite_check(const options *o, const char *path) {
+    struct stat input, output;
+    for (int n = 0; n < o->operand_count; n++) {
+        if (stat(o->operands[n], &input) || stat(path, &output)) continue;
+        if (input.st_dev == output.st_dev && input.st_ino == output.st_ino && S_ISREG(input.st_mode))
+            return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
+    }
+    return 0;
 }
 
 int input_has_choice(const options *o, const dataset *d) {

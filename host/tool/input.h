@@ -15,6 +15,9 @@ int input_read(const options *o, dataset *d);
 /* Chooses the field by --field, --component and --nodata, with a notice where it had to be averaged. */
 int input_select(const options *o, dataset *d, scalar *out);
 
+/* STATUS_USAGE where path, the output, is one of the inputs: it must not replace what it is made from. */
+int input_overwrite_check(const options *o, const char *path);
+
 /* Nonzero where a field is named, or there is just one and nothing to choose in it: where input_select can succeed
  * though the command can do without. */
 int input_has_choice(const options *o, const dataset *d);

@@ -2,11 +2,11 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "input.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { ALL_BLOCKS = -1 };
 
@@ -40,17 +40,6 @@ static char *file_name(const options *o, const typed_isovalue *iso, int block) {
 
 /* ----------------------------------------------------------------------------------------------------------- usage */
 
-/* The mesh must not replace what it is made from. */
-static int check_overwrite(const options *o, const char *path) {
-    struct stat input, output;
-    for (int n = 0; n < o->operand_count; n++) {
-        if (stat(o->operands[n], &input) || stat(path, &output)) continue;
-        if (input.st_dev == output.st_dev && input.st_ino == output.st_ino && S_ISREG(input.st_mode))
-            return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
-    }
-    return 0;
-}
-
 int surface_files_check(const options *o) {
     const mesh_field some = {.name = "", .components = 1};
     const mesh_write_options how = {o->format, o->soup, &some, o->carry != NULL};
@@ -68,7 +57,7 @@ int surface_files_check(const options *o) {
     int status = mesh_write_check(o->output, &how);
     for (size_t n = 0; n < o->isovalue_count && !status; n++) {
         char *path = file_name(o, &o->isovalues[n], ALL_BLOCKS);
-        status = path ? check_overwrite(o, path) : STATUS_FAILED;
+        status = path ? input_overwrite_check(o, path) : STATUS_FAILED;
         free(path);
     }
     return status;
@@ -81,7 +70,8 @@ static int write_part(const options *o, const char *path, const tc_mesh_data *me
                       mesh_part size, mesh_write_options *how) {
     mesh_field *fields = calloc((size_t)how->field_count + 1, sizeof *fields);
     uint32_t *triangles = malloc((size_t)(3 * size.triangle_count + 1) * sizeof *triangles);
-    int status = fields && triangles ? check_overwrite(o, path) : fail(STATUS_FAILED, "out of memory for %s", path);
+    int status =
+        fields && triangles ? input_overwrite_check(o, path) : fail(STATUS_FAILED, "out of memory for %s", path);
     tc_mesh_data part = *mesh;
     part.vertex_count = size.vertex_count;
     part.triangle_count = size.triangle_count;

@@ -28,7 +28,8 @@ typedef struct conversion {
 
 static int check_usage(const options *o) {
     if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
-    return complex_write_check(o->output);
+    int status = complex_write_check(o->output);
+    return status ? status : input_overwrite_check(o, o->output);
 }
 
 static int read_input(conversion *c) {
@@ -121,6 +122,7 @@ static int join_field(conversion *c, const char *name, dataset_field *out) {
     int status = point_field_select(&c->data, c->o->operands[0], name, &from);
     if (status) return status;
     *out = from.blocks[0];
+    if (!name[0]) out->name = "samples"; /* arrays of the format have names */
     if (c->data.block_count == 1) return 0;
     size_t bytes = tc_type_bytes(out->type) * (size_t)out->components;
     unsigned char *to = dataset_allocate(&c->data, c->file.point_count * bytes);
