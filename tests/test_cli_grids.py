@@ -250,7 +250,7 @@ class Structured(GridCase):
     def image(self):
         """The same samples as a uniform image."""
         with open(self.path("image.raw"), "wb") as f:
-            f.write(struct.pack("<576f", *map(bump, lattice(self.dims))))
+            f.write(struct.pack("<648f", *map(bump, lattice(self.dims))))
         return [self.path("image.raw"), "--dims", "9,8,9", "--type", "f32"]
 
     def test_curvilinear_as_uniform(self):
