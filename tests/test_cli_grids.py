@@ -374,6 +374,19 @@ class Blocks(GridCase):
             self.assertEqual((vertices, faces), (whole, whole_faces))
         self.assertEqual(len([name for name in self.files() if "_b" in name]), 6)
 
+    def test_flat_blocks_are_skipped(self):
+        flat = ((4, 4, 1), lattice((4, 4, 1)), list(map(bump, lattice((4, 4, 1)))))
+        [whole] = self.report("extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine",
+                              "reference")["surfaces"]
+        inputs = self.write_plot3d("f", [flat] + self.blocks)
+        report, surface = self.surface(*inputs, "--field", "density", "--iso", "0.5")
+        self.assertEqual((report["cells"], surface["hash"]), (449, whole["hash"]))
+        self.assertRegex(self.expect(0, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine",
+                                     "reference").stderr, "1 blocks of one point along an axis are skipped")
+        for blocks in ([flat], [flat, flat]):
+            inputs = self.write_plot3d("g", blocks)
+            self.refuses(4, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine", "reference")
+
     def test_separate_never_overwrites_the_input(self):
         os.rename(self.inputs[1], self.path("s_b1.ply"))
         self.expect(2, "extract", self.inputs[0], self.path("s_b1.ply"), "--field", "density", "--iso", "0.5",

@@ -13,6 +13,7 @@ typedef struct prepared_block {
     const dataset_block *source;
     const scalar_block *scalar; /* NULL: coordinates only */
     int is_cut;
+    int is_skipped;     /* structured and flat, among others that are not */
     tc_complex complex; /* of those that are cut */
 } prepared_block;
 
@@ -28,8 +29,8 @@ typedef struct block_list {
 int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out);
 void blocks_release(block_list *list);
 
-/* A grid of the block; *grid NULL where there is nothing to contour. */
-int block_grid(const options *o, const prepared_block *b, tc_context *context, tc_grid **grid);
+/* A grid of block n; *grid NULL where there is nothing to contour. */
+int block_grid(const options *o, const block_list *list, int n, tc_context *context, tc_grid **grid);
 
 /* Whether a vertex may rightly have several fans of triangles: beside missing cells, and where cells meet in a point or
  * an edge only. */

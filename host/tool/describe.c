@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CELL_TYPES = 256 };
+enum { CELL_TYPES = 256, RANGES_SHOWN = 9 };
 
 static const char *const kind_names[] = {"uniform", "rectilinear", "curvilinear", "unstructured"};
 
@@ -135,14 +135,14 @@ json_t *describe_blocks_json(const dataset *d) {
 static void field_text(const dataset_block *b, const dataset_field *f) {
     printf("  %s '%s' %s", f->on_cells ? "cell" : "point", f->name, tc_type_name(f->type));
     if (f->components > 1) printf(", %d components", f->components);
-    for (int c = 0; c < f->components; c++) {
+    for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
         double range[2];
         if (range_of(b, f, c, range))
             printf("%s %.9g to %.9g", c ? ";" : ",", range[0], range[1]);
         else
             printf("%s nothing finite", c ? ";" : ",");
     }
-    printf("\n");
+    printf(f->components > RANGES_SHOWN ? "; ...\n" : "\n");
 }
 
 static void cells_text(const dataset_block *b) {

@@ -38,7 +38,7 @@ int engine_upload(const options *o, const block_list *blocks, engine *e) {
     if (!e->grids || !e->parts) return fail(STATUS_FAILED, "out of memory for %d blocks", blocks->count);
     e->block_count = blocks->count;
     for (int n = 0; n < blocks->count; n++) {
-        int status = block_grid(o, &blocks->blocks[n], e->context, &e->grids[n]);
+        int status = block_grid(o, blocks, n, e->context, &e->grids[n]);
         if (status) return status;
     }
     return 0;
