@@ -149,8 +149,8 @@ static int load_integers(xml_reader *r, const xml_array *array, uint64_t count, 
     const unsigned char *stored;
     void *owned;
     if (array->element == TC_F32 || array->element == TC_F64)
-        return fail(STATUS_INPUT, "%s: its array '%.60s' is of type %s; it must be of integers", r->doc.path,
-                    r->doc.names + array->name, tc_type_name((tc_type)array->element));
+        return fail(STATUS_INPUT, "%s: its array '%.60s' is of floating point; it must be of integers", r->doc.path,
+                    r->doc.names + array->name);
     int status = load_briefly(r, array, count, &stored, &owned);
     if (!status) convert_to_integers(to, stored, count, array->element);
     free(owned);

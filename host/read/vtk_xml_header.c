@@ -123,8 +123,7 @@ static int begin_file(header_parser *p, const char *name, const char **attribute
                  {"UnstructuredGrid", GRID_UNSTRUCTURED}};
     xml_document *doc = p->doc;
     const char *type = attribute(attributes, "type"), *order = attribute(attributes, "byte_order"),
-               *header = attribute(attributes, "header_type"), *compressor = attribute(attributes, "compressor"),
-               *version = attribute(attributes, "version");
+               *header = attribute(attributes, "header_type"), *compressor = attribute(attributes, "compressor");
     if (strcmp(name, "VTKFile"))
         return fail(STATUS_INPUT, "%s: is XML, but its first element is %.40s, not VTKFile", doc->path, name);
     for (size_t i = 0; type && i < sizeof types / sizeof *types; i++)
@@ -133,9 +132,6 @@ static int begin_file(header_parser *p, const char *name, const char **attribute
             doc->kind = types[i].kind;
         }
     if (!p->grid_name) return refuse_type(doc, type ? type : "no named type of data");
-    if (version && strtol(version, NULL, 10) > 2)
-        return fail(STATUS_INPUT, "%s: is of version %.20s of VTK's format; versions 0 to 2 are read", doc->path,
-                    version);
     if (order && strcmp(order, "LittleEndian") && strcmp(order, "BigEndian"))
         return wrong_attribute(doc, name, "byte_order", order, "LittleEndian or BigEndian");
     if (header && strcmp(header, "UInt32") && strcmp(header, "UInt64"))
