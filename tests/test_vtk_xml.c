@@ -501,9 +501,11 @@ static void test_sharing(void) {
                "<PointData>");
     for (int i = 0; i < 1000; i++) bytes_text(&file, "<DataArray type=\"Int8\" Name=\"%d\" offset=\"0\"/>", i);
     bytes_text(&file, "</PointData></Piece></ImageData><AppendedData encoding=\"base64\">_");
-    bytes data = {calloc(1000004, 1), 0};
+    bytes data = {0};
+    unsigned char *values = calloc(1000000, 1);
     bytes_put(&data, 1000000, 4, 0);
-    data.size = 1000004;
+    bytes_add(&data, values, 1000000);
+    free(values);
     add_base64(&file, &data, 0);
     dataset d;
     EXPECT(read_bytes("shared.vtk", &file, &d) == STATUS_INPUT && strstr(failure_text(), "share"), "%s",

@@ -323,12 +323,13 @@ static void start_document_type(void *user, const char *name, const char *system
 }
 
 int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc) {
+    *doc = (xml_document){0};
+    if (!file->size) return fail(STATUS_INPUT, "%s: is empty", path);
     *doc = (xml_document){.path = path,
                           .bytes = file->bytes,
                           .end = file->bytes + file->size,
                           .spacing = {1, 1, 1},
                           .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    if (!file->size) return fail(STATUS_INPUT, "%s: is empty", path);
     header_parser p = {.expat = XML_ParserCreate(NULL), .doc = doc};
     if (!p.expat) return no_memory(doc);
     XML_SetUserData(p.expat, &p);
