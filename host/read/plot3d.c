@@ -20,7 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SOLUTION_VARIABLES = 5, GAMMA_VARIABLE = 5, NAME_BYTES = 24, LINE_BYTES = 64 };
+enum { SOLUTION_VARIABLES = 5, GAMMA_VARIABLE = 5, NAME_BYTES = 24, LINE_BYTES = 64, CHUNK_POINTS = 512 };
 static const double GAMMA = 1.4;
 
 /* A form of each file; data is NULL where there is a grid only. */
@@ -201,16 +201,24 @@ static int add_field(dataset_block *out, const char *name, tc_type type, const v
     return status;
 }
 
-static void derive_pressure(const pairing *p, const plot3d_block *from, float *out) {
-    uint64_t bytes = (uint64_t)p->data->value_bytes;
+/* Of up to CHUNK_POINTS points. */
+static void derive_chunk(const pairing *p, const plot3d_block *from, uint64_t first, uint64_t count, float *out) {
+    double q[SOLUTION_VARIABLES + 1][CHUNK_POINTS];
     int has_gamma = p->data->content == PLOT3D_OVERFLOW && from->variables > GAMMA_VARIABLE;
-    for (uint64_t i = 0; i < from->points; i++) {
-        double q[SOLUTION_VARIABLES + 1] = {[GAMMA_VARIABLE] = GAMMA};
-        for (uint64_t v = 0; v < SOLUTION_VARIABLES + (has_gamma ? 1U : 0U); v++)
-            plot3d_load_f64(p->data_file, p->data, from->values + (v * from->points + i) * bytes, 1, &q[v]);
-        double momentum = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-        out[i] = (float)((q[GAMMA_VARIABLE] - 1) * (q[4] - 0.5 * momentum / q[0]));
-        if (q[0] == 0) out[i] = NAN;
+    for (uint64_t v = 0; v < SOLUTION_VARIABLES + (has_gamma ? 1U : 0U); v++)
+        plot3d_load_f64(p->data_file, p->data,
+                        from->values + (v * from->points + first) * (uint64_t)p->data->value_bytes, count, q[v]);
+    for (uint64_t i = 0; i < count; i++) {
+        double gamma = has_gamma ? q[GAMMA_VARIABLE][i] : GAMMA;
+        double square = q[1][i] * q[1][i] + q[2][i] * q[2][i] + q[3][i] * q[3][i];
+        out[i] = q[0][i] == 0 ? NAN : (float)((gamma - 1) * (q[4][i] - 0.5 * square / q[0][i]));
+    }
+}
+
+static void derive_pressure(const pairing *p, const plot3d_block *from, float *out) {
+    for (uint64_t first = 0; first < from->points; first += CHUNK_POINTS) {
+        uint64_t rest = from->points - first;
+        derive_chunk(p, from, first, rest < CHUNK_POINTS ? rest : CHUNK_POINTS, out + first);
     }
 }
 
