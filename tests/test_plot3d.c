@@ -15,8 +15,7 @@ static const char *describe(const variant *v) {
     return text;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- values
- */
+/* ----------------------------------------------------------------------------------------------------------- values */
 
 static void expect_points(const variant *v, int n, const dataset_block *block) {
     uint64_t wrong = 0, unblanked = 0;
@@ -126,8 +125,7 @@ static void test_mixed(void) {
     bytes_free(&data);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- text
- */
+/* ------------------------------------------------------------------------------------------------------------- text */
 
 static void expect_text_points(const char *what, const char *text, const float wanted[12]) {
     dataset d;
@@ -173,8 +171,7 @@ static void test_text(void) {
     expect_text_failure("a number beyond f32", "2 2 1\n1 2 3 4 5 5 5 1e39 9 9 9 9", "point 3 of block 1");
 }
 
-/* -------------------------------------------------------------------------------------------------------------- damage
- */
+/* ----------------------------------------------------------------------------------------------------------- damage */
 
 static void expect_refused(const char *what, const char *first, const char *second, const char *part) {
     dataset d;

@@ -35,8 +35,7 @@ typedef struct choice {
     int is_physical;
 } choice;
 
-/* -------------------------------------------------------------------------------------------------------------- choice
- */
+/* ----------------------------------------------------------------------------------------------------------- choice */
 
 static int is_grid(const plot3d_form *form) {
     return form->content == PLOT3D_GRID || form->content == PLOT3D_GRID_IBLANK;
@@ -124,8 +123,7 @@ static int choose_pair(const plot3d_file *a, const plot3d_file *b, pairing *out)
     return 0;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------
- * memory */
+/* ----------------------------------------------------------------------------------------------------------- memory */
 
 /* One piece of memory for all blocks, however many and small these are. */
 typedef struct arena {
@@ -166,8 +164,7 @@ static uint64_t count_bytes(const pairing *p) {
     return bytes;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- blocks
- */
+/* ----------------------------------------------------------------------------------------------------------- blocks */
 
 static int load_points(const pairing *p, int64_t n, arena *memory, dataset_block *out) {
     const plot3d_block *from = &p->grid->blocks[n];

@@ -45,8 +45,7 @@ typedef struct walk {
     uint64_t missing; /* bytes that the file lacks where the walk ended for that reason */
 } walk;
 
-/* -------------------------------------------------------------------------------------------------------------- values
- */
+/* ----------------------------------------------------------------------------------------------------------- values */
 
 static uint64_t bits_at(const unsigned char *at, int bytes, int big_endian) {
     uint64_t bits = 0;
@@ -113,8 +112,7 @@ int plot3d_is_physical(const plot3d_file *file, const plot3d_form *form) {
     return 1;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- walk
- */
+/* ------------------------------------------------------------------------------------------------------------- walk */
 
 /* Steps over the next record; nonzero where it is there, of this length. */
 static int take(walk *w, uint64_t length, uint64_t *payload) {
@@ -211,8 +209,7 @@ static int walk_file(walk *w) {
     return is_padding(w);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- forms
- */
+/* ------------------------------------------------------------------------------------------------------------ forms */
 
 const char *plot3d_describe(const plot3d_form *form, char text[128]) {
     static const char *const encodings[PLOT3D_ENCODINGS] = {"text", "Fortran records of 4-byte marks",
