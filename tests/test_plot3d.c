@@ -180,6 +180,22 @@ static void expect_refused(const char *what, const char *first, const char *seco
     if (!status) dataset_release(&d);
 }
 
+/* The text tells what the file looked like. */
+static void test_nearest(void) {
+    variant v = {RECORDS_4, 1, 8, 0, SOLUTION, 2};
+    bytes grid = grid_file(&v);
+    expect_refused("cut records", file_write("cut.xyz", grid.data, grid.size - 6), NULL,
+                   "Nearest: big-endian Fortran records of 4-byte marks, f64, multi-block grid, but of a block of 2 x "
+                   "5 x 3 points at least 6 bytes");
+    bytes_free(&grid);
+    v = (variant){BINARY, 0, 4, 1, SOLUTION, 0};
+    grid = grid_file(&v);
+    expect_refused("cut data", file_write("cut.xyz", grid.data, 12 + 12 * 24 - 5), NULL,
+                   "Nearest: little-endian C binary, f32, single-block grid, but of a block of 4 x 3 x 2 points at "
+                   "least 5 bytes");
+    bytes_free(&grid);
+}
+
 static const char *write_grid(const char *name, variant v) {
     bytes grid = grid_file(&v);
     const char *path = file_write(name, grid.data, grid.size);
@@ -379,6 +395,7 @@ int main(void) {
     test_variants();
     test_mixed();
     test_text();
+    test_nearest();
     test_pairs();
     test_padding();
     test_ambiguity();

@@ -229,12 +229,19 @@ const char *plot3d_describe(const plot3d_form *form, char text[128]) {
     return text;
 }
 
-/* Adds the form where it explains the file, padding by its values too; else keeps in *nearest the walk that lacked the
- * fewest bytes. */
+/* Whether what a walk lacked tells more than what another did: record marks that agreed are no chance, else the fewest
+ * bytes. */
+static int is_nearer(const walk *w, const walk *other, const plot3d_form *other_form) {
+    if (!w->missing || !w->dims[0] || !other->missing) return w->missing && w->dims[0];
+    int has_marks = w->form->encoding != PLOT3D_BINARY, other_has_marks = other_form->encoding != PLOT3D_BINARY;
+    return has_marks == other_has_marks ? w->missing < other->missing : has_marks;
+}
+
+/* Adds the form where it explains the file, padding by its values too; else keeps the walk where it came nearest. */
 static int try_form(plot3d_file *file, plot3d_form form, walk *nearest, plot3d_form *nearest_form) {
     walk w = {.file = file, .form = &form};
     if (!walk_file(&w)) {
-        if (w.missing && w.dims[0] && (!nearest->missing || w.missing < nearest->missing)) {
+        if (is_nearer(&w, nearest, nearest_form)) {
             *nearest = w;
             *nearest_form = form;
         }
