@@ -52,7 +52,8 @@ void measure_begin(tc_context *context, const samples *s, double iso, double sec
     m->second.isovalue = second_iso;
     snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s", s->name, dims[0], dims[1],
              dims[2], tc_type_name(s->grid.type));
-    *result = (case_result){.field = s->name, .type = s->grid.type, .sample_bytes = s->bytes};
+    *result = (case_result){
+        .field = s->name, .type = s->grid.type, .grid = bench_grid_names[s->placed], .sample_bytes = s->bytes};
     memcpy(result->dims, dims, sizeof result->dims);
 }
 
