@@ -15,6 +15,7 @@ typedef struct bench_options {
     tc_type types[LIST_MAX];
     int field_count, dims_count, type_count; /* never 0, but with an input, where dims and type are for raw data */
     int has_iso, has_second, has_repeat;
+    tc_method method;
     double iso, second; /* isovalues; the second one follows on the same grid */
     const char *device; /* NULL: the library's default */
     const char *input;  /* a volume file instead of fields, or NULL */
