@@ -1,7 +1,8 @@
 /*
  * warm_cache.c - builds the kernels once, so that tests find them in the cache of the OpenCL implementation
  *
- * Those that test_random, test_device and test_api need; a kernel that is not among them is built by the test itself.
+ * Those that test_random, test_device, test_api and test_hybrid need; a kernel that is not among them is built by the
+ * test itself.
  *
  * Usage: warm_cache PART PARTS: every PARTS-th program, so that processes with a cache each can share the work.
  */
@@ -14,24 +15,24 @@ static const struct {
     tc_type type;
     uint32_t work_items;
     int division;
-    unsigned variants;
+    unsigned variants[2]; /* of each method */
 } programs[] = {
-    {TC_U8, 0, 0, PLAIN | WITH_NORMALS | WITH_BOTH},
-    {TC_I8, 0, 0, PLAIN | WITH_BOTH},
-    {TC_U16, 0, 0, PLAIN | WITH_BOTH},
-    {TC_I16, 0, 0, PLAIN | WITH_BOTH},
-    {TC_U32, 0, 0, PLAIN | WITH_BOTH},
-    {TC_I32, 0, 0, PLAIN | WITH_BOTH},
-    {TC_F32, 0, 0, 15},
-    {TC_F64, 0, 0, 15},
-    {TC_F32, 32, 0, WITH_NORMALS | WITH_BOTH},
-    {TC_U8, 64, 0, PLAIN},
-    {TC_F32, 256, 0, WITH_NORMALS | WITH_BOTH},
-    {TC_F32, 0, 2, WITH_NORMALS},
-    {TC_F32, 0, 3, WITH_NORMALS},
+    {TC_U8, 0, 0, {PLAIN | WITH_NORMALS | WITH_BOTH, PLAIN | WITH_MISSING | WITH_NORMALS}},
+    {TC_I8, 0, 0, {PLAIN | WITH_BOTH, PLAIN}},
+    {TC_U16, 0, 0, {PLAIN | WITH_BOTH, PLAIN}},
+    {TC_I16, 0, 0, {PLAIN | WITH_BOTH, PLAIN}},
+    {TC_U32, 0, 0, {PLAIN | WITH_BOTH, PLAIN}},
+    {TC_I32, 0, 0, {PLAIN | WITH_BOTH, PLAIN}},
+    {TC_F32, 0, 0, {15, 15}},
+    {TC_F64, 0, 0, {15, PLAIN | WITH_BOTH}},
+    {TC_F32, 32, 0, {WITH_NORMALS | WITH_BOTH, WITH_NORMALS | WITH_BOTH}},
+    {TC_U8, 64, 0, {PLAIN, PLAIN}},
+    {TC_F32, 256, 0, {WITH_NORMALS | WITH_BOTH, WITH_NORMALS | WITH_BOTH}},
+    {TC_F32, 0, 2, {WITH_NORMALS, WITH_NORMALS}},
+    {TC_F32, 0, 3, {WITH_NORMALS, WITH_NORMALS}},
 };
 
-static void program_build(size_t n, int variant) {
+static void program_build(size_t n, int variant, tc_method method) {
     static double memory[27]; /* aligned for every type */
     tc_context_options options;
     tc_grid_options grid;
@@ -51,6 +52,7 @@ static void program_build(size_t n, int variant) {
     grid.nodata = 100;
     how.isovalue = 1;
     how.normals = variant >> 1;
+    how.method = method;
     for (int m = 0; m < 27; m++) sample_set(memory, grid.type, m, m == 13 ? 2 : 0);
     extract(context, &grid, &how, &mesh, &data);
     tc_mesh_destroy(mesh);
@@ -62,7 +64,8 @@ int main(int argc, char **argv) {
     size_t number = 0;
     if (!device_exists()) return SKIPPED;
     for (size_t n = 0; n < sizeof programs / sizeof *programs; n++)
-        for (int variant = 0; variant < 4; variant++)
-            if ((programs[n].variants >> variant & 1) && number++ % parts == part) program_build(n, variant);
+        for (int m = 0; m < 8; m++)
+            if ((programs[n].variants[m / 4] >> m % 4 & 1) && number++ % parts == part)
+                program_build(n, m % 4, (tc_method)(m / 4));
     return EXPECT_DONE();
 }
