@@ -235,37 +235,47 @@ inline_always void batch_gather(const uint *list, uint count, global const BITS 
     }
 }
 
+/* What lies past the end of the list may be computed with, but is no place in a grid. */
+#if GRID
+#define POSITIONS_AT_ONCE(left) (left)
+#else
+#define POSITIONS_AT_ONCE(left) BATCH_STEP
+#endif
+
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
-inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out,
-                               global const BITS *samples, mesh_buffers mesh, const brick_work *work) {
+inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
+                               mesh_buffers mesh, const brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
-        for (uint n = 0; n < BATCH_STEP; n++) {
+        uint left = min(count - first, (uint)BATCH_STEP);
+        for (uint n = 0; n < BATCH_STEP; n++)
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
-            position_make(s, brick, list[first + n], t[n], positions + 3 * n);
+        for (uint n = 0; n < POSITIONS_AT_ONCE(left); n++) {
+            uint place = list[first + n];
+            position_make(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
+                          work->step[place >> 14], t[n], positions + 3 * n);
         }
         global float *position = mesh.positions + 3 * (out + first);
-        uint left = min(count - first, (uint)BATCH_STEP);
         if (left == BATCH_STEP)
             for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, position);
         else
             for (uint n = 0; n < 3 * left; n++) position[n] = positions[n];
 #if NORMALS
         for (uint n = 0; n < left; n++)
-            normal_store(samples, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
+            normal_store(in, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
 #endif
     }
 }
 
-inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
-                                 mesh_buffers mesh, brick_work *work) {
+inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, grid_arrays in, mesh_buffers mesh,
+                                 brick_work *work) {
     for (uint z = 0; z < BRICK_PLANES; z++)
         for (uint y = 0; y <= BRICK_ROWS; y++)
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
-        batch_gather(work->list + first, batch, samples, work);
-        batch_store(s, brick, work->list + first, batch, out + first, samples, mesh, work);
+        batch_gather(work->list + first, batch, in.samples, work);
+        batch_store(s, brick, work->list + first, batch, out + first, in, mesh, work);
     }
 }
 
@@ -369,20 +379,20 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
     line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up + deep));
 }
 
-inline_always void brick_emit(const slab *s, uint number, corner c, global const BITS *samples, row_results k1,
+inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
                               global const ushort *cases, mesh_buffers mesh, brick_work *work) {
     brick_signs signs;
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;
 #ifdef REAL
-    samples_prefetch(s, c, state.rows, samples);
+    samples_prefetch(s, c, state.rows, in.samples);
 #endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
     uint count = edges_list(s, state.rows, first, work);
 #ifdef REAL
-    vertices_emit(s, c, count, first - s->vertex_window, samples, mesh, work);
+    vertices_emit(s, c, count, first - s->vertex_window, in, mesh, work);
 #endif
     plane_number(s, c, &signs, k1, work);
     next_rows_number(s, c, &signs, k1, work);

@@ -154,6 +154,8 @@ static tc_status cases_provide(run *r, device_buffer **out) {
 static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
     workspace *work = &r->context->work;
     const word_buffers *words = place_words(r, place);
+    const device_buffer *coordinates =
+        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : place_array(r, place, ARRAY_POINTS);
     device_buffer *cases;
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
@@ -166,7 +168,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     s.position_offset = w->position_offset;
     s.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_samples(r, place)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(words->words.memory),
                                          ARGUMENT(words->offsets.memory),
@@ -177,7 +179,9 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(cases->memory),
                                          ARGUMENT(w->buffers->positions.memory),
                                          ARGUMENT(w->buffers->normals.memory),
-                                         ARGUMENT(w->buffers->triangles.memory)};
+                                         ARGUMENT(w->buffers->triangles.memory),
+                                         ARGUMENT(coordinates->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
     return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
@@ -332,7 +336,7 @@ static tc_status windows_begin(run *r, emission *e) {
 static tc_status emit_load(run *r, uint32_t n) {
     const emit_step *step = &r->emission->steps[n];
     if (!step->opens_slab) return TC_OK;
-    tc_status status = slab_load(r, step->place);
+    tc_status status = slab_load(r, step->place, true);
     return status ? status : slab_restore(r, step->place);
 }
 
