@@ -82,7 +82,7 @@ static int samples_measure(tc_context *context, const bench_options *o, samples 
                            case_result *result) {
     measurement m;
     uint64_t working = s->bytes / tc_type_bytes(s->grid.type) * WORKING_BYTES, mesh = 0;
-    measure_begin(context, s, o->iso, o->second, &m, result);
+    measure_begin(context, s, o->method, o->iso, o->second, &m, result);
     if (!case_fits(o, s->bytes + s->coordinate_bytes + working, &m, result)) return 0;
     int status = samples_make(s);
     if (!status && o->sweep) status = measure_mesh_bytes(&m, &mesh);

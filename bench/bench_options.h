@@ -20,6 +20,7 @@ typedef struct bench_options {
     tc_type types[LIST_MAX];
     int field_count, dims_count, type_count; /* never 0, but with an input, where dims and type are for raw data */
     int has_iso, has_second, has_repeat;
+    tc_method method;
     double iso, second; /* isovalues; the second one follows on the same grid */
     bench_grid grid;
     const char *device; /* NULL: the library's default */

@@ -6,6 +6,7 @@ others wrap a numpy memmap of it. Tetracubes verifies its mesh against its refer
 take turns, in the reverse order on every other repeat, so that all see the same state of the machine:
 
   ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
+  hybrid  the same by --method hybrid, up to 512^3 samples: about as many triangles as the others make
   vtk     vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
           are all cores unless --threads says otherwise
   vtk_mc  vtkMarchingCubes.Update(), likewise, up to 512^3 samples; it has one thread
@@ -43,6 +44,7 @@ REAL_VOLUME, REAL_ISO = "uniform/embryo.nrrd", 80.0  # of the folder TETRACUBES_
 REST = 0.01  # seconds before every turn: the others' threads have gone to sleep by then
 SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
 HALVED_FROM = 1024
+HYBRID_MOST = 512 ** 3  # samples
 MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
 
 try:
@@ -103,8 +105,9 @@ class Samples:
 class Ours:
     """tetracubes-bench, kept running between turns."""
 
-    def __init__(self, bench, samples, iso, device, warm_repeats):
-        command = [bench, *samples.options(), "--iso", repr(iso), "--turns", "--repeat", str(warm_repeats)]
+    def __init__(self, bench, samples, iso, device, warm_repeats, method="tetra"):
+        command = [bench, *samples.options(), "--iso", repr(iso), "--turns", "--repeat", str(warm_repeats),
+                   "--method", method]
         if device:
             command += ["--device", device]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
@@ -225,8 +228,9 @@ def take_turns(name, sides, repeat):
     return times
 
 
-def result_of(case, samples, report, times, peers):
-    """What the JSON file tells of a case; report is that of tetracubes-bench."""
+def result_of(case, samples, reports, times, peers):
+    """What the JSON file tells of a case; reports are those of tetracubes-bench."""
+    report = reports["ours"]
     measured = report["cases"][0]
     first = next(iter(peers))
     result = {
@@ -249,6 +253,10 @@ def result_of(case, samples, report, times, peers):
         result.update({f"{key}_ms": spread(times[key]), f"{key}_triangles": peer.triangles})
     if "half" in times:
         result["half_ms"] = spread(times["half"])
+    if "hybrid" in times:
+        result["hybrid_ms"] = spread(times["hybrid"])
+        result["hybrid_triangles"] = reports["hybrid"]["cases"][0]["triangles"]
+        result["hybrid_ratio"] = round(statistics.median(times["vtk"]) / statistics.median(times["hybrid"]), 3)
     return result
 
 
@@ -264,14 +272,17 @@ def run_case(arguments, case, folder):
         for key, its in opened.items():
             progress(f"{case.name}: verifying")
             ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
+        if samples.count() <= HYBRID_MOST:
+            progress(f"{case.name}: verifying the hybrid")
+            ours["hybrid"] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, "hybrid")
         peers = peers_of(samples, case.iso)
         times = take_turns(case.name, {**ours, **peers}, arguments.repeat)
-        report = ours["ours"].report()
+        reports = {key: side.report() for key, side in ours.items()}
     finally:
         for side in ours.values():
             side.stop()
         progress("")
-    return result_of(case, samples, report, times, peers)
+    return result_of(case, samples, reports, times, peers)
 
 
 def shown(times):
@@ -302,6 +313,9 @@ def print_row(result):
     if "half_ms" in result:
         growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
         print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
+    if "hybrid_ms" in result:
+        print(f"    hybrid: {shown(result['hybrid_ms'])}, {result['hybrid_triangles']} triangles; vtkFlyingEdges3D takes "
+              f"{result['hybrid_ratio']:.2f} times as long", flush=True)
 
 
 def find_bench():

@@ -33,9 +33,9 @@ def bench(*arguments, text=""):
                           timeout=300, check=False)
 
 
-def expect_case(case, label):
+def expect_case(case, label, method="tetra"):
     expect(set(case) == CASE_KEYS, f"{label}: keys {sorted(case)}")
-    expect(case["method"] == "tetra", f"{label}: method {case['method']}")
+    expect(case["method"] == method, f"{label}: method {case['method']}")
     expect(len(case["hash"]) == 16 and int(case["hash"], 16) >= 0, f"{label}: hash {case['hash']}")
     for key in SPREADS:
         times = case[key]
@@ -147,6 +147,14 @@ def test_sweep():
     expect("left out" in done.stderr, f"too large: says {done.stderr!r}")
 
 
+def test_hybrid():
+    arguments = ["--field", "gyroid", "--dims", "40", "--type", "u8"]
+    tetra, hybrid = (cases_of(*arguments, *method)["cases"][0] for method in ([], ["--method", "hybrid"]))
+    expect_case(hybrid, "--method hybrid", "hybrid")
+    ratio = tetra["triangles"] / hybrid["triangles"]
+    expect(2.2 < ratio < 2.6, f"the tetrahedra have {ratio} times the triangles")
+
+
 def test_table():
     done = bench("--field", "sphere", "--dims", "9", "--dims", "9,10,11", "--type", "u8", "--repeat", "1")
     rows = [line for line in done.stdout.splitlines() if line.startswith("sphere ")]
@@ -181,7 +189,7 @@ def test_statuses(folder):
     for status, words, arguments in [
             (2, "--field", ["--feild", "sphere"]), (2, "sphere", ["--field", "spher"]), (2, "--dims", ["--dims", "1"]),
             (2, "--dims", ["--dims", "5,5"]), (2, "--dims", ["--dims", "64,"]), (2, "--type", ["--type", "u9"]),
-            (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "hybrid"]),
+            (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "cubes"]),
             (2, "--json", ["--json=1"]), (2, "needs a value", ["--dims"]), (2, "--turns", ["--turns"]),
             (2, "--second", ["--second", "x"]), (2, "--second", ["--second", "127.5"]), (2, "--sweep", ["--swep"]),
             (2, "--sweep", ["--sweep", "--turns", "--field", "empty", "--dims", "9", "--type", "u8"]),

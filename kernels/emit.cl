@@ -3,7 +3,7 @@
  *
  * Runs over the list that kernel 1 left. Groups stay and take runs of active bricks by ticket. How a brick is emitted
  * depends on who shares it: emit_brick.cl, emit_rows.cl. Triangles come from the table of a cube (2 parities x 256
- * patterns), which the host derives from the 16 cases of a tetrahedron.
+ * patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the hybrid method has.
  */
 
 /* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,

@@ -19,9 +19,18 @@
 #define LIST_STEP   2 /* items stored at once */
 #define BATCH_EDGES 1024
 #define BATCH_STEP  16
-#define CASE_STEP   15 /* indices copied at once: most cubes emit up to five triangles */
-#define CASE_MOST   30
-#define CASE_EXACT  4 /* last cubes of a brick, of which what is too much, four triangles at most, is another's */
+
+/* Indices copied at once, as many as most cubes have at the most; those of the largest case; last cubes of a brick, of
+ * which what is too much, so many triangles at most, is another's. */
+#if HYBRID
+#define CASE_STEP  9
+#define CASE_MOST  18
+#define CASE_EXACT 2
+#else
+#define CASE_STEP  15
+#define CASE_MOST  30
+#define CASE_EXACT 4
+#endif
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {

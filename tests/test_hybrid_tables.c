@@ -237,7 +237,7 @@ static const char *case_fault(const cube_case *c, unsigned parity, unsigned patt
     static split_surface s;
     static patch p;
     unsigned in_faces, in_high, longest;
-    if (c->triangle_count > CUBE_TRIANGLES_MAX) return "there is no room for so many triangles";
+    if (c->triangle_count > HYBRID_TRIANGLES_MAX) return "there are more triangles than kernel 2 copies";
     split_surface_of(parity, pattern, &s);
     if (!patch_of(c, pattern, &p)) return "a corner is on no crossed edge of the cube";
     const char *fault = sides_fault(&p, &s, pattern, mirrored);

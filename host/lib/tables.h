@@ -24,7 +24,13 @@
 
 #include <stdint.h>
 
-enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
+enum {
+    TETRAHEDRA_PER_CUBE = 5,
+    EDGES_PER_SAMPLE = 6,
+    CUBE_EDGES = 18,
+    CUBE_TRIANGLES_MAX = 10,
+    HYBRID_TRIANGLES_MAX = 6
+};
 
 /* Edges that a sample owns, in the order of their vertices in a mesh. */
 enum edge_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ };
