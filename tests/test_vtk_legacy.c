@@ -9,7 +9,7 @@
 #include "random.h"
 #include "readers.h"
 
-enum { POINTS = 12, CUBES = 2, FLIPS = 1500 };
+enum { POINTS = 12, CUBES = 2, FLIPS = 1000 };
 
 static const int64_t grid_dims[3] = {3, 2, 2};
 
@@ -276,7 +276,7 @@ static void test_kinds(void) {
                     expect_attributes(what, &d, 1);
                     dataset_release(&d);
                 }
-                test_damage(what, &b);
+                if (with_offsets || kind >= GRID_CURVILINEAR) test_damage(what, &b); /* else the same bytes again */
                 bytes_free(&b);
             }
 }
@@ -340,15 +340,17 @@ static void test_forms(void) {
                   "SPACING 2 2 2\r\nORIGIN 1 1 1\r\nCELL_DATA 1\r\nSCALARS c float LOOKUP_TABLE default\r\nnan\r\n"
                   "TEXTURE_COORDINATES t 2 float\r\n1 -inf\r\nTENSORS six float\r\n1 2 3 4 5 6 7 8 9\r\n"
                   "TENSORS6 t6 char\r\n1 2 3 4 5 6\r\nGLOBAL_IDS g vtkIdType\r\n9\r\n"
-                  "POINT_DATA 4\r\nCOLOR_SCALARS rgb 1\r\n0 0.5 1 7\r\nSCALARS n short\r\n1.0 2e1 -3 +4\r\n" LAST
-                  "1 2 3 4\r\n")) {
-        static const double rgb[] = {0, 128, 255, 255}, n[] = {1, 20, -3, 4}, t6[] = {1, 2, 3, 4, 5, 6};
+                  "POINT_DATA 4\r\nSCALARS bare float\r\n5 6 7 8\r\nCOLOR_SCALARS rgb 1\r\n0 0.5 1 7\r\nSCALARS n "
+                  "short\r\n1.0 2e1 -3 +4\r\n" LAST "1 2 3 4\r\n")) {
+        static const double rgb[] = {0, 128, 255, 255}, bare[] = {5, 6, 7, 8}, n[] = {1, 20, -3, 4},
+                            t6[] = {1, 2, 3, 4, 5, 6};
         const dataset_field *c = find_field(&d, "c", 1), *t = find_field(&d, "t", 1), *six = find_field(&d, "six", 1);
         const int64_t *first = d.blocks->first, *dims = d.blocks->dims;
         EXPECT(first[0] == -1 && first[1] == 5 && first[2] == 7 && dims[0] == 2 && dims[1] == 2 && dims[2] == 1,
                "extent");
         EXPECT(d.blocks->matrix[1][1] == 2 && d.blocks->matrix[1][3] == 1, "matrix of an extent");
         EXPECT(c && isnan(value_at(c, 0)) && t && isinf(value_at(t, 1)) && six && value_at(six, 8) == 9, "nan, inf");
+        expect_field("forms", &d, "bare", 0, TC_F32, 1, bare);
         expect_field("forms", &d, "rgb", 0, TC_U8, 1, rgb);
         expect_field("forms", &d, "n", 0, TC_I16, 1, n);
         expect_field("forms", &d, "t6", 1, TC_I8, 6, t6);

@@ -68,7 +68,18 @@ int legacy_line_goes_on(const legacy *r);
 
 static inline int legacy_is_space(unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/* ----------------------------------------------------------------------------- arrays, vtk_legacy_values.c */
+/* ----------------------------------------------------------------------------- values and arrays, vtk_legacy_values.c
+ * and _array.c */
+
+/* Decodes `count` values of a stored type that is no text into native ones (bits: TC_U8), `what` naming them. Bytes of
+ * a binary file must be there; packed bits begin at a byte. */
+int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t *to);
+
+/* Native values of a stored type as others; see legacy_array. How many the wanted type cannot hold. */
+uint64_t legacy_convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to);
+
+/* Passes over a number of text. */
+int legacy_skip_number(legacy *r, const char *what);
 
 /* The name of a type of values. */
 int legacy_type(legacy *r, int *type);
