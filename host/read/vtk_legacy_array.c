@@ -176,9 +176,9 @@ int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t 
         status = map_in_place(r, count, out);
     } else {
         if (!(*out = dataset_allocate(r->out, count * element_bytes(wanted)))) return STATUS_FAILED;
-        if (type == wanted || (type == LEGACY_BIT && wanted == TC_U8))
-            status = wanted == TC_F32 && unfit ? read_converted(r, what, type, count, wanted, *out, unfit)
-                                               : legacy_decode(r, what, type, count, *out);
+        int is_native = type == wanted || (type == LEGACY_BIT && wanted == TC_U8);
+        if (is_native && !(unfit && wanted == TC_F32))
+            status = legacy_decode(r, what, type, count, *out);
         else
             status = read_converted(r, what, type, count, wanted, *out, unfit);
     }

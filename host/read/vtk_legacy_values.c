@@ -1,20 +1,10 @@
-/*
- * vtk_legacy_values.c - arrays of VTK legacy files; see vtk_legacy.h
- *
- * Values are decoded in blocks into native ones of the stored type, from words or big-endian bytes, and converted from
- * there where another type is wanted. Sizes as VTK's own reader has them: long is 8 bytes, vtkIdType 4, bits are
- * packed, the first in the highest bit.
- */
+/* vtk_legacy_values.c - values of VTK legacy files, from words or big-endian bytes, and their conversion; see
+ * vtk_legacy.h */
 #include "vtk_legacy.h"
 
-#include "exit_status.h"
-#include "failure.h"
-
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 enum { LONGEST_NUMBER = 400 };
 
