@@ -68,7 +68,17 @@ int legacy_line_goes_on(const legacy *r);
 
 static inline int legacy_is_space(unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/* ----------------------------------------------------------------------------- arrays, vtk_legacy_values.c */
+/* ----------------------------------------------------- values and arrays, vtk_legacy_values.c and _array.c */
+
+/* Decodes `count` values of a stored type that is no text into native ones (bits: TC_U8), `what` naming them. Bytes of
+ * a binary file must be there; packed bits begin at a byte. */
+int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t *to);
+
+/* Native values of a stored type as others; see legacy_array. How many the wanted type cannot hold. */
+uint64_t legacy_convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to);
+
+/* Passes over a number of text. */
+int legacy_skip_number(legacy *r, const char *what);
 
 /* The name of a type of values. */
 int legacy_type(legacy *r, int *type);
@@ -76,8 +86,8 @@ int legacy_type(legacy *r, int *type);
 /* Reads tuples * components values and the METADATA behind them, in memory of the dataset. They become values of type
  * `wanted`: the stored type itself (bits: TC_U8; bytes of large binary arrays stay in the mapped file), TC_F32
  * (coordinates), TC_F64 (of 64-bit integers), ELEMENT_I64 (of any integers) or TC_U8 (of TC_I32). *unfit is the number
- * of values that it cannot hold: not finite as float32, rounded, or out of range. With out NULL they are only skipped,
- * and may be text too. `what` names the array in failures. */
+ * of values that it cannot hold: not finite as float32, rounded, or out of range; it may be NULL where nothing is
+ * converted. With out NULL they are only skipped, and may be text too. `what` names the array in failures. */
 int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t components, int wanted, void **out,
                  uint64_t *unfit);
 

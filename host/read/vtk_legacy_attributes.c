@@ -80,19 +80,18 @@ static int read_named(legacy *r, int64_t components) {
     return read_array(r, name, type, components);
 }
 
-/* NAME TYPE [COMPONENTS], LOOKUP_TABLE NAME, then the values. */
+/* NAME TYPE [COMPONENTS], LOOKUP_TABLE NAME, which some writers leave out, then the values. */
 static int read_scalars(legacy *r) {
     char name[LEGACY_WORD], table[LEGACY_WORD];
     int type, status;
     int64_t components = 1;
     if ((status = legacy_name(r, name)) || (status = legacy_type(r, &type))) return status;
-    if (legacy_line_goes_on(r) && !legacy_accept(r, "LOOKUP_TABLE")) {
+    int goes_on = legacy_line_goes_on(r), has_table = legacy_accept(r, "LOOKUP_TABLE");
+    if (goes_on && !has_table) {
         if ((status = legacy_integer(r, "the components of SCALARS", 1, INT32_MAX, &components))) return status;
-    } else if (legacy_line_goes_on(r)) {
-        return (status = legacy_word(r, table)) ? status : read_array(r, name, type, components);
+        has_table = legacy_accept(r, "LOOKUP_TABLE");
     }
-    if (legacy_accept(r, "LOOKUP_TABLE") && (status = legacy_need(r, "the name of a LOOKUP_TABLE", table)))
-        return status;
+    if (has_table && (status = legacy_need(r, "the name of a LOOKUP_TABLE", table))) return status;
     return read_array(r, name, type, components);
 }
 

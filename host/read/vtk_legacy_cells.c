@@ -13,18 +13,18 @@
 
 enum { CELL_POLYHEDRON = 42 };
 
-/* Splits `size` numbers, count and points of each cell in turn. */
-static int split_counted(legacy *r, int64_t cell_count, int64_t size, const int64_t *numbers) {
+/* Splits the counts from r->links, where the `size` numbers lie, count and points of each cell in turn. */
+static int split_counted(legacy *r, int64_t cell_count, int64_t size) {
     int64_t at = 0, used = 0;
     for (int64_t cell = 0; cell < cell_count; cell++) {
-        int64_t count = at < size ? numbers[at] : -1;
+        int64_t count = at < size ? r->links[at] : -1;
         if (count < 0 || count > size - at - 1)
             return legacy_fail(r,
                                "has cell %" PRId64 " of %" PRId64
                                " with more points than the size of CELLS leaves, or fewer than 0; it is damaged",
                                cell, cell_count);
         r->offsets[cell] = used;
-        memcpy(r->links + used, numbers + at + 1, (size_t)count * sizeof *numbers);
+        memmove(r->links + used, r->links + at + 1, (size_t)count * sizeof *r->links);
         used += count;
         at += count + 1;
     }
@@ -42,12 +42,11 @@ static int read_counted(legacy *r, int64_t cell_count, int64_t size) {
         return legacy_fail(r, "says that %" PRId64 " cells take %" PRId64 " numbers; each takes at least one",
                            cell_count, size);
     if ((status = legacy_array(r, "CELLS", TC_I32, size, 1, ELEMENT_I64, &numbers, &unfit))) return status;
+    r->links = numbers;
     r->offset_count = cell_count + 1;
     r->link_count = size - cell_count;
     r->offsets = dataset_allocate(r->out, ((uint64_t)cell_count + 1) * sizeof *r->offsets);
-    r->links = dataset_allocate(r->out, (uint64_t)r->link_count * sizeof *r->links);
-    if (!r->offsets || !r->links) return STATUS_FAILED;
-    return split_counted(r, cell_count, size, numbers);
+    return r->offsets ? split_counted(r, cell_count, size) : STATUS_FAILED;
 }
 
 static int read_indices(legacy *r, const char *what, int64_t count, int64_t **out) {

@@ -1,63 +1,12 @@
-/*
- * vtk_legacy_values.c - arrays of VTK legacy files; see vtk_legacy.h
- *
- * Values are decoded in blocks into native ones of the stored type, from words or big-endian bytes, and converted from
- * there where another type is wanted. Sizes as VTK's own reader has them: long is 8 bytes, vtkIdType 4, bits are
- * packed, the first in the highest bit.
- */
+/* vtk_legacy_values.c - values of VTK legacy files, from words or big-endian bytes, and their conversion; see
+ * vtk_legacy.h */
 #include "vtk_legacy.h"
 
-#include "exit_status.h"
-#include "failure.h"
-
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-enum { BLOCK = 1024, LONGEST_NUMBER = 400, IN_PLACE_FROM = 1 << 16 };
-
-typedef union block {
-    uint8_t bytes[BLOCK * 8];
-    double aligned;
-} block;
-
-int legacy_type(legacy *r, int *type) {
-    static const struct {
-        const char *name;
-        int type;
-    } types[] = {{"unsigned_char", TC_U8},
-                 {"char", TC_I8},
-                 {"signed_char", TC_I8},
-                 {"unsigned_short", TC_U16},
-                 {"short", TC_I16},
-                 {"unsigned_int", TC_U32},
-                 {"int", TC_I32},
-                 {"vtkIdType", TC_I32},
-                 {"unsigned_long", ELEMENT_U64},
-                 {"long", ELEMENT_I64},
-                 {"vtktypeint64", ELEMENT_I64},
-                 {"vtktypeuint64", ELEMENT_U64},
-                 {"float", TC_F32},
-                 {"double", TC_F64},
-                 {"bit", LEGACY_BIT},
-                 {"string", LEGACY_STRING},
-                 {"utf8_string", LEGACY_STRING},
-                 {"variant", LEGACY_VARIANT}};
-    char word[LEGACY_WORD];
-    int status = legacy_need(r, "a type of values", word);
-    if (status) return status;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (!strcasecmp(word, types[i].name)) {
-            *type = types[i].type;
-            return 0;
-        }
-    return legacy_fail(r,
-                       "has values of type '%.40s', which is unknown; bit, unsigned_char to double, vtktypeint64, "
-                       "vtkIdType, string and variant are known",
-                       word);
-}
+enum { LONGEST_NUMBER = 400 };
 
 /* ---------------------------------------------------------------------------------------------------- decoding */
 
@@ -140,6 +89,12 @@ static int number_word(legacy *r, const char *what, char last[LONGEST_NUMBER + 1
     return 0;
 }
 
+int legacy_skip_number(legacy *r, const char *what) {
+    char last[LONGEST_NUMBER + 1];
+    const char *word, *end;
+    return number_word(r, what, last, &word, &end);
+}
+
 static int decode_words(legacy *r, const char *what, int type, uint64_t count, uint8_t *to) {
     char last[LONGEST_NUMBER + 1];
     size_t step = type == LEGACY_BIT ? 1 : element_bytes(type);
@@ -194,7 +149,7 @@ static void decode_bytes(legacy *r, int type, uint64_t count, uint8_t *to) {
     }
 }
 
-static int decode(legacy *r, const char *what, int type, uint64_t count, uint8_t *to) {
+int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t *to) {
     if (!r->is_binary) return decode_words(r, what, type, count, to);
     decode_bytes(r, type, count, to);
     return 0;
@@ -277,7 +232,7 @@ static uint64_t to_u8(const uint8_t *from, uint64_t count, void *to) {
     CONVERT(int32_t, uint8_t, value == result);
 }
 
-static uint64_t convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to) {
+uint64_t legacy_convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to) {
     switch (wanted) {
     case TC_F32:
         return to_f32(type, from, count, to);
@@ -288,139 +243,4 @@ static uint64_t convert(int type, const uint8_t *from, uint64_t count, int wante
     default:
         return to_u8(from, count, to);
     }
-}
-
-static int read_converted(legacy *r, const char *what, int type, uint64_t count, int wanted, uint8_t *to,
-                          uint64_t *unfit) {
-    block values;
-    for (uint64_t done = 0, n; done < count; done += n) {
-        n = count - done < BLOCK ? count - done : BLOCK;
-        int status = decode(r, what, type, n, values.bytes);
-        if (status) return status;
-        *unfit += convert(type, values.bytes, n, wanted, to + done * element_bytes(wanted));
-    }
-    return 0;
-}
-
-/* ------------------------------------------------------------------------------------------------------ arrays */
-
-/* Bytes that so many values take in the file at least. */
-static int check_room(const legacy *r, const char *what, int type, uint64_t count) {
-    uint64_t needed, left = r->size - r->at;
-    if (type >= LEGACY_STRING || !r->is_binary)
-        needed = count > UINT64_MAX / 2 ? UINT64_MAX : count * 2 - (count > 0 && type != LEGACY_STRING);
-    else if (type == LEGACY_BIT)
-        needed = count / 8 + (count % 8 > 0);
-    else if (__builtin_mul_overflow(count, element_bytes(type), &needed))
-        needed = UINT64_MAX;
-    if (type == LEGACY_STRING) needed /= 2;
-    if (needed <= left) return 0;
-    return legacy_fail(r,
-                       "declares %" PRIu64 " values of %s, for which the %" PRIu64
-                       " bytes that follow are too few; the count is wrong or the file is cut",
-                       count, what, left);
-}
-
-/* A text of a binary file: its length is in the lower bits of 1, 2, 4 or 8 bytes, which the upper two tell. */
-static int skip_text(legacy *r, const char *what) {
-    size_t left = r->size - r->at;
-    if (left) {
-        unsigned kind = r->bytes[r->at] >> 6;
-        size_t bytes = (size_t)1 << (3 - kind);
-        uint64_t length = r->bytes[r->at] & 63;
-        for (size_t i = 1; i < bytes && i < left; i++) length = length << 8 | r->bytes[r->at + i];
-        if (bytes <= left && length <= left - bytes) {
-            r->at += bytes + (size_t)length;
-            return 0;
-        }
-    }
-    return legacy_fail(r, "ends within the texts of %s; the file is cut or a length is wrong", what);
-}
-
-/* The number of a type and, unless it is empty, an encoded text of any length. */
-static int skip_variant(legacy *r, const char *what) {
-    char word[LEGACY_WORD];
-    int status = legacy_need(r, what, word);
-    if (status || !legacy_line_goes_on(r)) return status;
-    while (r->at < r->size && legacy_is_space(r->bytes[r->at])) r->at++;
-    while (r->at < r->size && !legacy_is_space(r->bytes[r->at])) r->at++;
-    return 0;
-}
-
-static int skip_values(legacy *r, const char *what, int type, uint64_t count) {
-    char last[LONGEST_NUMBER + 1];
-    const char *start, *end;
-    int status = 0;
-    if (type == LEGACY_STRING && count) legacy_skip_line(r);
-    if (r->is_binary && type < LEGACY_STRING) {
-        r->at += (size_t)(type == LEGACY_BIT ? (count + 7) / 8 : count * element_bytes(type));
-        return 0;
-    }
-    for (uint64_t i = 0; i < count && !status; i++) {
-        if (type == LEGACY_STRING && r->is_binary)
-            status = skip_text(r, what);
-        else if (type == LEGACY_STRING && r->at == r->size)
-            status = legacy_fail(r, "ends within the texts of %s; the file is cut", what);
-        else if (type == LEGACY_STRING)
-            legacy_skip_line(r);
-        else if (type == LEGACY_VARIANT)
-            status = skip_variant(r, what);
-        else
-            status = number_word(r, what, last, &start, &end);
-    }
-    return status;
-}
-
-/* METADATA: the names of components, a line each, and other information, up to a blank line. */
-static void skip_metadata(legacy *r, int64_t components) {
-    if (!legacy_accept(r, "METADATA")) return;
-    legacy_skip_line(r);
-    for (;;) {
-        size_t start = r->at;
-        if (legacy_skip_line(r)) return;
-        if (r->at - start < 15 || strncasecmp((const char *)r->bytes + start, "COMPONENT_NAMES", 15)) continue;
-        for (int64_t i = 0; i < components && r->at < r->size; i++) legacy_skip_line(r); /* they may be empty */
-    }
-}
-
-/* Bytes of a large binary array are used where they lie, in a mapping that the dataset owns. */
-static int map_in_place(legacy *r, uint64_t count, void **out) {
-    if (!r->out->mapping) {
-        mapping m;
-        int status = mapping_open(r->path, &m);
-        if (status) return status;
-        if (m.size != r->size) {
-            mapping_close(&m);
-            return legacy_fail(r, "changed while it was read; read it again");
-        }
-        r->out->mapping = (void *)(uintptr_t)m.bytes;
-        r->out->mapping_bytes = m.size;
-    }
-    *out = (unsigned char *)r->out->mapping + r->at;
-    r->at += (size_t)count;
-    return 0;
-}
-
-int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t components, int wanted, void **out,
-                 uint64_t *unfit) {
-    uint64_t count;
-    int status;
-    if (unfit) *unfit = 0;
-    if (__builtin_mul_overflow((uint64_t)tuples, (uint64_t)components, &count)) count = UINT64_MAX;
-    if (r->is_binary && count && type < LEGACY_STRING) legacy_skip_line(r);
-    if ((status = check_room(r, what, type, count))) return status;
-    if (!out) {
-        status = skip_values(r, what, type, count);
-    } else if (r->is_binary && type == wanted && type <= TC_I8 && count >= IN_PLACE_FROM) {
-        status = map_in_place(r, count, out);
-    } else {
-        if (!(*out = dataset_allocate(r->out, count * element_bytes(wanted)))) return STATUS_FAILED;
-        if (type == wanted || (type == LEGACY_BIT && wanted == TC_U8))
-            status = wanted == TC_F32 && unfit ? read_converted(r, what, type, count, wanted, *out, unfit)
-                                               : decode(r, what, type, count, *out);
-        else
-            status = read_converted(r, what, type, count, wanted, *out, unfit);
-    }
-    if (!status) skip_metadata(r, components);
-    return status;
 }
