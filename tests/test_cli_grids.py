@@ -567,7 +567,8 @@ class Info(GridCase):
         self.assertEqual((info["format"], info["field"], info["dims"], info["isovalues"]), ("Plot3D", None, None, []))
         self.assertEqual([set(block) for block in info["blocks"]], [BLOCK_KEYS] * 2)
         first, second = info["blocks"]
-        self.assertEqual((first["kind"], first["dims"], first["points"], first["cells"]), ("curvilinear", [3, 2, 2], 12, 2))
+        self.assertEqual((first["kind"], first["dims"]), ("curvilinear", [3, 2, 2]))
+        self.assertEqual((first["points"], first["cells"]), (12, 2))
         self.assertEqual(second["bounds"], [[2, 0, 0], [3, 1, 1]])
         self.assertEqual(second["fields"][0], {"name": "density", "on": "points", "components": 1, "type": "f32",
                                                "ranges": [[20, 27]]})
