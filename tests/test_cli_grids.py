@@ -274,6 +274,16 @@ class Structured(GridCase):
         _, other = self.surface(*mirrored, "--field", "density", "--iso", "0.5")
         self.assertAlmostEqual(surface["volume"], other["volume"], places=3)
 
+    def test_hybrid(self):
+        points = lattice(self.dims)
+        inputs = self.write_plot3d("a", [(self.dims, points, list(map(bump, points)))])
+        _, tetra = self.surface(*inputs, "--field", "density", "--iso", "0.5")
+        report, hybrid = self.surface(*inputs, "--field", "density", "--iso", "0.5", "--method", "hybrid")
+        self.assertEqual(report["method"], "hybrid")
+        self.assertLess(hybrid["triangles"], 0.6 * tetra["triangles"])
+        for key in ("euler_characteristic", "components", "nonmanifold_edges"):
+            self.assertEqual(hybrid[key], tetra[key], key)
+
     def test_parity_goes_by_extent(self):
         self.needs_xml()
         points = lattice(self.dims)
@@ -502,6 +512,19 @@ class Tetrahedralize(GridCase):
         for low, high in zip(itertools.chain(*one["bounds"]), itertools.chain(*two["bounds"])):
             self.assertAlmostEqual(low, high, places=6)
 
+    def test_missing_samples(self):
+        """Cubes beside a missing sample are left out before they are cut, as the structured path leaves them out."""
+        values = list(map(bump, lattice((9, 8, 9))))
+        values[lattice((9, 8, 9)).index((6, 4, 4))] = -99.0
+        with open(self.path("a.raw"), "wb") as f:
+            f.write(struct.pack("<648f", *values))
+        raw = [self.path("a.raw"), "--dims", "9,8,9", "--type", "f32", "--nodata", "-99"]
+        report = self.report("tetrahedralize", *raw, "-o", self.path("a.vtu"))
+        self.assertEqual((report["cells"], report["tetrahedra"], report["blanked_cells"]), (448, 5 * 440, 8))
+        _, one = self.surface(*raw, "--iso", "0.5")
+        _, two = self.surface(self.path("a.vtu"), "--iso", "0.5")
+        self.assertEqual(counts(one), counts(two))
+
     def test_blocks_and_fields(self):
         blocks = []
         for n, dims in enumerate(((4, 3, 3), (3, 3, 3))):
@@ -544,7 +567,8 @@ class Info(GridCase):
         self.assertEqual((info["format"], info["field"], info["dims"], info["isovalues"]), ("Plot3D", None, None, []))
         self.assertEqual([set(block) for block in info["blocks"]], [BLOCK_KEYS] * 2)
         first, second = info["blocks"]
-        self.assertEqual((first["kind"], first["dims"], first["points"], first["cells"]), ("curvilinear", [3, 2, 2], 12, 2))
+        self.assertEqual((first["kind"], first["dims"]), ("curvilinear", [3, 2, 2]))
+        self.assertEqual((first["points"], first["cells"]), (12, 2))
         self.assertEqual(second["bounds"], [[2, 0, 0], [3, 1, 1]])
         self.assertEqual(second["fields"][0], {"name": "density", "on": "points", "components": 1, "type": "f32",
                                                "ranges": [[20, 27]]})

@@ -48,7 +48,9 @@ static int check_usage(const options *o) {
     if (o->verify && o->engine == TC_ENGINE_REFERENCE)
         return fail(STATUS_USAGE, "--verify compares with the reference engine: it proves nothing about that engine "
                                   "itself; leave out --verify or --engine reference");
-    return surface_files_check(o);
+    read_request request;
+    int status = input_request(o, &request);
+    return status ? status : surface_files_check(o);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- stages */
