@@ -89,7 +89,7 @@ static void print_command_help(const command *c, FILE *out) {
 }
 
 static void print_version(FILE *out) {
-    fprintf(out, "tetracubes %s\nreads: %s\nwrites: PLY, STL, OBJ\n", tc_version(), volume_formats());
+    fprintf(out, "tetracubes %s\nreads: %s\nwrites: PLY, STL, OBJ, VTP\n", tc_version(), volume_formats());
 }
 
 void message(const char *format, ...) {

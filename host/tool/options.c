@@ -47,7 +47,7 @@ static const char *const type_choices[] = {"u8", "i8", "u16", "i16", "u32", "i32
 static const char *const endian_choices[] = {"little", "big", NULL};
 static const char *const engine_choices[] = {"opencl", "reference", NULL};
 static const char *const method_choices[] = {"tetra", NULL};
-static const char *const format_choices[] = {"ply", "stl", "obj", NULL};
+static const char *const format_choices[] = {"ply", "stl", "obj", "vtp", NULL};
 
 #define READS (COMMAND_EXTRACT | COMMAND_INFO)
 #define ALL   (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_DEVICES | COMMAND_GENERATE | COMMAND_SELFTEST)
@@ -58,14 +58,14 @@ static const option table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
      "isovalue, or several with commas between: samples >= V are inside"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .stl or .obj (left out: only the report); with\n"
+     "mesh to write: .ply, .stl, .obj or .vtp (left out: only the report); with\n"
      "several isovalues, % in FILE stands for the isovalue as typed"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, stl or obj, whatever FILE ends in"},
+     "ply, stl, obj or vtp, whatever FILE ends in"},
     {"--normals", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(normals), NULL,
-     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ)"},
+     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ, VTP)"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
