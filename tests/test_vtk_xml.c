@@ -515,6 +515,31 @@ static void test_sharing(void) {
     bytes_free(&file);
 }
 
+/* So many blocks that threads share them; then one that is damaged. */
+static void test_many_blocks(void) {
+    enum { SIDE = 100, VALUES = SIDE * SIDE * SIDE };
+    vtk_shape shape = {AS_APPENDED_RAW, 8, 0, 1, 10000, 0};
+    vtk_writer w;
+    bytes data = {malloc(VALUES), VALUES};
+    for (size_t i = 0; i < VALUES; i++) data.data[i] = (unsigned char)(i * i / 1000 + i % 3);
+    vtk_xml_begin(&w, &shape, "ImageData");
+    bytes_text(&w.text, "<ImageData><Piece Extent=\"1 100 1 100 1 100\">"
+                        "<PointData><DataArray type=\"UInt8\" offset=\"0\"/></PointData></Piece></ImageData>");
+    add_binary(&shape, &data, 0, &w.appended);
+    bytes file = vtk_xml_finish(&w);
+    dataset d;
+    EXPECT(read_bytes("blocks.vtk", &file, &d) == 0 && d.blocks[0].field_count == 1, "%s", failure_text());
+    EXPECT(d.block_count && !memcmp(d.blocks[0].fields[0].values, data.data, VALUES),
+           "values of many blocks are wrong");
+    dataset_release(&d);
+    memset(file.data + file.size / 2, 0x55, 100);
+    EXPECT(read_bytes("blocks.vtk", &file, &d) == STATUS_INPUT && strstr(failure_text(), "damaged"), "%s",
+           failure_text());
+    dataset_release(&d);
+    bytes_free(&data);
+    bytes_free(&file);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- notices
  */
 
@@ -839,6 +864,7 @@ int main(int argc, char **argv) {
     test_blocks();
     test_cells();
     test_sharing();
+    test_many_blocks();
     test_notices();
     test_numbers();
     folder_remove();
