@@ -363,12 +363,12 @@ static void test_xml(void) {
     expect_refused("document type", "<!DOCTYPE VTKFile SYSTEM \"file:///etc/passwd\"><VTKFile type=\"ImageData\"/>");
     bytes deep = {0};
     bytes_text(&deep, "<VTKFile type=\"ImageData\"><ImageData>");
-    for (int i = 0; i < 100000; i++) bytes_text(&deep, "<Piece>");
+    for (int i = 0; i < 3000; i++) bytes_text(&deep, "<Piece>");
     bytes_add(&deep, "", 1);
     expect_refused("Extent", (char *)deep.data);
     deep.size = 0;
     bytes_text(&deep, "<VTKFile type=\"ImageData\">");
-    for (int i = 0; i < 100000; i++) bytes_text(&deep, "<a>");
+    for (int i = 0; i < 3000; i++) bytes_text(&deep, "<a>");
     bytes_add(&deep, "", 1);
     expect_refused("nested", (char *)deep.data);
     bytes_free(&deep);
@@ -497,18 +497,43 @@ static void test_cells(void) {
 static void test_sharing(void) {
     bytes file = {0};
     bytes_text(&file,
-               "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData><Piece Extent=\"0 99 0 99 0 99\">"
+               "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData><Piece Extent=\"0 19 0 19 0 49\">"
                "<PointData>");
     for (int i = 0; i < 1000; i++) bytes_text(&file, "<DataArray type=\"Int8\" Name=\"%d\" offset=\"0\"/>", i);
     bytes_text(&file, "</PointData></Piece></ImageData><AppendedData encoding=\"base64\">_");
     bytes data = {0};
-    unsigned char *values = calloc(1000000, 1);
-    bytes_put(&data, 1000000, 4, 0);
-    bytes_add(&data, values, 1000000);
+    unsigned char *values = calloc(20000, 1);
+    bytes_put(&data, 20000, 4, 0);
+    bytes_add(&data, values, 20000);
     free(values);
     add_base64(&file, &data, 0);
     dataset d;
     EXPECT(read_bytes("shared.vtk", &file, &d) == STATUS_INPUT && strstr(failure_text(), "share"), "%s",
+           failure_text());
+    dataset_release(&d);
+    bytes_free(&data);
+    bytes_free(&file);
+}
+
+/* So many blocks that threads share them; then one that is damaged. */
+static void test_many_blocks(void) {
+    enum { SIDE = 100, VALUES = SIDE * SIDE * SIDE };
+    vtk_shape shape = {AS_APPENDED_RAW, 8, 0, 1, 10000, 0};
+    vtk_writer w;
+    bytes data = {malloc(VALUES), VALUES};
+    for (size_t i = 0; i < VALUES; i++) data.data[i] = (unsigned char)(i * i / 1000 + i % 3);
+    vtk_xml_begin(&w, &shape, "ImageData");
+    bytes_text(&w.text, "<ImageData><Piece Extent=\"1 100 1 100 1 100\">"
+                        "<PointData><DataArray type=\"UInt8\" offset=\"0\"/></PointData></Piece></ImageData>");
+    add_binary(&shape, &data, 0, &w.appended);
+    bytes file = vtk_xml_finish(&w);
+    dataset d;
+    EXPECT(read_bytes("blocks.vtk", &file, &d) == 0 && d.blocks[0].field_count == 1, "%s", failure_text());
+    EXPECT(d.block_count && !memcmp(d.blocks[0].fields[0].values, data.data, VALUES),
+           "values of many blocks are wrong");
+    dataset_release(&d);
+    memset(file.data + file.size / 2, 0x55, 100);
+    EXPECT(read_bytes("blocks.vtk", &file, &d) == STATUS_INPUT && strstr(failure_text(), "damaged"), "%s",
            failure_text());
     dataset_release(&d);
     bytes_free(&data);
@@ -839,6 +864,7 @@ int main(int argc, char **argv) {
     test_blocks();
     test_cells();
     test_sharing();
+    test_many_blocks();
     test_notices();
     test_numbers();
     folder_remove();

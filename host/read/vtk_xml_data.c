@@ -15,9 +15,11 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "parallel.h"
 #include "unpack.h"
 
 #include <inttypes.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +27,8 @@
 /* How often the bytes of a file may be decoded: arrays can share data, as VTK's time steps do, but a small file must
  * not ask for much memory that way. */
 enum { SHARED_MOST = 16 };
+
+enum { SHARE_BYTES = 256 << 10 }; /* unpacked, for which another thread is worth while */
 
 static int is_cut(const xml_values *v) {
     return fail(STATUS_INPUT, "%s ends before its %" PRIu64 " values do; the file is damaged or cut", v->label,
@@ -230,26 +234,67 @@ int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_
 
 /* ---------------------------------------------------------------------------------------------------------- values */
 
-/* Unpacks blocks until all that is wanted is there. */
-static int take_blocks(xml_values *v, unsigned char *to) {
-    xml_source *data = &v->data;
-    unsigned char *packed = data->is_base64 ? malloc((size_t)v->largest_block + 1) : NULL;
-    int status = 0, good = 1;
-    if (data->is_base64 && !packed) return fail(STATUS_FAILED, "%s: no memory for its compressed blocks", v->label);
-    for (uint64_t left = v->bytes; left && !status;) {
-        uint64_t size = take_number(v->doc, &v->sizes, &good);
-        uint64_t wanted = left < v->block_bytes ? left : v->block_bytes;
-        const unsigned char *from = data->is_base64 ? packed : data->at;
-        if (data->is_base64)
-            good = good && source_take(data, packed, size);
+/* Blocks are taken in order under the lock, and unpacked by several threads. */
+typedef struct block_work {
+    pthread_mutex_t lock;
+    xml_values *v;
+    unsigned char *to; /* where the next block goes */
+    uint64_t left;     /* bytes that are still wanted */
+    int status;        /* of the first failure, and its text: each thread has its own last text */
+    char text[1024];
+} block_work;
+
+/* Called under the lock. */
+static void note_failure(block_work *w, int status) {
+    if (w->status) return;
+    w->status = status;
+    snprintf(w->text, sizeof w->text, "%s", failure_text());
+}
+
+/* Takes the next block; base64 is decoded to `packed`. Returns 0 where there is none. */
+static int take_block(block_work *w, unsigned char *packed, const unsigned char **from, uint64_t *size,
+                      unsigned char **to, uint64_t *wanted) {
+    xml_values *v = w->v;
+    int good = 1;
+    pthread_mutex_lock(&w->lock);
+    int is_there = w->left && !w->status;
+    if (is_there) {
+        *size = take_number(v->doc, &v->sizes, &good);
+        *from = v->data.is_base64 ? packed : v->data.at;
+        if (v->data.is_base64)
+            good = good && source_take(&v->data, packed, *size);
         else
-            data->at += size;
-        status = good ? unpack(v->label, ENCODING_DEFLATE, from, (size_t)size, 0, to, wanted, NULL) : is_cut(v);
-        to += wanted;
-        left -= wanted;
+            v->data.at += *size;
+        *to = w->to;
+        *wanted = w->left < v->block_bytes ? w->left : v->block_bytes;
+        w->to += *wanted;
+        w->left -= *wanted;
+        if (!good) note_failure(w, is_cut(v));
+    }
+    pthread_mutex_unlock(&w->lock);
+    return is_there && good;
+}
+
+static void unpack_blocks(void *shared) {
+    block_work *w = shared;
+    const unsigned char *from;
+    unsigned char *packed = malloc(w->v->data.is_base64 ? (size_t)w->v->largest_block + 1 : 1), *to;
+    uint64_t size, wanted;
+    while (packed && take_block(w, packed, &from, &size, &to, &wanted)) {
+        int status = unpack(w->v->label, ENCODING_DEFLATE, from, (size_t)size, 0, to, wanted, NULL);
+        if (!status) continue;
+        pthread_mutex_lock(&w->lock);
+        note_failure(w, status);
+        pthread_mutex_unlock(&w->lock);
     }
     free(packed);
-    return status;
+}
+
+static int take_blocks(xml_values *v, unsigned char *to) {
+    block_work w = {.lock = PTHREAD_MUTEX_INITIALIZER, .v = v, .to = to, .left = v->bytes};
+    parallel_run(v->bytes / SHARE_BYTES + 1, unpack_blocks, &w);
+    if (w.status) return fail(w.status, "%s", w.text);
+    return w.left ? fail(STATUS_FAILED, "%s: no memory for its compressed blocks", v->label) : 0;
 }
 
 int vtk_xml_take(xml_values *v, void *to) {

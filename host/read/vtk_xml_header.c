@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 64, CHUNK = 1 << 20 };
+enum { DEEPEST = 64, FIRST_CHUNK = 64 << 10, LARGEST_CHUNK = 1 << 30 };
 
 /* Levels of elements: VTKFile, grid, Piece, section, DataArray. */
 enum { LEVEL_FILE = 1, LEVEL_GRID, LEVEL_PIECE, LEVEL_SECTION, LEVEL_ARRAY };
@@ -336,9 +336,11 @@ int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc) {
     XML_SetElementHandler(p.expat, start_element, end_element);
     XML_SetStartDoctypeDeclHandler(p.expat, start_document_type);
     enum XML_Status code = XML_STATUS_OK;
+    size_t chunk = FIRST_CHUNK; /* grows, as expat begins anew with each where a tag does not end in it */
     for (size_t at = 0, bytes; at < file->size && code == XML_STATUS_OK; at += bytes) {
-        bytes = file->size - at < CHUNK ? file->size - at : CHUNK;
+        bytes = file->size - at < chunk ? file->size - at : chunk;
         code = XML_Parse(p.expat, (const char *)file->bytes + at, (int)bytes, at + bytes == file->size);
+        if (chunk < LARGEST_CHUNK) chunk *= 2;
     }
     if (!p.status && !p.has_ended && code != XML_STATUS_OK)
         p.status = fail(STATUS_INPUT, "%s: line %" PRIu64 " is not XML: %s; the file is damaged or cut", path,
