@@ -244,6 +244,9 @@ static void test_padding(void) {
     data.data[size + 483] = 1;
     expect_refused("what is no padding", grid, file_write("padded.q", data.data, data.size), "padded.q: its size fits");
     data.data[size + 483] = 0;
+    bytes_add(&data, zeros, 4096); /* with less padding an f64 solution, of values that none has */
+    expect_refused("padding of another form", grid, file_write("padded.q", data.data, data.size),
+                   "padded.q: its size fits");
     bytes_add(&data, zeros, sizeof zeros);
     expect_refused("too much padding", grid, file_write("padded.q", data.data, data.size), "padded.q: its size fits");
     bytes_free(&data);
@@ -328,11 +331,11 @@ static void expect_damage_seen(const variant *v, const char *what, size_t at, co
 
 /* What is cut from a text's last number, begins with the zero bytes of a value, or has the very size of the same
  * header's f32 grid, solution or function, can look whole. */
-static int may_look_whole(const variant *v, const bytes *whole, size_t size) {
+static int may_look_whole(const variant *v, const bytes *whole, size_t size, int has_iblank) {
     size_t points = block_points(0);
     if (v->encoding == TEXT) return whole->size - size <= 10;
     if (v->encoding != BINARY) return 0;
-    return v->iblank || size == 12 + 12 * points || size == 12 + 16 * points || size == 12 + 16 + 20 * points ||
+    return has_iblank || size == 12 + 12 * points || size == 12 + 16 * points || size == 12 + 16 + 20 * points ||
            size == 16 + 4 * TEST_VARIABLES * points;
 }
 
@@ -347,10 +350,10 @@ static void test_truncation(void) {
         file_write("whole.q", data.data, data.size);
         for (size_t size = 0; size < grid.size; size++)
             expect_damage_seen(v, "grid cut to", size, file_write("cut", grid.data, size), file_path("whole.q"),
-                               !may_look_whole(v, &grid, size));
+                               !may_look_whole(v, &grid, size, v->iblank));
         for (size_t size = 0; size < data.size; size++)
             expect_damage_seen(v, "data cut to", size, file_path("whole.xyz"), file_write("cut", data.data, size),
-                               !may_look_whole(v, &data, size));
+                               !may_look_whole(v, &data, size, 0));
         bytes_free(&grid);
         bytes_free(&data);
     }
