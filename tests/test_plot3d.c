@@ -244,6 +244,9 @@ static void test_padding(void) {
     data.data[size + 483] = 1;
     expect_refused("what is no padding", grid, file_write("padded.q", data.data, data.size), "padded.q: its size fits");
     data.data[size + 483] = 0;
+    bytes_add(&data, zeros, 4096); /* with less padding an f64 solution, of values that none has */
+    expect_refused("padding of another form", grid, file_write("padded.q", data.data, data.size),
+                   "padded.q: its size fits");
     bytes_add(&data, zeros, sizeof zeros);
     expect_refused("too much padding", grid, file_write("padded.q", data.data, data.size), "padded.q: its size fits");
     bytes_free(&data);
@@ -326,11 +329,14 @@ static void expect_damage_seen(const variant *v, const char *what, size_t at, co
     if (!status) dataset_release(&d);
 }
 
-/* What is cut from a text's last number, or begins with the zero bytes of a value, can look whole. */
-static int may_look_whole(const variant *v, const bytes *whole, size_t size) {
-    if (v->encoding != TEXT && v->encoding != BINARY) return 0;
+/* What is cut from a text's last number, begins with the zero bytes of a value, or has the very size of the same
+ * header's f32 grid, solution or function, can look whole. */
+static int may_look_whole(const variant *v, const bytes *whole, size_t size, int has_iblank) {
+    size_t points = block_points(0);
     if (v->encoding == TEXT) return whole->size - size <= 10;
-    return v->iblank;
+    if (v->encoding != BINARY) return 0;
+    return has_iblank || size == 12 + 12 * points || size == 12 + 16 * points || size == 12 + 16 + 20 * points ||
+           size == 16 + 4 * TEST_VARIABLES * points;
 }
 
 static void test_truncation(void) {
@@ -340,14 +346,14 @@ static void test_truncation(void) {
     for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
         const variant *v = &variants[n];
         bytes grid = grid_file(v), data = data_file(v);
-        const char *grid_path = file_write("whole.xyz", grid.data, grid.size);
-        const char *data_path = file_write("whole.q", data.data, data.size);
+        file_write("whole.xyz", grid.data, grid.size);
+        file_write("whole.q", data.data, data.size);
         for (size_t size = 0; size < grid.size; size++)
-            expect_damage_seen(v, "grid cut to", size, file_write("cut", grid.data, size), data_path,
-                               !may_look_whole(v, &grid, size));
+            expect_damage_seen(v, "grid cut to", size, file_write("cut", grid.data, size), file_path("whole.q"),
+                               !may_look_whole(v, &grid, size, v->iblank));
         for (size_t size = 0; size < data.size; size++)
-            expect_damage_seen(v, "data cut to", size, grid_path, file_write("cut", data.data, size),
-                               !may_look_whole(v, &data, size) || v->encoding == BINARY);
+            expect_damage_seen(v, "data cut to", size, file_path("whole.xyz"), file_write("cut", data.data, size),
+                               !may_look_whole(v, &data, size, 0));
         bytes_free(&grid);
         bytes_free(&data);
     }
@@ -357,13 +363,13 @@ static void test_truncation(void) {
 static void test_marks(void) {
     variant v = {RECORDS_4, 1, 4, 0, SOLUTION, 0};
     bytes grid = grid_file(&v);
-    const char *data_path = write_data("whole.q", v);
+    write_data("whole.q", v);
     for (size_t at = 0; at < grid.size; at++) {
         if (at >= 24 && at < grid.size - 4) continue; /* the values */
         for (int bit = 0; bit < 8; bit++) {
             grid.data[at] ^= (unsigned char)(1 << bit);
-            expect_damage_seen(&v, "bit flipped in byte", at, file_write("flipped", grid.data, grid.size), data_path,
-                               1);
+            expect_damage_seen(&v, "bit flipped in byte", at, file_write("flipped", grid.data, grid.size),
+                               file_path("whole.q"), 1);
             grid.data[at] ^= (unsigned char)(1 << bit);
         }
     }
