@@ -101,10 +101,8 @@ inline_always float crossing(REAL a, REAL b, REAL iso) {
      (uint)((step_z) + 1) << 18)
 
 #if GRID == 0
-/* The position on the edge at t, in world space. Samples at its ends are at place `from` of the buffer and `step`
- * further on. */
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+/* The position on the edge at t, in world space. */
+inline_always void position_make(const slab *s, corner c, uint place, float t, float out[3]) {
     int step_x = (int)(place >> 14 & 3) - 1, step_y = (int)(place >> 16 & 3) - 1, step_z = (int)(place >> 18 & 3) - 1;
     float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
     float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
@@ -115,8 +113,9 @@ inline_always void position_make(const slab *s, grid_arrays in, corner c, uint p
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
 #elif GRID == 1
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+/* The same. Samples at the ends of the edge are at place `from` of the buffer and `step` further on. */
+inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
+                                    float out[3]) {
     const uint at[3] = {c.x + (place & 0x7f), s->nx + c.y + (place >> 7 & 0xf),
                         s->nx + s->ny + c.z + (place >> 11 & 7)};
     for (uint n = 0; n < 3; n++) {
@@ -126,8 +125,8 @@ inline_always void position_make(const slab *s, grid_arrays in, corner c, uint p
     }
 }
 #else
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
+                                    float out[3]) {
     global const float *p0 = in.coordinates + (3 * from + s->point_offset), *p1 = p0 + 3 * step;
     float3 a = vload3(0, p0), b = vload3(0, p1);
     vstore3(t == 1 ? b : a + t * (b - a), 0, out);
