@@ -200,6 +200,28 @@ static void test_budgets(subject *s, int kind, int own_buffers) {
     tc_mesh_destroy(mesh);
 }
 
+/* Normals divide much: every way to divide gives the same bytes. */
+static void test_divisions(subject *s) {
+    tc_mesh *mesh = NULL;
+    tc_mesh_data expected;
+    subject_begin(s, TC_F32, (int64_t[3]){33, 17, 14});
+    samples_fill(s, 20);
+    points_fill(s, 0, 1);
+    s->how.normals = 1;
+    if (!extract(reference, &s->grid, &s->how, &mesh, &expected)) return;
+    for (int division = 1; division <= 3; division++) {
+        tc_context_options options;
+        tc_context *context = NULL;
+        tc_context_options_init(&options);
+        options.division = division;
+        tc_status status = tc_context_create(&options, &context);
+        EXPECT(!status || (division < 3 && status == TC_ERROR_ARGUMENT), "division %d: %s", division, tc_message());
+        if (!status) meshes_same(context, s, &expected, division == 3 ? "division in integers" : "division");
+        tc_context_destroy(context);
+    }
+    tc_mesh_destroy(mesh);
+}
+
 /* --------------------------------------------------------------------------------------------------------- geometry */
 
 /* A ball in the middle, in a type that has its centre exactly. */
@@ -454,6 +476,7 @@ int main(void) {
     test_engines(&s, TC_F32, 2, 7);
     for (int kind = 0; contexts[WHOLE] && kind < 3; kind++)
         for (int own_buffers = 0; own_buffers < 2; own_buffers++) test_budgets(&s, kind, own_buffers);
+    if (contexts[WHOLE]) test_divisions(&s);
     test_uniform_twin(&s, 0);
     test_uniform_twin(&s, 1);
     test_winding(&s);

@@ -121,6 +121,9 @@ static tc_status coordinates_check(const tc_grid_options *o) {
     for (int n = 0; n < 4; n++)
         if ((uintptr_t)arrays[n] % sizeof(float))
             return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid's coordinates are not aligned to float");
+    if (o->points && o->dims[0] * o->dims[1] * o->dims[2] > (int64_t)(PTRDIFF_MAX / (3 * sizeof(float))))
+        return (tc_status)fail(TC_ERROR_DATA, "%lld x %lld x %lld points overflow the address space",
+                               (long long)o->dims[0], (long long)o->dims[1], (long long)o->dims[2]);
     return TC_OK;
 }
 
