@@ -55,7 +55,11 @@ void measure_begin(tc_context *context, const samples *s, tc_method method, doub
     m->second.isovalue = second_iso;
     snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s%s", s->name, dims[0], dims[1],
              dims[2], tc_type_name(s->grid.type), method == TC_METHOD_HYBRID ? " hybrid" : "");
-    *result = (case_result){.field = s->name, .type = s->grid.type, .method = method, .sample_bytes = s->bytes};
+    *result = (case_result){.field = s->name,
+                            .type = s->grid.type,
+                            .grid = bench_grid_names[s->placed],
+                            .method = method,
+                            .sample_bytes = s->bytes};
     memcpy(result->dims, dims, sizeof result->dims);
 }
 

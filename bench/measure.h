@@ -32,6 +32,7 @@ typedef struct case_result {
     const char *field;
     int64_t dims[3];
     tc_type type;
+    const char *grid;
     tc_method method;
     uint64_t sample_bytes, mesh_bytes; /* of the first surface */
     surface first, second;

@@ -226,12 +226,17 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
 
 #ifdef REAL
 
-/* The samples at the ends of listed edges. */
-inline_always void batch_gather(const uint *list, uint count, global const BITS *samples, brick_work *work) {
+/* The samples at the ends of listed edges; of points it only asks for the cache lines. */
+inline_always void batch_gather(const slab *s, const uint *list, uint count, grid_arrays in, brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        global const BITS *from = samples + work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
-        work->a[n] = *from;
-        work->b[n] = from[work->step[list[n] >> 14]];
+        const ulong from = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        const ulong to = from + work->step[list[n] >> 14];
+        work->a[n] = in.samples[from];
+        work->b[n] = in.samples[to];
+#if GRID == 2
+        line_prefetch(in.coordinates + (3 * from + s->point_offset));
+        line_prefetch(in.coordinates + (3 * to + s->point_offset));
+#endif
     }
 }
 
@@ -274,7 +279,7 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
-        batch_gather(work->list + first, batch, in.samples, work);
+        batch_gather(s, work->list + first, batch, in, work);
         batch_store(s, brick, work->list + first, batch, out + first, in, mesh, work);
     }
 }

@@ -37,25 +37,23 @@ inline_always void position_make(const slab *s, grid_arrays in, corner c, uint p
     out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
-#else
-inline_always float coordinate_between(float p0, float p1, float t) { return t == 1 ? p1 : p0 + t * (p1 - p0); }
-#endif
-
-#if GRID == 1
+#elif GRID == 1
 inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
                                  float out[3]) {
     const uint at[3] = {c.x + (place & 0x7f), s->nx + c.y + (place >> 7 & 0xf),
                         s->nx + s->ny + c.z + (place >> 11 & 7)};
     for (uint n = 0; n < 3; n++) {
         uint end = at[n] + (place >> (14 + 2 * n) & 3) - 1;
-        out[n] = coordinate_between(in.coordinates[at[n]], in.coordinates[end], t);
+        float p0 = in.coordinates[at[n]], p1 = in.coordinates[end];
+        out[n] = t == 1 ? p1 : p0 + t * (p1 - p0);
     }
 }
-#elif GRID == 2
+#else
 inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
                                  float out[3]) {
     global const float *p0 = in.coordinates + (3 * from + s->point_offset), *p1 = p0 + 3 * step;
-    for (uint n = 0; n < 3; n++) out[n] = coordinate_between(p0[n], p1[n], t);
+    float3 a = vload3(0, p0), b = vload3(0, p1);
+    vstore3(t == 1 ? b : a + t * (b - a), 0, out);
 }
 #endif
 

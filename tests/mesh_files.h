@@ -9,6 +9,7 @@
 
 #include "expect.h"
 #include "tetracubes.h"
+#include "vtk_files.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -95,7 +96,7 @@ static void get_floats(const char *at, float *values) {
 }
 
 /* An empty mesh where the text is not the PLY that is expected here, byte by byte. */
-static tc_mesh_data parse_ply(const char *text, size_t bytes) {
+static inline tc_mesh_data parse_ply(const char *text, size_t bytes) {
     const char *normal_lines = "property float nx\nproperty float ny\nproperty float nz\n";
     unsigned long long vertex_count = 0, triangle_count = 0;
     int length = 0;
@@ -132,7 +133,7 @@ static tc_mesh_data parse_ply(const char *text, size_t bytes) {
 }
 
 /* Positions as soup; the facet normals take the place of the normals, once per triangle's first vertex. */
-static tc_mesh_data parse_stl(const char *text, size_t bytes) {
+static inline tc_mesh_data parse_stl(const char *text, size_t bytes) {
     uint32_t count = bytes >= 84 ? get_u32(text + 80) : 0;
     EXPECT(bytes == 84 + 50 * (size_t)count, "STL of %zu bytes", bytes);
     EXPECT(strncmp(text, "solid", 5) != 0, "binary STL begins with solid");
@@ -179,7 +180,7 @@ static const char *parse_face(const char *at, uint32_t *triangle, int with_norma
     return at;
 }
 
-static tc_mesh_data parse_obj(const char *text, size_t bytes) {
+static inline tc_mesh_data parse_obj(const char *text, size_t bytes) {
     uint64_t normal_count = count_lines(text, "vn "), v = 0, n = 0, t = 0;
     tc_mesh_data mesh =
         make_mesh(count_lines(text, "v "), count_lines(text, "v ") ? count_lines(text, "f ") : 0, normal_count > 0);
@@ -200,6 +201,32 @@ static tc_mesh_data parse_obj(const char *text, size_t bytes) {
         EXPECT(0, "OBJ line %llu ends in: %.20s", (unsigned long long)(v + n + t), at ? at : "");
         break;
     }
+    return mesh;
+}
+
+static inline tc_mesh_data parse_vtp(const char *text, size_t bytes) {
+    vtk_values points = vtk_find(text, bytes, "Points"), normals = vtk_find(text, bytes, "Normals"),
+               corners = vtk_find(text, bytes, "connectivity"), ends = vtk_find(text, bytes, "offsets");
+    uint64_t vertex_count = vtk_count(text, "NumberOfPoints"), triangle_count = vtk_count(text, "NumberOfPolys");
+    size_t index_bytes = vtk_index_bytes(&corners);
+    int is_good = points.data && points.components == 3 && strcmp(points.type, "Float32") == 0 &&
+                  points.bytes == 12 * vertex_count && corners.data && ends.data &&
+                  corners.bytes == 3 * triangle_count * index_bytes && ends.bytes == triangle_count * index_bytes &&
+                  strcmp(corners.type, ends.type) == 0 &&
+                  (!normals.data || (normals.bytes == points.bytes && normals.components == 3));
+    EXPECT(is_good, "VTP header or size (%zu bytes): %.500s", bytes, text);
+    if (!is_good) return make_mesh(0, 0, 0);
+
+    tc_mesh_data mesh = make_mesh(vertex_count, vertex_count ? triangle_count : 0, normals.data != NULL);
+    memcpy((float *)(uintptr_t)mesh.positions, points.data, points.bytes);
+    if (normals.data) memcpy((float *)(uintptr_t)mesh.normals, normals.data, normals.bytes);
+    uint64_t wrong = 0;
+    for (uint64_t t = 0; t < mesh.triangle_count; t++) {
+        wrong += vtk_index(&ends, t) != (int64_t)(3 * t + 3);
+        for (uint64_t k = 0; k < 3; k++)
+            ((uint32_t *)(uintptr_t)mesh.triangles)[3 * t + k] = (uint32_t)vtk_index(&corners, 3 * t + k);
+    }
+    EXPECT(wrong == 0, "%llu VTP offsets are wrong", (unsigned long long)wrong);
     return mesh;
 }
 

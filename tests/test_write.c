@@ -96,8 +96,8 @@ static int holds(const char *path, const char *text) {
 static const struct {
     const char *ending;
     tc_mesh_data (*parse)(const char *text, size_t bytes);
-} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl},
-               {"PLY", parse_ply}, {"Obj", parse_obj}, {"sTL", parse_stl}};
+} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl}, {"vtp", parse_vtp},
+               {"PLY", parse_ply}, {"Obj", parse_obj}, {"sTL", parse_stl}, {"VTP", parse_vtp}};
 
 /* The right-hand rule in long double. Slivers are let pass: rounding decides where they face. */
 static int is_facet_normal(const float normal[3], const float *corners, uint64_t *sliver_count) {
@@ -165,7 +165,7 @@ static void test_meshes(void) {
         for (int with_normals = 0; with_normals < 2; with_normals++) {
             tc_mesh_data mesh = make_mesh(sizes[i][0], sizes[i][1], with_normals);
             for (int soup = 0; soup < 2; soup++)
-                for (size_t f = 0; f < (sizes[i][1] > 4 ? 3 : sizeof formats / sizeof *formats); f++)
+                for (size_t f = 0; f < (sizes[i][1] > 4 ? 4 : sizeof formats / sizeof *formats); f++)
                     test_read_back(&mesh, soup, f);
             free_mesh(&mesh);
         }
@@ -229,7 +229,7 @@ static void test_formats_named(const tc_mesh_data *mesh) {
     }
     mesh_write_options vtk = {.format = "vtk"}, stl = {.format = "STL"};
     expect_failure("format vtk", mesh_write_check("mesh.ply", &vtk), STATUS_USAGE, "\"vtk\"");
-    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE, "ply, stl or obj");
+    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE, "ply, stl, obj or vtp");
     EXPECT(mesh_write_check("a.b/mesh.Ply", NULL) == 0, "ending in mixed case");
     EXPECT(mesh_write_check("/dev/stdout", &stl) == 0, "named format without an ending");
 
@@ -248,6 +248,7 @@ static void test_limits(void) {
     tc_mesh_data third = {.triangle_count = limit / 3 + 1};
     expect_failure("vertices", mesh_write(path_of("a.ply"), &many_vertices, NULL), STATUS_FAILED, "2^32 - 1");
     expect_failure("vertices", mesh_write(path_of("a.obj"), &many_vertices, NULL), STATUS_FAILED, "2^32 - 1");
+    expect_failure("vertices", mesh_write(path_of("a.vtp"), &many_vertices, NULL), STATUS_FAILED, "2^32 - 1");
     expect_failure("triangles", mesh_write(path_of("a.stl"), &many_triangles, NULL), STATUS_FAILED, "2^32 - 1");
     expect_failure("soup", mesh_write(path_of("a.ply"), &third, &soup), STATUS_FAILED, "2^32 - 1");
     expect_failure("soup", mesh_write(path_of("a.obj"), &third, &soup), STATUS_FAILED, "2^32 - 1");
@@ -326,15 +327,15 @@ static void expect_nothing_left(const char *name, const tc_mesh_data *mesh, rlim
 }
 
 static void test_full_disk(const tc_mesh_data *mesh) {
-    static const char *const names[] = {"full.ply", "full.stl", "full.obj"};
+    static const char *const names[] = {"full.ply", "full.stl", "full.obj", "full.vtp"};
     if (access("/dev/full", W_OK) != 0) printf("skipped: no /dev/full\n");
-    for (int i = 0; i < 3 && access("/dev/full", W_OK) == 0; i++) {
+    for (int i = 0; i < 4 && access("/dev/full", W_OK) == 0; i++) {
         int status = write_unprivileged("/dev/full", mesh, names[i] + strlen("full."), "free space");
         EXPECT(status == STATUS_FAILED, "/dev/full as %s: %d", names[i], status);
     }
 
     signal(SIGXFSZ, SIG_IGN);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         struct stat whole = {0};
         EXPECT(mesh_write(path_of(names[i]), mesh, NULL) == 0, "%s", failure_text());
         stat(path_of(names[i]), &whole);
@@ -348,9 +349,9 @@ static void test_full_disk(const tc_mesh_data *mesh) {
 
 /* Writes to a FIFO whose reader leaves after the first bytes, while later blocks are being encoded. */
 static void test_closed_pipe(const tc_mesh_data *mesh) {
-    static const char *const names[] = {"closed.ply", "closed.stl", "closed.obj"};
+    static const char *const names[] = {"closed.ply", "closed.stl", "closed.obj", "closed.vtp"};
     signal(SIGPIPE, SIG_IGN);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         EXPECT(mkfifo(path_of(names[i]), 0600) == 0, "mkfifo");
         fflush(stdout);
         pid_t child = fork();

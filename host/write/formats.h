@@ -7,24 +7,28 @@
 #ifndef FORMATS_H
 #define FORMATS_H
 
+#include "mesh_write.h"
 #include "output.h"
 #include "tetracubes.h"
 
 #include <string.h>
 
-#define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY or OBJ file, triangles in an STL file */
+#define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY, OBJ or VTP file, triangles in an STL file */
 
 /* A mesh as the file shows it; what encoders take their records from. */
 typedef struct shown_mesh {
     const tc_mesh_data *mesh;
     int soup; /* vertices of the file are the triangles' corners, one after the other */
+    const mesh_field *fields;
+    int field_count; /* 0 where the format takes none */
 } shown_mesh;
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY and STL are written as numbers lie in memory");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are written as numbers lie in memory");
 
 void ply_write(output *o, const shown_mesh *s);
 void obj_write(output *o, const shown_mesh *s);
 void stl_write(output *o, const shown_mesh *s);
+void vtp_write(output *o, const shown_mesh *s);
 
 /* The vertex of the mesh that vertex v of the file shows. */
 static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) { return s->soup ? s->mesh->triangles[v] : v; }

@@ -10,7 +10,8 @@
 
 #include "tetracubes.h"
 
-/* Values on the vertices, for PLY and VTP. */
+/* Values on the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...; there,
+ * characters other than letters and digits become '_', and names that are taken get '_' behind them. */
 typedef struct mesh_field {
     const char *name;
     int components;
@@ -24,12 +25,13 @@ typedef struct mesh_write_options {
     int field_count;
 } mesh_write_options;
 
-/* 0 where path's ending (or options->format) is a format that can be written, else STATUS_USAGE with a text that names
- * the formats: to be called before any work is done. options may be NULL here and below. */
+/* 0 where path's ending (or options->format) is a format that can be written, with the fields that are given, else
+ * STATUS_USAGE with a text that names the formats: to be called before any work is done. options may be NULL here and
+ * below. */
 int mesh_write_check(const char *path, const mesh_write_options *options);
 
-/* Writes positions, normals (where the mesh has them and the format takes them: PLY, OBJ) and triangles, whose indices
- * must be below vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
+/* Writes positions, normals (where the mesh has them and the format takes them: PLY, OBJ, VTP) and triangles, whose
+ * indices must be below vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */

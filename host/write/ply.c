@@ -1,38 +1,89 @@
 /*
  * ply.c - PLY 1.0, binary little-endian (Turk, Stanford, 1994)
  *
- *     vertex  float x y z [nx ny nz]             12 or 24 bytes
+ *     vertex  float x y z [nx ny nz] [fields]    12 or 24 bytes, 4 for each value of a field
  *     face    list uchar uint vertex_indices     13 bytes
  *
  * Indices are uint: int would end at 2^31, and readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
  * both by their declared type.
  *
- * Vertices without normals lie in the mesh as they lie in the file.
+ * Vertices without normals and fields lie in the mesh as they lie in the file.
  */
+#include "file_text.h"
 #include "formats.h"
 
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-enum { HEADER_MOST = 1024, VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4 };
+enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4, NAME_BYTES = 128, NAME_KEPT = 100 };
 
-/* Writes the header into text[HEADER_MOST]. Returns its length. */
-static size_t make_header(const shown_mesh *s, char *text) {
-    return (size_t)snprintf(text, HEADER_MOST,
-                            "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
-                            "property float x\nproperty float y\nproperty float z\n%s"
-                            "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
-                            (unsigned long long)file_vertex_count(s),
-                            s->mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-                            (unsigned long long)s->mesh->triangle_count);
+typedef char property_name[NAME_BYTES];
+
+static int is_taken(const char *name, const property_name *names, size_t count) {
+    static const char *const own[] = {"x", "y", "z", "nx", "ny", "nz"};
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strcmp(name, own[i]) == 0) return 1;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0) return 1;
+    return 0;
+}
+
+/* A word of letters, digits and '_' that no other property has. */
+static void name_property(const mesh_field *field, int component, property_name *names, size_t count) {
+    char *name = names[count];
+    size_t length = 0;
+    for (const char *c = field->name; *c && length < NAME_KEPT; c++) {
+        int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
+        name[length++] = is_word ? *c : '_';
+    }
+    name[length] = 0;
+    if (!length) length = (size_t)sprintf(name, "field");
+    if (field->components > 1) length += (size_t)sprintf(name + length, "_%d", component);
+    while (is_taken(name, names, count) && length < NAME_BYTES - 1) strcpy(name + length++, "_");
+}
+
+static int value_count(const shown_mesh *s) {
+    int count = 0;
+    for (int i = 0; i < s->field_count; i++) count += s->fields[i].components;
+    return count;
+}
+
+static void add_properties(file_text *header, const shown_mesh *s) {
+    property_name *names = malloc(((size_t)value_count(s) + 1) * sizeof *names);
+    size_t count = 0;
+    if (!names) header->has_failed = 1;
+    for (int i = 0; i < s->field_count && names; i++)
+        for (int c = 0; c < s->fields[i].components; c++) {
+            name_property(&s->fields[i], c, names, count);
+            text_add(header, "property float %s\n", names[count++]);
+        }
+    free(names);
+}
+
+static void make_header(const shown_mesh *s, file_text *header) {
+    text_add(header,
+             "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
+             "property float x\nproperty float y\nproperty float z\n%s",
+             (unsigned long long)file_vertex_count(s),
+             s->mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "");
+    add_properties(header, s);
+    text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
+             (unsigned long long)s->mesh->triangle_count);
 }
 
 static unsigned char *encode_vertices(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
     const float *positions = s->mesh->positions, *normals = s->mesh->normals;
     for (uint64_t v = first; v < end; v++) {
-        uint64_t from = 3 * source_vertex(s, v);
-        to = put_bytes(to, positions + from, VECTOR_BYTES);
-        if (normals) to = put_bytes(to, normals + from, VECTOR_BYTES);
+        uint64_t vertex = source_vertex(s, v);
+        to = put_bytes(to, positions + 3 * vertex, VECTOR_BYTES);
+        if (normals) to = put_bytes(to, normals + 3 * vertex, VECTOR_BYTES);
+        for (int i = 0; i < s->field_count; i++) {
+            size_t components = (size_t)s->fields[i].components;
+            to = put_bytes(to, s->fields[i].values + components * vertex, components * sizeof(float));
+        }
     }
     return to;
 }
@@ -49,14 +100,20 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
 }
 
 void ply_write(output *o, const shown_mesh *s) {
-    char header[HEADER_MOST];
-    size_t header_bytes = make_header(s, header), vertex_bytes = s->mesh->normals ? 2 * VECTOR_BYTES : VECTOR_BYTES;
+    file_text header = {0};
+    make_header(s, &header);
+    size_t vertex_bytes = (s->mesh->normals ? 2 * VECTOR_BYTES : VECTOR_BYTES) + (size_t)value_count(s) * sizeof(float);
     uint64_t vertex_count = file_vertex_count(s), face_count = s->mesh->triangle_count;
-    output_expect(o, header_bytes + vertex_count * vertex_bytes + face_count * FACE_BYTES);
-    output_bytes(o, header, header_bytes);
-    if (s->soup || s->mesh->normals)
-        output_records(o, vertex_count, vertex_bytes, encode_vertices, s);
-    else
-        output_bytes(o, s->mesh->positions, vertex_count * vertex_bytes);
-    output_records(o, face_count, FACE_BYTES, encode_faces, s);
+    if (header.has_failed) {
+        o->error = ENOMEM;
+    } else {
+        output_expect(o, header.length + vertex_count * vertex_bytes + face_count * FACE_BYTES);
+        output_bytes(o, header.bytes, header.length);
+        if (s->soup || vertex_bytes > VECTOR_BYTES)
+            output_records(o, vertex_count, vertex_bytes, encode_vertices, s);
+        else
+            output_bytes(o, s->mesh->positions, vertex_count * vertex_bytes);
+        output_records(o, face_count, FACE_BYTES, encode_faces, s);
+    }
+    text_release(&header);
 }

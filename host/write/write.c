@@ -14,9 +14,14 @@
 typedef struct format {
     const char *name;
     void (*write)(output *o, const shown_mesh *s);
+    int takes_fields;
 } format;
 
-static const format formats[] = {{"ply", ply_write}, {"stl", stl_write}, {"obj", obj_write}, {NULL, NULL}};
+static const format formats[] = {
+    {"ply", ply_write, 1}, {"stl", stl_write, 0}, {"obj", obj_write, 0}, {"vtp", vtp_write, 1}, {NULL, NULL, 0}};
+
+/* Values per vertex, of all fields together: a vertex must fit a block of the output many times. */
+enum { FIELD_VALUES_MOST = 4096 };
 
 static const format *find_format(const char *name) {
     for (const format *f = formats; f->name; f++)
@@ -30,14 +35,26 @@ static const char *ending_of(const char *path) {
     return dot ? dot + 1 : "";
 }
 
+static int check_fields(const char *path, const mesh_write_options *options, const format *f) {
+    int64_t values = 0;
+    if (!options || !options->field_count) return 0;
+    if (!f->takes_fields)
+        return fail(STATUS_USAGE, "%s: %s holds no fields on vertices; write ply or vtp", path, f->name);
+    for (int i = 0; i < options->field_count; i++) values += options->fields[i].components;
+    if (values <= FIELD_VALUES_MOST) return 0;
+    return fail(STATUS_USAGE, "%s: %lld values per vertex are more than the %d that are written; name fewer fields",
+                path, (long long)values, FIELD_VALUES_MOST);
+}
+
 static int choose_format(const char *path, const mesh_write_options *options, const format **chosen) {
     int named = options && options->format;
     *chosen = find_format(named ? options->format : ending_of(path));
-    if (*chosen) return 0;
+    if (*chosen) return check_fields(path, options, *chosen);
     if (named)
-        return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl or obj", options->format);
+        return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl, obj or vtp",
+                    options->format);
     return fail(STATUS_USAGE,
-                "%s: its ending names no known format: let it end in .ply, .stl or .obj, or name the format by "
+                "%s: its ending names no known format: let it end in .ply, .stl, .obj or .vtp, or name the format by "
                 "--format",
                 path);
 }
@@ -65,7 +82,11 @@ int mesh_write_check(const char *path, const mesh_write_options *options) {
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
-    shown_mesh shown = {mesh, options && options->soup};
+    shown_mesh shown = {.mesh = mesh, .soup = options && options->soup};
+    if (options) {
+        shown.fields = options->fields;
+        shown.field_count = options->field_count;
+    }
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = output_open(&o, path);

@@ -1,0 +1,413 @@
+/*
+ * vtk_xml.c - serial VTK XML files: ImageData (.vti), RectilinearGrid (.vtr), StructuredGrid (.vts) and
+ * UnstructuredGrid (.vtu); see vtk_xml.h
+ *
+ * Every piece that holds points becomes a block. Values that lie in the file as this machine wants them, which is so
+ * for aligned raw appended data, are used in the mapped file; all others are copied. Arrays of no use here (FieldData,
+ * strings, polyhedral faces) are left where they are.
+ */
+#include "vtk_xml.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "layout.h"
+#include "readers.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Bits of vtkGhostType (vtkDataSetAttributes.h). */
+enum { HIDDEN_POINT = 2, DUPLICATE_CELL = 1, HIDDEN_CELL = 32 };
+
+enum { SMALL_BYTES = 16 << 10, CHUNK_BYTES = 128 << 10, ALIGNMENT = 64 };
+
+typedef struct xml_reader {
+    xml_document doc;
+    dataset *out;
+    int uses_file;        /* whether any values are used in the mapped file */
+    unsigned char *chunk; /* for small arrays, which would waste a page each */
+    size_t chunk_left;
+} xml_reader;
+
+static void *reader_memory(xml_reader *r, uint64_t bytes) {
+    if (bytes > SMALL_BYTES) return dataset_allocate(r->out, bytes);
+    size_t rounded = ((size_t)(bytes ? bytes : 1) + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1);
+    if (rounded > r->chunk_left) {
+        r->chunk = dataset_allocate(r->out, CHUNK_BYTES);
+        r->chunk_left = r->chunk ? CHUNK_BYTES : 0;
+        if (!r->chunk) return NULL;
+    }
+    r->chunk_left -= rounded;
+    return r->chunk + CHUNK_BYTES - r->chunk_left - rounded;
+}
+
+static void note_more(xml_reader *r, const xml_values *v) {
+    if (v->more) dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", v->label);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- values */
+
+/* Brings values of the stored type: in the file, or in memory of the dataset. */
+static int load_stored(xml_reader *r, const xml_array *array, uint64_t count, const void **values) {
+    xml_values v;
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (status) return status;
+    *values = v.in_place;
+    if (v.in_place) {
+        r->uses_file = 1;
+    } else {
+        void *memory = reader_memory(r, v.bytes);
+        if (!memory) return STATUS_FAILED;
+        *values = memory;
+        status = vtk_xml_take(&v, memory);
+    }
+    note_more(r, &v);
+    return status;
+}
+
+/* Brings values of the stored type for a short while; *owned, or NULL, is to be freed. */
+static int load_briefly(xml_reader *r, const xml_array *array, uint64_t count, const unsigned char **values,
+                        void **owned) {
+    xml_values v;
+    *owned = NULL;
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (status) return status;
+    if (v.in_place) {
+        *values = v.in_place;
+    } else {
+        if (!(*owned = samples_allocate(v.bytes)))
+            return fail(STATUS_FAILED, "%s: no memory for %" PRIu64 " bytes", v.label, v.bytes);
+        *values = *owned;
+        status = vtk_xml_take(&v, *owned);
+    }
+    note_more(r, &v);
+    return status;
+}
+
+#define CONVERT(stored)                                                                                                \
+    for (uint64_t i = 0; i < count; i++) {                                                                             \
+        stored value;                                                                                                  \
+        memcpy(&value, from + i * sizeof value, sizeof value);                                                         \
+        to[i] = (converted)value;                                                                                      \
+    }                                                                                                                  \
+    break
+
+#define CONVERT_INTEGERS                                                                                               \
+    case TC_U8:                                                                                                        \
+        CONVERT(uint8_t);                                                                                              \
+    case TC_I8:                                                                                                        \
+        CONVERT(int8_t);                                                                                               \
+    case TC_U16:                                                                                                       \
+        CONVERT(uint16_t);                                                                                             \
+    case TC_I16:                                                                                                       \
+        CONVERT(int16_t);                                                                                              \
+    case TC_U32:                                                                                                       \
+        CONVERT(uint32_t);                                                                                             \
+    case TC_I32:                                                                                                       \
+        CONVERT(int32_t);                                                                                              \
+    case ELEMENT_I64:                                                                                                  \
+        CONVERT(int64_t);                                                                                              \
+    case ELEMENT_U64:                                                                                                  \
+        CONVERT(uint64_t)
+
+static void convert_to_floats(float *to, const unsigned char *from, uint64_t count, int element) {
+    typedef float converted;
+    switch (element) {
+        CONVERT_INTEGERS;
+    case TC_F64:
+        CONVERT(double);
+    default:
+        CONVERT(float);
+    }
+}
+
+/* Those of 64 bits without sign that exceed the signed ones become negative. */
+static void convert_to_integers(int64_t *to, const unsigned char *from, uint64_t count, int element) {
+    typedef int64_t converted;
+    switch (element) { CONVERT_INTEGERS; }
+}
+
+/* Coordinates, from any type of number. */
+static int load_floats(xml_reader *r, const xml_array *array, uint64_t count, const float **values) {
+    const unsigned char *stored;
+    void *owned, *memory;
+    if (array->element == TC_F32) return load_stored(r, array, count, (const void **)values);
+    int status = load_briefly(r, array, count, &stored, &owned);
+    if (!status && !(memory = reader_memory(r, count * sizeof(float)))) status = STATUS_FAILED;
+    if (!status) {
+        convert_to_floats(memory, stored, count, array->element);
+        *values = memory;
+    }
+    free(owned);
+    return status;
+}
+
+/* Writes `count` integers, stored in any type of integer. */
+static int load_integers(xml_reader *r, const xml_array *array, uint64_t count, int64_t *to) {
+    const unsigned char *stored;
+    void *owned;
+    if (array->element == TC_F32 || array->element == TC_F64)
+        return fail(STATUS_INPUT, "%s: its array '%.60s' is of floating point; it must be of integers", r->doc.path,
+                    r->doc.names + array->name);
+    int status = load_briefly(r, array, count, &stored, &owned);
+    if (!status) convert_to_integers(to, stored, count, array->element);
+    free(owned);
+    return status;
+}
+
+/* --------------------------------------------------------------------------------------------------------- geometry */
+
+/* The array of that number in a section; NULL: there are fewer. Any name will do where it is NULL. */
+static const xml_array *find_array(const xml_reader *r, const xml_piece *piece, enum xml_section section,
+                                   const char *name, int number) {
+    for (size_t i = 0; i < piece->array_count; i++) {
+        const xml_array *array = &r->doc.arrays[piece->first_array + i];
+        if (array->section == section && (!name || strcmp(name, r->doc.names + array->name) == 0) && !number--)
+            return array;
+    }
+    return NULL;
+}
+
+static int set_matrix(const xml_reader *r, dataset_block *block) {
+    const xml_document *doc = &r->doc;
+    double matrix[3][4];
+    for (int row = 0; row < 3; row++) {
+        for (int a = 0; a < 3; a++) matrix[row][a] = doc->direction[3 * row + a] * doc->spacing[a];
+        matrix[row][3] = doc->origin[row];
+    }
+    memcpy(block->matrix, matrix, sizeof matrix);
+    return matrix_check(doc->path, matrix);
+}
+
+static int load_axes(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    int status = 0;
+    for (int a = 0; a < 3 && !status; a++) {
+        const xml_array *array = find_array(r, piece, SECTION_AXES, NULL, a);
+        if (!array || array->components != 1)
+            return fail(
+                STATUS_INPUT,
+                "%s: its Coordinates are not three arrays of single numbers, for x, y and z; the file is damaged",
+                r->doc.path);
+        status = load_floats(r, array, (uint64_t)piece->dims[a], &block->axes[a]);
+    }
+    return status;
+}
+
+static int load_points(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    const xml_array *array = find_array(r, piece, SECTION_POINTS, NULL, 0);
+    if (!array || array->components != 3)
+        return fail(STATUS_INPUT, "%s: its Points are not an array of three numbers each; the file is damaged",
+                    r->doc.path);
+    return load_floats(r, array, 3 * piece->point_count, &block->points);
+}
+
+static int load_cell_types(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
+    if (array->element == TC_U8) return load_stored(r, array, count, (const void **)&block->cell_types);
+    const unsigned char *stored;
+    void *owned;
+    uint8_t *types = NULL;
+    int status = load_briefly(r, array, count, &stored, &owned);
+    if (!status && !(types = reader_memory(r, count))) status = STATUS_FAILED;
+    for (uint64_t i = 0; i < count && !status; i++) {
+        int64_t type;
+        convert_to_integers(&type, stored + i * element_bytes(array->element), 1, array->element);
+        types[i] = (uint8_t)type;
+        if (type < 0 || type > UINT8_MAX)
+            status = fail(STATUS_INPUT, "%s: its cell %" PRIu64 " is of type %" PRId64 ", which there is not",
+                          r->doc.path, i, type);
+    }
+    block->cell_types = types;
+    free(owned);
+    return status;
+}
+
+/* The file has where each cell ends; the first begins at 0. */
+static int load_cell_offsets(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
+    xml_values v;
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (status) return status;
+    int64_t *offsets = reader_memory(r, (count + 1) * sizeof *offsets);
+    if (!offsets) return STATUS_FAILED;
+    offsets[0] = 0;
+    if ((status = load_integers(r, array, count, offsets + 1))) return status;
+    for (uint64_t i = 0; i < count; i++)
+        if (offsets[i + 1] < offsets[i])
+            return fail(STATUS_INPUT,
+                        "%s: its cell %" PRIu64 " ends at %" PRId64 ", before it begins (%" PRId64
+                        "): offsets must ascend; the file is damaged",
+                        r->doc.path, i, offsets[i + 1], offsets[i]);
+    block->cell_offsets = offsets;
+    return 0;
+}
+
+static int load_connectivity(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
+    int status;
+    if (array->element == ELEMENT_I64) {
+        status = load_stored(r, array, count, (const void **)&block->cell_points);
+    } else {
+        xml_values v;
+        if ((status = vtk_xml_open(&r->doc, array, count, &v))) return status;
+        int64_t *points = reader_memory(r, count * sizeof *points);
+        if (!points) return STATUS_FAILED;
+        status = load_integers(r, array, count, points);
+        block->cell_points = points;
+    }
+    for (uint64_t i = 0; i < count && !status; i++)
+        if (block->cell_points[i] < 0 || block->cell_points[i] >= block->point_count)
+            status = fail(STATUS_INPUT,
+                          "%s: its cells name the point %" PRId64 ", but the points are 0 to %" PRId64
+                          "; the file is damaged",
+                          r->doc.path, block->cell_points[i], block->point_count - 1);
+    return status;
+}
+
+static int load_cells(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    static const xml_array nothing = {.section = SECTION_CELLS, .element = TC_U8};
+    static const char *const names[] = {"types", "offsets", "connectivity"};
+    const xml_array *arrays[3];
+    for (int i = 0; i < 3; i++) {
+        arrays[i] = find_array(r, piece, SECTION_CELLS, names[i], 0);
+        if (!arrays[i] && piece->cell_count)
+            return fail(STATUS_INPUT, "%s: its Cells have no array '%s'; the file is damaged", r->doc.path, names[i]);
+        if (!arrays[i]) arrays[i] = &nothing;
+    }
+    int status = load_cell_types(r, arrays[0], piece->cell_count, block);
+    if (!status) status = load_cell_offsets(r, arrays[1], piece->cell_count, block);
+    if (!status) status = load_connectivity(r, arrays[2], (uint64_t)block->cell_offsets[piece->cell_count], block);
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- fields */
+
+static int is_integral(const xml_array *array) {
+    return array->element >= 0 && array->element != TC_F32 && array->element != TC_F64;
+}
+
+/* Whether the array tells what is missing: vtkGhostType, or vtkGhostLevels of older files' cells. */
+static int is_ghost_array(const xml_reader *r, const xml_array *array) {
+    const char *name = r->doc.names + array->name;
+    return (strcmp(name, "vtkGhostType") == 0 || strcmp(name, "vtkGhostLevels") == 0) && array->components == 1 &&
+           is_integral(array);
+}
+
+static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
+    int on_cells = array->section == SECTION_CELL_DATA, any = 0;
+    int64_t bits = on_cells ? DUPLICATE_CELL | HIDDEN_CELL : HIDDEN_POINT;
+    if (strcmp(r->doc.names + array->name, "vtkGhostLevels") == 0) bits = on_cells ? UINT8_MAX : 0;
+    const unsigned char *stored;
+    void *owned;
+    uint8_t *blanked = NULL;
+    int status = load_briefly(r, array, count, &stored, &owned);
+    if (!status && !(blanked = reader_memory(r, count))) status = STATUS_FAILED;
+    for (uint64_t i = 0; i < count && !status; i++) {
+        int64_t flags;
+        convert_to_integers(&flags, stored + i * element_bytes(array->element), 1, array->element);
+        blanked[i] = (flags & bits) != 0;
+        any |= blanked[i];
+    }
+    free(owned);
+    if (status || !any) return status;
+    *(on_cells ? &block->blanked_cells : &block->blanked_points) = blanked;
+    return 0;
+}
+
+/* 64-bit integers become doubles where they lie; those that have none cost the field, not the file. */
+static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
+    uint64_t count;
+    const void *values;
+    int wide = array->element > TC_F64;
+    dataset_field *field;
+    if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
+    if (wide) {
+        xml_values v;
+        int status = vtk_xml_open(&r->doc, array, count, &v);
+        void *memory = status ? NULL : reader_memory(r, v.bytes);
+        if (status || !memory) return status ? status : STATUS_FAILED;
+        const unsigned char *from = v.in_place ? v.in_place : memory;
+        if (!v.in_place && (status = vtk_xml_take(&v, memory))) return status;
+        note_more(r, &v);
+        layout convert = {.element = array->element, .dims = {(int64_t)count, 1, 1}, .stride = {1, 0, 0}};
+        if (layout_gather(v.label, &convert, from, memory)) {
+            dataset_notice(r->out, "the field '%.60s' is left out: it has 64-bit integers that no double holds exactly",
+                           names + array->name);
+            return 0;
+        }
+        values = memory;
+    } else {
+        int status = load_stored(r, array, count, &values);
+        if (status) return status;
+    }
+    if (dataset_field_add(block, &field)) return STATUS_FAILED;
+    *field = (dataset_field){.name = names + array->name,
+                             .on_cells = array->section == SECTION_CELL_DATA,
+                             .components = (int)array->components,
+                             .type = wide ? TC_F64 : (tc_type)array->element,
+                             .values = values};
+    return 0;
+}
+
+static int load_fields(xml_reader *r, const xml_piece *piece, const char *names, dataset_block *block) {
+    int status = 0;
+    for (size_t i = 0; i < piece->array_count && !status; i++) {
+        const xml_array *array = &r->doc.arrays[piece->first_array + i];
+        uint64_t tuples = array->section == SECTION_CELL_DATA ? piece->cell_count : piece->point_count;
+        if ((array->section != SECTION_POINT_DATA && array->section != SECTION_CELL_DATA) || array->element < 0)
+            continue;
+        if (is_ghost_array(r, array))
+            status = load_blanked(r, array, tuples, block);
+        else
+            status = load_field(r, array, tuples, names, block);
+    }
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- blocks */
+
+static int load_block(xml_reader *r, const xml_piece *piece, const char *names) {
+    dataset_block *block;
+    if (dataset_block_add(r->out, &block)) return STATUS_FAILED;
+    block->kind = r->doc.kind;
+    block->point_count = (int64_t)piece->point_count;
+    block->cell_count = (int64_t)piece->cell_count;
+    memcpy(block->dims, piece->dims, sizeof block->dims);
+    memcpy(block->first, piece->first, sizeof block->first);
+    int status = 0;
+    if (block->kind == GRID_UNIFORM) status = set_matrix(r, block);
+    if (block->kind == GRID_RECTILINEAR) status = load_axes(r, piece, block);
+    if (block->kind == GRID_CURVILINEAR || block->kind == GRID_UNSTRUCTURED) status = load_points(r, piece, block);
+    if (block->kind == GRID_UNSTRUCTURED && !status) status = load_cells(r, piece, block);
+    return status ? status : load_fields(r, piece, names, block);
+}
+
+static int load_blocks(xml_reader *r) {
+    const xml_document *doc = &r->doc;
+    int status = 0;
+    char *names = dataset_allocate(r->out, doc->name_bytes);
+    if (!names) return STATUS_FAILED;
+    if (doc->name_bytes) memcpy(names, doc->names, doc->name_bytes);
+    for (size_t i = 0; i < doc->piece_count && !status; i++)
+        if (doc->pieces[i].point_count) status = load_block(r, &doc->pieces[i], names);
+    if (!status && !r->out->block_count)
+        status = fail(STATUS_INPUT, "%s: holds no points: none of its %zu pieces has any", doc->path, doc->piece_count);
+    return status;
+}
+
+int vtk_xml_read(const read_request *request, const mapping *file, dataset *out) {
+    xml_reader r = {.out = out};
+    mapping own; /* the caller closes its own; this one lives as long as values in it are used */
+    (void)file;
+    int status = mapping_open(request->path, &own);
+    if (!status) status = vtk_xml_parse(request->path, &own, &r.doc);
+    if (!status) status = load_blocks(&r);
+    vtk_xml_release(&r.doc);
+    if (!status && r.uses_file) {
+        out->mapping = (void *)(uintptr_t)own.bytes;
+        out->mapping_bytes = own.size;
+    } else {
+        mapping_close(&own);
+    }
+    if (!status) snprintf(out->format, sizeof out->format, "VTK XML");
+    return status;
+}

@@ -1,0 +1,97 @@
+/*
+ * vtk_xml.h - what the parts of the VTK XML reader share: the description of a file's arrays, and their values
+ *
+ *     vtk_xml_header.c   the XML, through expat: pieces and the place of every array in the file
+ *     vtk_xml_data.c     the values of one array: base64, blocks, compression, byte order
+ *     vtk_xml_text.c     the values of one array written as text
+ *     vtk_xml.c          datasets made of them
+ *
+ * Source: "VTK XML Formats" in VTK's file format documentation (docs.vtk.org), and what VTK 9 writes and reads.
+ */
+#ifndef VTK_XML_H
+#define VTK_XML_H
+
+#include "dataset.h"
+#include "mapping.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum xml_section { SECTION_NONE, SECTION_POINT_DATA, SECTION_CELL_DATA, SECTION_POINTS, SECTION_CELLS, SECTION_AXES };
+
+enum xml_format { FORMAT_TEXT, FORMAT_BINARY, FORMAT_APPENDED };
+
+typedef struct xml_array {
+    enum xml_section section;
+    size_t name;        /* where in the document's names */
+    int element;        /* stored type as layout.h counts them; -1: strings and others that are no numbers */
+    int64_t components; /* at least 1 */
+    enum xml_format format;
+    uint64_t offset;                      /* appended: from the first byte of the appended data */
+    const unsigned char *text, *text_end; /* inline: without white space around it; both NULL: none */
+} xml_array;
+
+typedef struct xml_piece {
+    int64_t first[3], dims[3]; /* structured: of the points; any of dims 0: none */
+    uint64_t point_count, cell_count;
+    size_t first_array, array_count;
+} xml_piece;
+
+typedef struct xml_document {
+    const char *path;
+    const unsigned char *bytes, *end; /* of the file */
+    enum grid_kind kind;
+    int swapped;         /* the other byte order than this machine's */
+    size_t header_bytes; /* 4 or 8: of each number in front of binary data */
+    char compressor[40]; /* "" where binary data is not compressed */
+    double origin[3], spacing[3], direction[9];
+
+    const unsigned char *appended; /* first byte of the appended data; NULL: none */
+    int appended_is_raw;           /* else base64 */
+    uint64_t taken;                /* bytes of the file that arrays were decoded from so far */
+
+    xml_piece *pieces;
+    xml_array *arrays;
+    char *names; /* zero-ended, one after the other */
+    size_t piece_count, array_count, name_bytes;
+} xml_document;
+
+/* Fills *doc from a mapped file, which must outlive it; to be released, also after a failure. */
+int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc);
+
+/* Frees and zeroes. */
+void vtk_xml_release(xml_document *doc);
+
+/* Bytes of the file, or what base64 in it stands for, taken in order. Copies go on from the same place. */
+typedef struct xml_source {
+    const unsigned char *at, *end;
+    int is_base64;
+    unsigned char kept[3]; /* decoded, not yet taken */
+    size_t kept_count;
+} xml_source;
+
+/* An array whose sizes have been compared with what the file holds. */
+typedef struct xml_values {
+    const xml_document *doc;
+    const xml_array *array;
+    uint64_t count, bytes;         /* of the values that are wanted */
+    const unsigned char *in_place; /* where they lie in the file as this machine wants them; NULL: vtk_xml_take */
+    int more;                      /* whether the array holds more than that; of text only known when it is taken */
+    char label[512];               /* file and array, for messages */
+
+    xml_source data, sizes; /* sizes: of compressed blocks */
+    uint64_t block_bytes, largest_block;
+    int is_compressed;
+} xml_values;
+
+/* Finds the first `count` values, and checks that the file can hold them: to be called before memory is taken for
+ * them. STATUS_INPUT where it cannot. */
+int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_values *out);
+
+/* Writes values->bytes bytes: values of the stored type in this machine's byte order. */
+int vtk_xml_take(xml_values *values, void *to);
+
+/* The part of vtk_xml_take that reads numbers as text. */
+int vtk_xml_take_text(xml_values *values, void *to);
+
+#endif

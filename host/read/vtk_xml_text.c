@@ -1,0 +1,116 @@
+/*
+ * vtk_xml_text.c - numbers that a VTK XML file holds as text; see vtk_xml.h
+ *
+ * Decimals of up to 15 digits with a power of ten of up to 22 are exact in double after one multiplication or division
+ * (Clinger 1990); strtod takes the others.
+ */
+#include "vtk_xml.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "layout.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORD_BYTES = 128, EXACT_DIGITS = 15, EXACT_POWER = 22 };
+
+static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                       1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* Returns 0 where the word is no plain decimal of few digits. */
+static int parse_short_decimal(const char *word, double *value) {
+    int is_negative = *word == '-', digits = 0, power = 0, exponent = 0;
+    uint64_t mantissa = 0;
+    if (*word == '-' || *word == '+') word++;
+    for (; is_digit(*word); word++, digits++) mantissa = 10 * mantissa + (uint64_t)(*word - '0');
+    if (*word == '.')
+        for (word++; is_digit(*word); word++, digits++, power--) mantissa = 10 * mantissa + (uint64_t)(*word - '0');
+    if (!digits || digits > EXACT_DIGITS) return 0;
+    if (*word == 'e' || *word == 'E') {
+        int is_small = *++word == '-';
+        if (*word == '-' || *word == '+') word++;
+        if (!is_digit(*word)) return 0;
+        for (; is_digit(*word) && exponent < 1000; word++) exponent = 10 * exponent + (*word - '0');
+        power += is_small ? -exponent : exponent;
+    }
+    if (*word || power > EXACT_POWER || power < -EXACT_POWER) return 0;
+    *value = power < 0 ? (double)mantissa / powers_of_ten[-power] : (double)mantissa * powers_of_ten[power];
+    if (is_negative) *value = -*value;
+    return 1;
+}
+
+static int parse_real(const char *word, double *value) {
+    char *end;
+    if (parse_short_decimal(word, value)) return 1;
+    *value = strtod(word, &end);
+    return end != word && !*end;
+}
+
+/* As bits of 64-bit two's complement. */
+static int parse_integer(const char *word, int element, uint64_t *bits) {
+    static const uint64_t most[] = {
+        [TC_U8] = UINT8_MAX,   [TC_I8] = INT8_MAX,   [TC_U16] = UINT16_MAX,     [TC_I16] = INT16_MAX,
+        [TC_U32] = UINT32_MAX, [TC_I32] = INT32_MAX, [ELEMENT_I64] = INT64_MAX, [ELEMENT_U64] = UINT64_MAX};
+    int is_signed = element == TC_I8 || element == TC_I16 || element == TC_I32 || element == ELEMENT_I64;
+    int is_negative = *word == '-';
+    uint64_t value = 0;
+    if (*word == '-' || *word == '+') word++;
+    if (!is_digit(*word)) return 0;
+    for (; is_digit(*word); word++)
+        if (__builtin_mul_overflow(value, 10u, &value) ||
+            __builtin_add_overflow(value, (uint64_t)(*word - '0'), &value))
+            return 0;
+    *bits = is_negative ? 0 - value : value;
+    return !*word && value <= most[element] + (uint64_t)(is_negative && is_signed) &&
+           (!is_negative || is_signed || !value);
+}
+
+/* Writes one number as an element in this machine's byte order. Returns 0 where the word is none, or out of range. */
+static int store_number(const char *word, int element, unsigned char *to) {
+    double wide;
+    uint64_t bits;
+    if (element == TC_F32 || element == TC_F64) {
+        if (!parse_real(word, &wide)) return 0;
+        float narrow = (float)wide;
+        memcpy(to, element == TC_F32 ? (void *)&narrow : (void *)&wide, element_bytes(element));
+        return 1;
+    }
+    if (!parse_integer(word, element, &bits)) return 0;
+    uint8_t bits8 = (uint8_t)bits;
+    uint16_t bits16 = (uint16_t)bits;
+    uint32_t bits32 = (uint32_t)bits;
+    size_t bytes = element_bytes(element);
+    memcpy(to,
+           bytes == 1   ? (void *)&bits8
+           : bytes == 2 ? (void *)&bits16
+           : bytes == 4 ? (void *)&bits32
+                        : &bits,
+           bytes);
+    return 1;
+}
+
+int vtk_xml_take_text(xml_values *v, void *to) {
+    const unsigned char *at = v->array->text, *end = v->array->text_end;
+    size_t bytes = element_bytes(v->array->element);
+    unsigned char *value = to;
+    char word[WORD_BYTES];
+    for (uint64_t i = 0; i < v->count; i++, value += bytes) {
+        size_t length = 0;
+        while (at < end && *at <= ' ') at++;
+        while (at<end && * at> ' ' && length < WORD_BYTES - 1) word[length++] = (char)*at++;
+        word[length] = 0;
+        if (!length)
+            return fail(STATUS_INPUT,
+                        "%s has %" PRIu64 " numbers of text, but %" PRIu64 " are needed; the file is damaged or cut",
+                        v->label, i, v->count);
+        if (!store_number(word, v->array->element, value))
+            return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", v->label, i + 1,
+                        word);
+    }
+    v->more = at < end;
+    return 0;
+}

@@ -1,0 +1,93 @@
+/* vtk_appended.c - VTK XML files whose arrays follow each other as raw appended data; see vtk_appended.h */
+#include "vtk_appended.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 8, LENGTH_BYTES = 8 };
+
+static uint64_t array_bytes(const vtk_array *a) { return a->record_count * a->record_bytes; }
+
+static uint64_t padding(uint64_t bytes) { return (ALIGNMENT - bytes % ALIGNMENT) % ALIGNMENT; }
+
+/* Bytes of the UTF-8 character at s, 0 where there is none, or one that XML does not take. */
+static size_t character_bytes(const unsigned char *s) {
+    uint32_t code = s[0];
+    size_t bytes = code < 0x80 ? 1 : code >= 0xc2 && code < 0xe0 ? 2 : code >= 0xe0 && code < 0xf0 ? 3 : 4;
+    if (bytes == 1) return code >= 0x20 && code != 0x7f;
+    if (bytes == 4 && (code < 0xf0 || code > 0xf4)) return 0;
+    code &= 0x7fu >> bytes;
+    for (size_t i = 1; i < bytes; i++) {
+        if ((s[i] & 0xc0) != 0x80) return 0;
+        code = code << 6 | (s[i] & 0x3f);
+    }
+    int is_long = code < (bytes == 2 ? 0x80u : bytes == 3 ? 0x800u : 0x10000u);
+    int is_refused = (code >= 0xd800 && code < 0xe000) || code == 0xfffe || code == 0xffff || code > 0x10ffff;
+    return is_long || is_refused ? 0 : bytes;
+}
+
+static void add_escaped(file_text *t, const char *name) {
+    for (const unsigned char *s = (const unsigned char *)name; *s;) {
+        size_t bytes = character_bytes(s);
+        const char *entity = *s == '&'   ? "&amp;"
+                             : *s == '<' ? "&lt;"
+                             : *s == '>' ? "&gt;"
+                             : *s == '"' ? "&quot;"
+                                         : NULL;
+        if (entity)
+            text_add(t, "%s", entity);
+        else
+            text_add(t, "%.*s", bytes ? (int)bytes : 1, bytes ? (const char *)s : "_");
+        s += bytes ? bytes : 1;
+    }
+}
+
+void vtk_array_add(vtk_file *f, const vtk_array *array) {
+    vtk_array *arrays = realloc(f->arrays, (f->array_count + 1) * sizeof *arrays);
+    if (!arrays) {
+        f->text.has_failed = 1;
+        return;
+    }
+    f->arrays = arrays;
+    arrays[f->array_count++] = *array;
+    text_add(&f->text, "        <DataArray type=\"%s\" Name=\"", array->type);
+    add_escaped(&f->text, array->name);
+    text_add(&f->text, "\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%llu\"/>\n", array->components,
+             (unsigned long long)f->appended_bytes);
+    f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));
+}
+
+static void write_array(output *o, const vtk_array *a) {
+    uint64_t bytes = array_bytes(a);
+    output_bytes(o, &bytes, sizeof bytes);
+    if (a->encode)
+        output_records(o, a->record_count, a->record_bytes, a->encode, a->source);
+    else
+        output_bytes(o, a->source, bytes);
+    output_bytes(o, (char[ALIGNMENT]){0}, padding(bytes));
+}
+
+void vtk_file_write(vtk_file *f, const char *grid) {
+    static const char end[] = "\n  </AppendedData>\n</VTKFile>\n";
+    file_text head = {.has_failed = f->text.has_failed};
+    text_add(&head,
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\">\n  <%s>\n%s  </%s>\n  <AppendedData encoding=\"raw\">\n",
+             grid, grid, f->text.bytes ? f->text.bytes : "", grid);
+    text_fill(&head, ' ', padding(head.length + 1));
+    text_add(&head, "_");
+    if (head.has_failed) {
+        if (!f->o->error) f->o->error = ENOMEM;
+    } else {
+        output_expect(f->o, head.length + f->appended_bytes + sizeof end - 1);
+        output_bytes(f->o, head.bytes, head.length);
+        for (size_t i = 0; i < f->array_count; i++) write_array(f->o, &f->arrays[i]);
+        output_bytes(f->o, end, sizeof end - 1);
+    }
+    text_release(&head);
+    text_release(&f->text);
+    free(f->arrays);
+    *f = (vtk_file){.o = f->o};
+}

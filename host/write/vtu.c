@@ -1,0 +1,103 @@
+/*
+ * vtu.c - a tetrahedral complex as VTK XML UnstructuredGrid (.vtu); see mesh_write.h
+ *
+ * Source: "VTK XML Formats" in VTK's file format documentation. Arrays lie as raw appended data, in the types of the
+ * fields; connectivity and offsets are Int32 where that is enough, else Int64.
+ */
+#include "mesh_write.h"
+
+#include "dataset.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "vtk_appended.h"
+
+#include <string.h>
+#include <strings.h>
+
+enum { VTK_TETRA = 10 };
+
+static int is_wide(const complex_file *c) { return vtk_needs_wide(c->point_count, 4 * c->tetrahedron_count); }
+
+static unsigned char *encode_corners(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const complex_file *c = source;
+    int wide = is_wide(c);
+    for (uint64_t corner = 4 * first; corner < 4 * end; corner++) to = put_index(to, c->tetrahedra[corner], wide);
+    return to;
+}
+
+static unsigned char *encode_ends(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    int wide = is_wide(source);
+    for (uint64_t t = first; t < end; t++) to = put_index(to, 4 * (t + 1), wide);
+    return to;
+}
+
+static unsigned char *encode_types(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    (void)source;
+    memset(to, VTK_TETRA, (size_t)(end - first));
+    return to + (end - first);
+}
+
+static void add_field(vtk_file *f, const complex_file *c, const dataset_field *field) {
+    static const char *const types[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "Float32", "Float64"};
+    static const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    vtk_array_add(f, &(vtk_array){.name = field->name,
+                                  .type = types[field->type],
+                                  .components = field->components,
+                                  .record_count = c->point_count,
+                                  .record_bytes = (size_t)field->components * bytes[field->type],
+                                  .source = field->values});
+}
+
+static void add_cells(vtk_file *f, const complex_file *c) {
+    int wide = is_wide(c);
+    vtk_array_add(f, &(vtk_array){.name = "connectivity",
+                                  .type = vtk_index_type(wide),
+                                  .components = 1,
+                                  .record_count = c->tetrahedron_count,
+                                  .record_bytes = wide ? 32 : 16,
+                                  .encode = wide ? encode_corners : NULL,
+                                  .source = wide ? (const void *)c : c->tetrahedra});
+    vtk_array_add(f, &(vtk_array){.name = "offsets",
+                                  .type = vtk_index_type(wide),
+                                  .components = 1,
+                                  .record_count = c->tetrahedron_count,
+                                  .record_bytes = wide ? 8 : 4,
+                                  .encode = encode_ends,
+                                  .source = c});
+    vtk_array_add(f, &(vtk_array){.name = "types",
+                                  .type = "UInt8",
+                                  .components = 1,
+                                  .record_count = c->tetrahedron_count,
+                                  .record_bytes = 1,
+                                  .encode = encode_types,
+                                  .source = c});
+}
+
+int complex_write_check(const char *path) {
+    size_t length = strlen(path);
+    if (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0) return 0;
+    return fail(STATUS_USAGE, "%s: tetrahedra are written as VTK XML: let the name end in .vtu", path);
+}
+
+int complex_write(const char *path, const complex_file *c) {
+    output o;
+    vtk_file f = {.o = &o};
+    int status = complex_write_check(path);
+    if (!status) status = output_open(&o, path);
+    if (status) return status;
+    text_add(&f.text, "    <Piece NumberOfPoints=\"%llu\" NumberOfCells=\"%llu\">\n      <PointData>\n",
+             (unsigned long long)c->point_count, (unsigned long long)c->tetrahedron_count);
+    for (int i = 0; i < c->field_count; i++) add_field(&f, c, &c->fields[i]);
+    text_add(&f.text, "      </PointData>\n      <Points>\n");
+    vtk_array_add(&f, &(vtk_array){.name = "Points",
+                                   .type = "Float32",
+                                   .components = 3,
+                                   .record_count = c->point_count,
+                                   .record_bytes = 12,
+                                   .source = c->points});
+    text_add(&f.text, "      </Points>\n      <Cells>\n");
+    add_cells(&f, c);
+    text_add(&f.text, "      </Cells>\n    </Piece>\n");
+    vtk_file_write(&f, "UnstructuredGrid");
+    return output_close(&o);
+}
