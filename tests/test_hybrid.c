@@ -217,6 +217,37 @@ static void run(uint64_t seed, bool large) {
 /* ------------------------------------------------------------------------------------------------------- smooth data
  */
 
+/* A curvilinear grid with cells left out: bytes of both engines, and topology. */
+static void test_curvilinear(void) {
+    enum { NX = 70, NY = 12, NZ = 9, CELLS = (NX - 1) * (NY - 1) * (NZ - 1) };
+    static float points[NX * NY * NZ][3];
+    static uint8_t blanked[CELLS];
+    tc_grid_options grid;
+    tc_extract_options how;
+    tc_mesh_data tetra, hybrid, other;
+    random_state = 4;
+    grid_begin(&grid, &how, NX, NY, NZ, TC_F32);
+    samples_choose(&grid, SMOOTH);
+    how.isovalue = 60;
+    for (int n = 0; n < NX * NY * NZ; n++) {
+        double x = n % NX, y = n / NX % NY, z = n / NX / NY;
+        points[n][0] = (float)((2 + 0.1 * x) * cos(0.1 * y));
+        points[n][1] = (float)((2 + 0.1 * x) * sin(0.1 * y));
+        points[n][2] = (float)(z + 0.3 * sin(0.2 * x));
+    }
+    grid.points = points[0];
+    for (int n = 0; n < CELLS; n++) blanked[n] = random_below(20) == 0;
+    grid.blanked_cells = blanked;
+    if (!extract(reference, &grid, &how, &meshes[0], &tetra)) return;
+    how.method = TC_METHOD_HYBRID;
+    if (!extract(reference, &grid, &how, &meshes[1], &hybrid)) return;
+    const char *fault = topology_fault(&tetra, &hybrid, false);
+    EXPECT(!fault && hybrid.triangle_count > 500, "curvilinear: %s", fault);
+    if (!device || !extract(device, &grid, &how, &meshes[2], &other)) return;
+    const char *difference = mesh_difference(&hybrid, &other);
+    EXPECT(!difference, "curvilinear: device and reference: %s", difference);
+}
+
 /* What saves triangles: of the gyroid about 2.4 times as many. */
 static void test_fewer_triangles(void) {
     enum { N = 30 };
@@ -291,6 +322,7 @@ int main(int argc, char **argv) {
     for (int64_t size = 2; size <= 4; size += 2) test_patterns(size);
     for (uint64_t n = 0; n < 20 * count; n++) run(seed + n, false);
     for (uint64_t n = 0; n < count; n++) run(seed + n, true);
+    test_curvilinear();
     test_fewer_triangles();
     test_faults_are_found();
     test_options();
