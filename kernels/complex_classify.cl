@@ -6,6 +6,14 @@
  * clusters whose range holds the isovalue.
  */
 
+/* The tetrahedra of a cluster that will be read. */
+inline_always void cluster_prefetch(const slab *s, const complex_job *c, uint n, complex_arrays in,
+                                    global const brick_range *ranges) {
+    if (WORK_ITEMS > 1 || !s->ranges_known || n >= c->cluster_count || range_sign(s, ranges[n]) != SIGN_MIXED) return;
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
+}
+
 /* Both counts of a tile, added up over the group's work-items; clusters NULL: nothing is stored. */
 inline_always uint2 tile_count(tile_tools k, uint number, complex_arrays in, global brick_range *ranges,
                                global cluster_state *clusters, global uint *active, global uint *head, uint *crossed,
@@ -14,6 +22,7 @@ inline_always uint2 tile_count(tile_tools k, uint number, complex_arrays in, glo
     for (uint start = 0; start < k.c->tile_clusters; start += WORK_ITEMS) {
         uint n = number * k.c->tile_clusters + start + (uint)get_local_id(0);
         cluster_report report = {0, 0, 0};
+        cluster_prefetch(k.s, k.c, n + 2, in, ranges);
         if (start + (uint)get_local_id(0) < k.c->tile_clusters && n < k.c->cluster_count) {
             brick_range range = {0, ~0u};
             if (k.s->ranges_known)
@@ -103,6 +112,13 @@ inline_always void cluster_list(const slab *s, const complex_job *c, uint n, com
     }
 }
 
+/* Those of its tetrahedra that will be read, four to a cache line. */
+inline_always void active_prefetch(global const cluster_state *clusters, uint n, complex_arrays in) {
+    ulong active = clusters[n].active;
+    for (uint m = 0; m < CLUSTER_POINTS; m += 16, active >>= 4)
+        if (active & 15) line_prefetch(in.tetrahedra + (ulong)CLUSTER_POINTS * n + m);
+}
+
 kernel void complex_list(slab s, complex_job c, global const BITS *samples, global const uint *tetrahedra,
                          global const cluster_state *clusters, global const uint *active, global uint *state,
                          global const uchar *cases, global active_tetrahedron *out) {
@@ -114,6 +130,8 @@ kernel void complex_list(slab s, complex_job c, global const BITS *samples, glob
         first = at_once * ticket_take(&state[HEAD_TICKETS + KERNEL_LIST], shared);
         for (uint start = 0; start < at_once; start += WORK_ITEMS) {
             uint n = start + (uint)get_local_id(0);
+            if (WORK_ITEMS == 1 && first + n + 2 < count) active_prefetch(clusters, active[first + n + 2], in);
+            if (WORK_ITEMS == 1 && first + n + 4 < count) line_prefetch(clusters + active[first + n + 4]);
             if (n < at_once && first + n < count)
                 cluster_list(&s, &c, active[first + n], in, clusters, state + HEAD_WORDS, cases, out);
         }

@@ -22,11 +22,34 @@ inline_always uint edge_hash(uint2 edge) {
     return x ^ x >> 13;
 }
 
-/* Enters an edge; returns its entry, or 0 with *full set where none was found. */
-inline_always uint edge_enter(const complex_job *c, uint place, global const active_tetrahedron *active,
+inline_always uint edges_of(uint a, global const active_tetrahedron *active, global const uchar *cases) {
+    return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
+}
+
+/* Where in the table the edges of a tetrahedron are looked for first. */
+inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
+                              global const uchar *cases, volatile global uint *table, global uint *entries) {
+    uint edges = edges_of(a, active, cases);
+    for (uint n = 0; n < 4; n++) {
+        uint entry = n < edges ? edge_hash(edge_points(active, 4 * a + n, cases)) & c->table_mask : 0;
+        entries[4 * a + n] = entry;
+        line_prefetch(table + entry);
+    }
+}
+
+inline_always void edges_prefetch(uint a, global const active_tetrahedron *active, volatile global uint *table,
+                                  global const uint *entries) {
+    for (uint n = 0; n < 4; n++) {
+        uint there = table[entries[4 * a + n]];
+        if (there != EDGE_NONE) line_prefetch(active + there / 4);
+    }
+}
+
+/* Enters an edge, from the entry where it is looked for first; returns its entry, or 0 with *full set where none was
+ * found. */
+inline_always uint edge_enter(const complex_job *c, uint place, uint entry, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
     uint2 edge = edge_points(active, place, cases);
-    uint entry = edge_hash(edge) & c->table_mask;
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
         uint there = table[entry];
         if (there == EDGE_NONE) there = atomic_cmpxchg(&table[entry], EDGE_NONE, place);
@@ -42,20 +65,36 @@ inline_always uint edge_enter(const complex_job *c, uint place, global const act
     return 0;
 }
 
+inline_always void edges_enter(const complex_job *c, uint a, global const active_tetrahedron *active,
+                               global const uchar *cases, volatile global uint *table, global uint *entries,
+                               uint *full) {
+    uint edges = edges_of(a, active, cases);
+    for (uint n = 0; n < edges; n++)
+        entries[4 * a + n] = edge_enter(c, 4 * a + n, entries[4 * a + n], active, cases, table, full);
+}
+
 kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
                          global uint *state, global uint *table, global uint *entries) {
     local uint shared[4];
     uint number = 0, full = 0;
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
-        for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
-            uint a = number * c.tile_actives + start + (uint)get_local_id(0);
-            if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count) {
-                uint edges = cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
-                for (uint n = 0; n < edges; n++)
-                    entries[4 * a + n] = edge_enter(&c, 4 * a + n, active, cases, table, &full);
-            }
+        uint first = number * c.tile_actives, count = 0;
+        if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
+#if WORK_ITEMS == 1
+        for (uint n = 0; n < count + FETCH_AHEAD; n++) {
+            if (n < count) edges_hash(&c, first + n, active, cases, table, entries);
+            if (n >= FETCH_AHEAD / 2 && n - FETCH_AHEAD / 2 < count)
+                edges_prefetch(first + n - FETCH_AHEAD / 2, active, table, entries);
+            if (n >= FETCH_AHEAD && n - FETCH_AHEAD < count)
+                edges_enter(&c, first + n - FETCH_AHEAD, active, cases, table, entries, &full);
         }
+#else
+        for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+            edges_hash(&c, first + n, active, cases, table, entries);
+            edges_enter(&c, first + n, active, cases, table, entries, &full);
+        }
+#endif
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
@@ -63,7 +102,7 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
 /* Which vertices tetrahedron a owns. */
 inline_always uint owned_edges(uint a, global const active_tetrahedron *active, global const uchar *cases,
                                global const uint *table, global const uint *entries) {
-    uint owned = 0, edges = cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
+    uint owned = 0, edges = edges_of(a, active, cases);
     for (uint n = 0; n < edges; n++) owned |= (uint)(table[entries[4 * a + n]] == 4 * a + n) << n;
     return owned;
 }
@@ -76,6 +115,8 @@ inline_always uint2 tile_number(tile_tools k, uint number, global const active_t
     for (uint start = 0; start < k.c->tile_actives; start += WORK_ITEMS) {
         uint a = number * k.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
         bool exists = start + (uint)get_local_id(0) < k.c->tile_actives && a < k.c->active_count;
+        if (WORK_ITEMS == 1 && a + FETCH_AHEAD < k.c->active_count)
+            for (uint n = 0; n < 4; n++) line_prefetch(table + entries[4 * (a + FETCH_AHEAD) + n]);
         if (exists) owned = owned_edges(a, active, cases, table, entries);
         uint2 before = group_prefix((uint2)((uint)popcount(owned), 0), &running, k.sums);
         if (exists && out) out[a].vertex = before.x, out[a].owned = owned;
