@@ -42,8 +42,8 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     uint count = 4 * cluster_size(c, n);
     if (count == CLUSTER_POINTS) {
         p += 16 * part;
-        return (BITS16)(s[p[0]], s[p[1]], s[p[2]], s[p[3]], s[p[4]], s[p[5]], s[p[6]], s[p[7]], s[p[8]], s[p[9]], s[p[10]],
-                        s[p[11]], s[p[12]], s[p[13]], s[p[14]], s[p[15]]);
+        return (BITS16)(s[p[0]], s[p[1]], s[p[2]], s[p[3]], s[p[4]], s[p[5]], s[p[6]], s[p[7]], s[p[8]], s[p[9]],
+                        s[p[10]], s[p[11]], s[p[12]], s[p[13]], s[p[14]], s[p[15]]);
     }
     BITS samples[16];
     for (uint m = 0; m < 16; m++) samples[m] = s[p[16 * part + m < count ? 16 * part + m : 0]];

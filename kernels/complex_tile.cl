@@ -20,6 +20,8 @@ enum { FETCH_AHEAD = 16 };
 #define line_prefetch(address) ((void)(address))
 #endif
 
+inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* of one that is not 0 */
+
 /* The group's next number. Called by all of it. */
 inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     group_barrier();
