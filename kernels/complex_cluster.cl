@@ -1,5 +1,5 @@
 /*
- * complex_cluster.cl - a cluster of 64 tetrahedra: its range of samples, and where the surface passes through it
+ * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
  *
  * The samples of four tetrahedra make a vector; 64 bits hold the patterns of 16.
  */
@@ -82,7 +82,7 @@ inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3)
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
     cluster_report report = {0, 0, 0};
     uint size = cluster_size(c, n);
-    for (uint part = 0; part < 4; part++) {
+    for (uint part = 0; part < CLUSTER_TETRAHEDRA / 16; part++) {
         ulong inside = 0, missing = 0;
         for (uint m = 0; m < 4; m++) {
             BITS16 bits = cluster_samples(c, n, 4 * part + m, in);
