@@ -24,7 +24,8 @@
 #define PATIENCE_MS   4000.0
 #define WORKING_BYTES 2 /* per sample, of device and reference together; less, in fact */
 
-/* Cold extractions, one per line on standard input, until its end. */
+/* Cold extractions, one per line on standard input, until its end; where the line is "second", of the second surface,
+ * which is no part of the report. */
 static int take_turns(const measurement *m, case_result *result) {
     char line[256];
     double *times = NULL;
@@ -38,9 +39,11 @@ static int take_turns(const measurement *m, case_result *result) {
             break;
         }
         times = grown;
-        status = measure_cold(m, &times[count]);
+        int second = strcmp(line, "second\n") == 0;
+        status = second ? measure_second(m, &times[count]) : measure_cold(m, &times[count]);
         if (status) break;
-        printf("%.6f\n", times[count++]);
+        printf("%.6f\n", times[count]);
+        count += !second;
         fflush(stdout);
         if (progress_cancelled()) status = progress_status();
     }
@@ -71,9 +74,10 @@ static int case_measure(const bench_options *o, const measurement *m, const devi
 
 /* Describes the samples of case n of the command line, fields varying slowest, sizes fastest. */
 static int case_samples(const bench_options *o, int n, samples *out) {
-    if (o->input) return samples_read(o, out);
     int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
-    return samples_describe(o->fields[f], o->dims[size], o->types[type], out);
+    int status = o->input ? samples_read(o, out) : samples_describe(o->fields[f], o->dims[size], o->types[type], out);
+    if (!status) samples_place(out, o->grid);
+    return status;
 }
 
 /* Makes the samples, where they and then both engines' meshes fit, and measures. */
@@ -82,7 +86,7 @@ static int samples_measure(tc_context *context, const bench_options *o, samples 
     measurement m;
     uint64_t working = s->bytes / tc_type_bytes(s->grid.type) * WORKING_BYTES, mesh = 0;
     measure_begin(context, s, o->iso, o->second, &m, result);
-    if (!case_fits(o, s->bytes + working, &m, result)) return 0;
+    if (!case_fits(o, s->bytes + s->coordinate_bytes + working, &m, result)) return 0;
     int status = samples_make(s);
     if (!status && o->sweep) status = measure_mesh_bytes(&m, &mesh);
     if (!status && case_fits(o, 2 * mesh + working, &m, result)) status = case_measure(o, &m, limits, result);

@@ -12,6 +12,8 @@
 
 #define AXIS_LIMIT ((int64_t)1 << 24) /* the library's */
 
+const char *const bench_grid_names[BENCH_GRIDS] = {"uniform", "rectilinear", "curvilinear", "tetrahedra", "hexahedra"};
+
 /* ---------------------------------------------------------------------------------------------------------- values */
 
 static int list_full(const char *name) {
@@ -92,6 +94,15 @@ static int take_method(const char *text, bench_options *o) {
     return fail(STATUS_USAGE, "--method: '%s' is not in this version; use tetra", text);
 }
 
+static int take_grid(const char *text, bench_options *o) {
+    for (int grid = 0; grid < BENCH_GRIDS; grid++)
+        if (strcmp(text, bench_grid_names[grid]) == 0) {
+            o->grid = (bench_grid)grid;
+            return 0;
+        }
+    return fail(STATUS_USAGE, "--grid: '%s' is none of uniform, rectilinear, curvilinear, tetrahedra, hexahedra", text);
+}
+
 static int take_repeat(const char *text, bench_options *o) {
     char *end;
     long repeat = strtol(text, &end, 10);
@@ -146,6 +157,10 @@ static const option table[] = {
      "not fit the free memory is left out, with a notice"},
     {"--method", "M", take_method,
      "tetra, five tetrahedra per cell (the default, and the only one)"},
+    {"--grid", "G", take_grid,
+     "uniform (the default), rectilinear or curvilinear: where the samples\n"
+     "lie; of the others each is a little off its place on the first.\n"
+     "tetrahedra, hexahedra: the curvilinear one as an unstructured grid"},
     {"--input", "FILE", take_input,
      "a volume file instead of fields; raw ones need --dims and --type"},
     {"--device", "SPEC", take_device,

@@ -1,5 +1,6 @@
 #include "measure.h"
 
+#include "complexes.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "mesh_check.h"
@@ -52,13 +53,14 @@ void measure_begin(tc_context *context, const samples *s, double iso, double sec
     m->second.isovalue = second_iso;
     snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s", s->name, dims[0], dims[1],
              dims[2], tc_type_name(s->grid.type));
-    *result = (case_result){.field = s->name, .type = s->grid.type, .sample_bytes = s->bytes};
+    *result = (case_result){
+        .field = s->name, .type = s->grid.type, .grid = bench_grid_names[s->placed], .sample_bytes = s->bytes};
     memcpy(result->dims, dims, sizeof result->dims);
 }
 
 /* A grid that nothing was extracted from. The wait keeps an upload under way out of the times that follow. */
 static int grid_make(const measurement *m, tc_grid **grid) {
-    int status = library_status(tc_grid_create(m->context, &m->samples->grid, grid));
+    int status = library_status(samples_open(m->samples, m->context, grid));
     if (!status && clFinish(tc_context_cl_queue(m->context))) status = fail(STATUS_FAILED, "the device's queue failed");
     return status;
 }
@@ -102,7 +104,7 @@ static int reference_compare(const measurement *m, const tc_mesh_data *device, s
     options.progress = show_label;
     options.progress_user = label;
     int status = library_status(tc_context_create(&options, &context));
-    if (!status) status = library_status(tc_grid_create(context, &m->samples->grid, &grid));
+    if (!status) status = library_status(samples_open(m->samples, context, &grid));
     if (!status) status = extract(grid, &m->first, &mesh, &data);
     if (!status && !verify_same(device, &data, text, sizeof text))
         status = fail(STATUS_CHECK, "%s: verification failed: %s", m->label, text);
@@ -154,6 +156,7 @@ static int second_compare(const measurement *m, const case_result *result) {
 }
 
 int measure_verify(const measurement *m, case_result *result) {
+    result->cell_bytes = 16 * m->samples->complex.tetrahedron_count;
     int status = surfaces_make(m, result);
     return status ? status : second_compare(m, result);
 }
@@ -168,6 +171,20 @@ int measure_cold(const measurement *m, double *ms) {
     if (!status) status = extract(grid, &m->first, &mesh, &data);
     if (!status) *ms = data.timings.total_ms;
     tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    return status;
+}
+
+int measure_second(const measurement *m, double *ms) {
+    tc_grid *grid = NULL;
+    tc_mesh *first = NULL, *second = NULL;
+    tc_mesh_data data;
+    int status = grid_make(m, &grid);
+    if (!status) status = extract(grid, &m->first, &first, &data);
+    if (!status) status = extract(grid, &m->second, &second, &data);
+    if (!status) *ms = data.timings.total_ms;
+    tc_mesh_destroy(first);
+    tc_mesh_destroy(second);
     tc_grid_destroy(grid);
     return status;
 }
@@ -219,8 +236,9 @@ static stage_times stage_times_of(const tc_timings *timings, int count, double *
 }
 
 static void limits_apply(const device_limits *limits, case_result *result) {
-    result->limit_ms =
-        ((double)result->sample_bytes / limits->read_gbps + (double)result->mesh_bytes / limits->write_gbps) * 1e-6;
+    result->limit_ms = ((double)(result->sample_bytes + result->cell_bytes) / limits->read_gbps +
+                        (double)result->mesh_bytes / limits->write_gbps) *
+                       1e-6;
     result->limit_ratio = result->first_times.total_ms.median / result->limit_ms;
 }
 

@@ -15,7 +15,7 @@ import tempfile
 BENCH = sys.argv[1]
 SPREADS = ["classify_ms", "emit_ms", "extract_ms", "extract_warm_ms", "second_classify_ms", "second_emit_ms",
            "second_warm_ms", "reference_ms"]
-CASE_KEYS = {"field", "dims", "type", "iso", "method", "vertices", "triangles", "hash", "repeats", "second_iso",
+CASE_KEYS = {"field", "dims", "type", "iso", "grid", "method", "vertices", "triangles", "hash", "repeats", "second_iso",
              "second_vertices", "second_triangles", "second_hash", "limit_ms", "limit_ratio", *SPREADS}
 checks = failures = 0
 
@@ -99,6 +99,16 @@ def cases_of(*arguments):
     done = bench(*arguments, "--repeat", "1", "--json")
     expect(done.returncode == 0, f"{arguments}: {done.returncode} {done.stderr!r}")
     return json.loads(done.stdout)
+
+
+def test_grids(made):
+    """The same surface in other places."""
+    case = ["--field", "sphere", "--dims", "17", "--type", "u8"]
+    grids = {grid: cases_of(*case, "--grid", grid)["cases"][0] for grid in ("uniform", "rectilinear", "curvilinear")}
+    for grid, result in grids.items():
+        expect(result["grid"] == grid and result["triangles"] == made["triangles"], f"--grid {grid}: {result}")
+    expect(grids["uniform"]["hash"] == made["hash"], "--grid uniform is not the default")
+    expect(len({result["hash"] for result in grids.values()}) == 3, "grids do not differ in their vertices")
 
 
 def test_second(made):
@@ -193,6 +203,7 @@ def test_statuses(folder):
 def main():
     with tempfile.TemporaryDirectory(prefix="tetracubes-bench-test-") as folder:
         made = test_json()
+        test_grids(made)
         test_second(made)
         test_sweep()
         test_table()

@@ -216,21 +216,21 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
 
 #ifdef REAL
 
-/* The samples at the ends of listed edges. */
-inline_always void batch_gather(const uint *list, uint count, global const BITS *samples, brick_work *work) {
+/* The samples at the ends of listed edges; of points it only asks for the cache lines. */
+inline_always void batch_gather(const slab *s, const uint *list, uint count, grid_arrays in, brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        global const BITS *from = samples + work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        const ulong place = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        const long step = work->step[list[n] >> 14];
+        global const BITS *from = in.samples + place;
         work->a[n] = *from;
-        work->b[n] = from[work->step[list[n] >> 14]];
+        work->b[n] = from[step];
+#if GRID == 2
+        global const float *p0 = in.coordinates + (3 * place + s->point_offset);
+        line_prefetch(p0);
+        line_prefetch(p0 + 3 * step);
+#endif
     }
 }
-
-/* What lies past the end of the list may be computed with, but is no place in a grid. */
-#if GRID
-#define POSITIONS_AT_ONCE(left) (left)
-#else
-#define POSITIONS_AT_ONCE(left) BATCH_STEP
-#endif
 
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
 inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
@@ -238,13 +238,19 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
         uint left = min(count - first, (uint)BATCH_STEP);
-        for (uint n = 0; n < BATCH_STEP; n++)
+        for (uint n = 0; n < BATCH_STEP; n++) {
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
-        for (uint n = 0; n < POSITIONS_AT_ONCE(left); n++) {
-            uint place = list[first + n];
-            position_make(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
-                          work->step[place >> 14], t[n], positions + 3 * n);
+#if GRID == 0
+            position_make(s, brick, list[first + n], t[n], positions + 3 * n);
+#endif
         }
+#if GRID /* what lies past the end of the list is no place in a grid */
+        for (uint n = 0; n < left; n++) {
+            uint place = list[first + n];
+            position_between(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
+                             work->step[place >> 14], t[n], positions + 3 * n);
+        }
+#endif
         global float *position = mesh.positions + 3 * (out + first);
         if (left == BATCH_STEP)
             for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, position);
@@ -264,7 +270,7 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
-        batch_gather(work->list + first, batch, in.samples, work);
+        batch_gather(s, work->list + first, batch, in, work);
         batch_store(s, brick, work->list + first, batch, out + first, in, mesh, work);
     }
 }

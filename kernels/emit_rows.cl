@@ -23,7 +23,11 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
             long step = place_step(s, place);
             BITS a = in.samples[from], b = in.samples[from + step];
             float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
-            position_make(s, in, brick, place, from, step, t, position);
+#if GRID
+            position_between(s, in, brick, place, from, step, t, position);
+#else
+            position_make(s, brick, place, t, position);
+#endif
             for (uint n = 0; n < 3; n++) mesh.positions[3 * out + n] = position[n];
 #if NORMALS
             normal_store(in, s, brick, place, t, mesh.normals + 3 * out);

@@ -24,10 +24,8 @@ typedef struct corner {
      (uint)((step_z) + 1) << 18)
 
 #if GRID == 0
-/* The position on the edge at t, in world space. Samples at its ends are at place `from` of the buffer and `step`
- * further on. */
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+/* The position on the edge at t, in world space. */
+inline_always void position_make(const slab *s, corner c, uint place, float t, float out[3]) {
     int step_x = (int)(place >> 14 & 3) - 1, step_y = (int)(place >> 16 & 3) - 1, step_z = (int)(place >> 18 & 3) - 1;
     float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
     float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
@@ -37,25 +35,24 @@ inline_always void position_make(const slab *s, grid_arrays in, corner c, uint p
     out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
-#else
-inline_always float coordinate_between(float p0, float p1, float t) { return t == 1 ? p1 : p0 + t * (p1 - p0); }
-#endif
-
-#if GRID == 1
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+#elif GRID == 1
+/* The same. Samples at the ends of the edge are at place `from` of the buffer and `step` further on. */
+inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
+                                    float out[3]) {
     const uint at[3] = {c.x + (place & 0x7f), s->nx + c.y + (place >> 7 & 0xf),
                         s->nx + s->ny + c.z + (place >> 11 & 7)};
     for (uint n = 0; n < 3; n++) {
         uint end = at[n] + (place >> (14 + 2 * n) & 3) - 1;
-        out[n] = coordinate_between(in.coordinates[at[n]], in.coordinates[end], t);
+        float p0 = in.coordinates[at[n]], p1 = in.coordinates[end];
+        out[n] = t == 1 ? p1 : p0 + t * (p1 - p0);
     }
 }
-#elif GRID == 2
-inline_always void position_make(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
-                                 float out[3]) {
+#else
+inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
+                                    float out[3]) {
     global const float *p0 = in.coordinates + (3 * from + s->point_offset), *p1 = p0 + 3 * step;
-    for (uint n = 0; n < 3; n++) out[n] = coordinate_between(p0[n], p1[n], t);
+    float3 a = vload3(0, p0), b = vload3(0, p1);
+    vstore3(t == 1 ? b : a + t * (b - a), 0, out);
 }
 #endif
 

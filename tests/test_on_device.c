@@ -71,10 +71,15 @@ static cl_mem samples_make(const gpu *g) {
     return samples;
 }
 
+static const float *points; /* of the host's; NULL: the grid is uniform */
+static const uint8_t *blanked;
+
 static void grid_describe(tc_grid_options *grid) {
     tc_grid_options_init(grid);
     grid->dims[0] = NX, grid->dims[1] = NY, grid->dims[2] = NZ;
     grid->type = TC_U16;
+    grid->points = points;
+    grid->blanked_samples = blanked;
 }
 
 /* The device's mesh, read back, is the reference's of the samples, read back. */
@@ -197,6 +202,31 @@ static void test_grids_refused(tc_context *context, cl_mem samples) {
     tc_context_destroy(reference);
 }
 
+/* Samples on the device, where they lie and which are blanked on the host. */
+static void test_points(const gpu *g, tc_context *context, cl_mem samples) {
+    const int64_t count = NX * NY * NZ;
+    float *made = malloc(12 * (size_t)count);
+    uint8_t *holes = calloc((size_t)count, 1);
+    tc_grid_options volume;
+    tc_grid *grid = NULL;
+    if (!made || !holes) exit(EXIT_FAILURE);
+    for (int64_t n = 0; n < count; n++) {
+        double x = (double)(n % NX), y = (double)(n / NX % NY), z = (double)(n / NX / NY);
+        double place[3] = {x + 0.01 * y * y, y - 0.02 * z * x, z + 0.3 * y};
+        for (int row = 0; row < 3; row++) made[3 * n + row] = (float)place[row];
+        holes[n] = n % 61 == 0;
+    }
+    points = made, blanked = holes;
+    grid_describe(&volume);
+    volume.cl_samples = samples;
+    volume.cl_samples_offset = OFFSET;
+    EXPECT(!tc_grid_create(context, &volume, &grid), "grid: %s", tc_message());
+    for (int normals = 0; normals < 2 && grid; normals++) test_surface(g, grid, samples, 9000, normals);
+    tc_grid_destroy(grid);
+    points = NULL, blanked = NULL;
+    free(made), free(holes);
+}
+
 int main(void) {
     gpu g;
     if (!device_exists() || !gpu_open(&g)) return SKIPPED;
@@ -223,6 +253,7 @@ int main(void) {
     test_surface(&g, grid, samples, 9000, 0);
     test_refusals(&g, grid);
     test_grids_refused(context, samples);
+    test_points(&g, context, samples);
 
     tc_grid_destroy(grid);
     cl_uint references = 0;
