@@ -12,7 +12,7 @@
 
 #define AXIS_LIMIT ((int64_t)1 << 24) /* the library's */
 
-const char *const bench_grid_names[BENCH_GRIDS] = {"uniform", "rectilinear", "curvilinear"};
+const char *const bench_grid_names[BENCH_GRIDS] = {"uniform", "rectilinear", "curvilinear", "tetrahedra", "hexahedra"};
 
 /* ---------------------------------------------------------------------------------------------------------- values */
 
@@ -100,7 +100,7 @@ static int take_grid(const char *text, bench_options *o) {
             o->grid = (bench_grid)grid;
             return 0;
         }
-    return fail(STATUS_USAGE, "--grid: '%s' is none of uniform, rectilinear, curvilinear", text);
+    return fail(STATUS_USAGE, "--grid: '%s' is none of uniform, rectilinear, curvilinear, tetrahedra, hexahedra", text);
 }
 
 static int take_repeat(const char *text, bench_options *o) {
@@ -160,7 +160,8 @@ static const option table[] = {
      "cubes with the same topology"},
     {"--grid", "G", take_grid,
      "uniform (the default), rectilinear or curvilinear: where the samples\n"
-     "lie; of the others each is a little off its place on the first"},
+     "lie; of the others each is a little off its place on the first.\n"
+     "tetrahedra, hexahedra: the curvilinear one as an unstructured grid"},
     {"--input", "FILE", take_input,
      "a volume file instead of fields; raw ones need --dims and --type"},
     {"--device", "SPEC", take_device,

@@ -9,7 +9,14 @@
 #define LIST_MAX 16
 
 /* How the samples lie in space. */
-typedef enum bench_grid { BENCH_UNIFORM, BENCH_RECTILINEAR, BENCH_CURVILINEAR, BENCH_GRIDS } bench_grid;
+typedef enum bench_grid {
+    BENCH_UNIFORM,
+    BENCH_RECTILINEAR,
+    BENCH_CURVILINEAR,
+    BENCH_TETRAHEDRA, /* unstructured, from here on */
+    BENCH_HEXAHEDRA,
+    BENCH_GRIDS
+} bench_grid;
 
 extern const char *const bench_grid_names[BENCH_GRIDS];
 

@@ -35,6 +35,7 @@ typedef struct case_result {
     const char *grid;
     tc_method method;
     uint64_t sample_bytes, mesh_bytes; /* of the first surface */
+    uint64_t cell_bytes;               /* of tetrahedra */
     surface first, second;
     int repeat; /* timed extractions of each kind */
     spread extract_ms;
@@ -65,6 +66,9 @@ int measure_verify(const measurement *m, case_result *result);
 
 /* Milliseconds of one cold extraction. */
 int measure_cold(const measurement *m, double *ms);
+
+/* Milliseconds of one of the second surface into a new mesh, after the first on the same grid. */
+int measure_second(const measurement *m, double *ms);
 
 /* `repeat` cold extractions to result->extract_ms; fewer, but three at least, once patience_ms have passed.
  * result->repeat says how many. */

@@ -1,5 +1,6 @@
 #include "samples.h"
 
+#include "complexes.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "progress.h"
@@ -32,7 +33,7 @@ void samples_place(samples *s, bench_grid grid) {
     const uint64_t x = (uint64_t)s->grid.dims[0], y = (uint64_t)s->grid.dims[1], z = (uint64_t)s->grid.dims[2];
     if (s->grid.axes[0] || s->grid.points) return;
     s->placed = grid;
-    s->coordinate_bytes = grid == BENCH_CURVILINEAR ? 12 * x * y * z : grid == BENCH_RECTILINEAR ? 4 * (x + y + z) : 0;
+    s->coordinate_bytes = grid >= BENCH_CURVILINEAR ? 12 * x * y * z : grid == BENCH_RECTILINEAR ? 4 * (x + y + z) : 0;
 }
 
 /* Of sample n along an axis of so many, and how far off it is put. */
@@ -79,14 +80,12 @@ static int coordinates_make(samples *s) {
         return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the points; give smaller --dims",
                     s->coordinate_bytes >> 20);
     s->coordinates = memory;
-    if (s->placed == BENCH_CURVILINEAR) return points_make(s);
+    if (s->placed >= BENCH_CURVILINEAR) return points_make(s);
     axes_make(s);
     return 0;
 }
 
-int samples_make(samples *s) {
-    int status = coordinates_make(s);
-    if (status || !s->made_from) return status;
+static int values_make(samples *s) {
     void *memory = mmap(NULL, s->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
         return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims", s->bytes >> 20);
@@ -101,6 +100,12 @@ int samples_make(samples *s) {
         if (progress_update(NULL, "making samples", (double)end / (double)dims[2])) return progress_status();
     }
     return 0;
+}
+
+int samples_make(samples *s) {
+    int status = coordinates_make(s);
+    if (!status && s->made_from) status = values_make(s);
+    return status || s->placed < BENCH_TETRAHEDRA ? status : complex_make(s);
 }
 
 int samples_read(const bench_options *o, samples *out) {
@@ -139,6 +144,7 @@ int samples_dump(const samples *s, const char *path) {
 void samples_release(samples *s) {
     if (s->made) munmap(s->made, s->bytes);
     if (s->coordinates) munmap(s->coordinates, s->coordinate_bytes);
+    tc_complex_release(&s->complex);
     volume_release(&s->read);
     *s = (samples){0};
 }

@@ -1,8 +1,7 @@
 /*
- * complex_cluster.cl - a cluster of 64 tetrahedra: its range of samples, and where the surface passes through it
+ * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
  *
- * The four samples of every tetrahedron are gathered next to each other, so that what follows runs over whole vectors:
- * 16 samples make the patterns of four tetrahedra, 64 bits those of 16.
+ * The samples of four tetrahedra make a vector; 64 bits hold the patterns of 16.
  */
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 
@@ -35,28 +34,32 @@ inline_always bool cluster_valid(const complex_job *c, uint n, global const uint
     return largest < c->point_count;
 }
 
-/* A cluster that is not full repeats its first sample. */
-inline_always void cluster_gather(const complex_job *c, uint n, complex_arrays in, BITS out[CLUSTER_POINTS]) {
-    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+/* Samples [16 part, 16 part + 16) of a cluster's; one that is not full repeats its first. One by one: vector gathers of
+ * CPUs are no faster. */
+inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, complex_arrays in) {
+    global const uint *p = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    global const BITS *s = in.samples;
     uint count = 4 * cluster_size(c, n);
-    if (count == CLUSTER_POINTS)
-        for (uint m = 0; m < CLUSTER_POINTS; m++) out[m] = in.samples[points[m]];
-    else
-        for (uint m = 0; m < CLUSTER_POINTS; m++) out[m] = in.samples[points[m < count ? m : 0]];
+    if (count == CLUSTER_POINTS) {
+        p += 16 * part;
+        return (BITS16)(s[p[0]], s[p[1]], s[p[2]], s[p[3]], s[p[4]], s[p[5]], s[p[6]], s[p[7]], s[p[8]], s[p[9]],
+                        s[p[10]], s[p[11]], s[p[12]], s[p[13]], s[p[14]], s[p[15]]);
+    }
+    BITS samples[16];
+    for (uint m = 0; m < 16; m++) samples[m] = s[p[16 * part + m < count ? 16 * part + m : 0]];
+    return vload16(0, samples);
 }
 
 /* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
 inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
-    BITS samples[CLUSTER_POINTS];
     brick_range range = {0, 0};
     if (!cluster_valid(c, n, in.tetrahedra + (ulong)CLUSTER_POINTS * n)) {
         *invalid = 1;
         return range;
     }
-    cluster_gather(c, n, in, samples);
     BITS16 low = (BITS) ~(BITS)0, high = 0;
     for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
-        BITS16 keys = keys16(vload16(m, samples), s);
+        BITS16 keys = keys16(cluster_samples(c, n, m, in), s);
         low = min(low, keys), high = max(high, keys);
     }
     range.low = keys_least(low);
@@ -77,14 +80,12 @@ inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3)
 
 /* Where the surface passes through, and what it makes there. Of points that are valid. */
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
-    BITS samples[CLUSTER_POINTS];
     cluster_report report = {0, 0, 0};
     uint size = cluster_size(c, n);
-    cluster_gather(c, n, in, samples);
-    for (uint part = 0; part < 4; part++) {
+    for (uint part = 0; part < CLUSTER_TETRAHEDRA / 16; part++) {
         ulong inside = 0, missing = 0;
         for (uint m = 0; m < 4; m++) {
-            BITS16 bits = vload16(4 * part + m, samples);
+            BITS16 bits = cluster_samples(c, n, 4 * part + m, in);
             inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
 #if FLOATING
             missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);

@@ -20,6 +20,21 @@ inline_always void edge_vertex(const slab *s, uint2 edge, global const BITS *sam
     out[2] = t == 1 ? p1.z : p0.z + t * (p1.z - p0.z);
 }
 
+/* What tetrahedron a will need of the table, and its neighbour a - FETCH_AHEAD / 2 of what that leads to. */
+inline_always void tetrahedron_prefetch(const complex_job *c, uint a, global const BITS *samples,
+                                        global const float *points, global const active_tetrahedron *active,
+                                        global const uint *table, global const uint *entries) {
+    for (uint n = 0; n < 4 && a < c->active_count; n++) line_prefetch(table + entries[4 * a + n]);
+    a -= FETCH_AHEAD / 2;
+    if (a >= c->active_count) return;
+    for (uint n = 0; n < 4; n++) {
+        line_prefetch(active + table[entries[4 * a + n]] / 4);
+        if (!active[a].owned) continue;
+        line_prefetch(samples + active[a].points[n]);
+        line_prefetch(points + 3ul * active[a].points[n]);
+    }
+}
+
 inline_always void tetrahedron_emit(const slab *s, const complex_job *c, uint a, global const BITS *samples,
                                     global const float *points, global const active_tetrahedron *active,
                                     global const uchar *cases, global const uint *tiles, global const uint *table,
@@ -47,6 +62,8 @@ kernel void complex_emit(slab s, complex_job c, global const BITS *samples, glob
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_EMIT], shared);
         for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
             uint a = number * c.tile_actives + start + (uint)get_local_id(0);
+            if (WORK_ITEMS == 1 && number < c.active_tiles)
+                tetrahedron_prefetch(&c, a + FETCH_AHEAD, samples, points, active, table, entries);
             if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
                 tetrahedron_emit(&s, &c, a, samples, points, active, cases, tiles, table, entries, positions,
                                  triangles);

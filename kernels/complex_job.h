@@ -10,7 +10,7 @@
 #endif
 
 /* The unit that a range of samples is kept for: so many tetrahedra after each other. */
-enum { CLUSTER_TETRAHEDRA = 64 };
+enum { CLUSTER_TETRAHEDRA = 32 };
 
 /* What kernel 1 finds out about a cluster that the surface passes through. */
 typedef struct cluster_state {

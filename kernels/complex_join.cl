@@ -22,11 +22,62 @@ inline_always uint edge_hash(uint2 edge) {
     return x ^ x >> 13;
 }
 
-/* Enters an edge; returns its entry, or 0 with *full set where none was found. */
-inline_always uint edge_enter(const complex_job *c, uint place, global const active_tetrahedron *active,
+inline_always uint edges_of(uint a, global const active_tetrahedron *active, global const uchar *cases) {
+    return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
+}
+
+#if WORK_ITEMS == 1
+
+/* Edges that a work-item has met lately: neighbours in the list share most. */
+enum { RECENT_EDGES = 256 };
+
+typedef struct recent_edges {
+    uint2 points[RECENT_EDGES];
+    uint places[RECENT_EDGES];
+} recent_edges;
+
+/* An edge with this bit has been met before, at the place in the other bits. */
+#define EDGE_MET 0x80000000u
+
+/* Where in the table the edges of a tetrahedron are looked for first, which is asked for. */
+inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
+                              global const uchar *cases, volatile global uint *table, global uint *entries,
+                              recent_edges *recent) {
+    uint edges = edges_of(a, active, cases);
+    for (uint n = 0; n < 4; n++) {
+        uint place = 4 * a + n, entry = 0;
+        if (n < edges) {
+            uint2 edge = edge_points(active, place, cases);
+            uint hash = edge_hash(edge), r = hash >> 24;
+            if (recent->points[r].x == edge.x && recent->points[r].y == edge.y) {
+                entry = EDGE_MET | recent->places[r];
+            } else {
+                entry = hash & c->table_mask & ~EDGE_MET;
+                recent->points[r] = edge;
+                recent->places[r] = place;
+                line_prefetch(table + entry);
+            }
+        }
+        entries[place] = entry;
+    }
+}
+
+inline_always void edges_prefetch(uint a, global const active_tetrahedron *active, volatile global uint *table,
+                                  global const uint *entries) {
+    for (uint n = 0; n < 4; n++) {
+        uint entry = entries[4 * a + n];
+        uint there = entry & EDGE_MET ? EDGE_NONE : table[entry];
+        if (there != EDGE_NONE) line_prefetch(active + there / 4);
+    }
+}
+
+#endif
+
+/* Enters an edge, from the entry where it is looked for first; returns its entry, or 0 with *full set where none was
+ * found. */
+inline_always uint edge_enter(const complex_job *c, uint place, uint entry, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
     uint2 edge = edge_points(active, place, cases);
-    uint entry = edge_hash(edge) & c->table_mask;
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
         uint there = table[entry];
         if (there == EDGE_NONE) there = atomic_cmpxchg(&table[entry], EDGE_NONE, place);
@@ -42,20 +93,45 @@ inline_always uint edge_enter(const complex_job *c, uint place, global const act
     return 0;
 }
 
+#if WORK_ITEMS == 1
+inline_always void edges_enter(const complex_job *c, uint a, global const active_tetrahedron *active,
+                               global const uchar *cases, volatile global uint *table, global uint *entries,
+                               uint *full) {
+    uint edges = edges_of(a, active, cases);
+    for (uint place = 4 * a; place < 4 * a + edges; place++) {
+        uint entry = entries[place];
+        entries[place] =
+            entry & EDGE_MET ? entries[entry & ~EDGE_MET] : edge_enter(c, place, entry, active, cases, table, full);
+    }
+}
+#endif
+
 kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
                          global uint *state, global uint *table, global uint *entries) {
     local uint shared[4];
     uint number = 0, full = 0;
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
-        for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
-            uint a = number * c.tile_actives + start + (uint)get_local_id(0);
-            if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count) {
-                uint edges = cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
-                for (uint n = 0; n < edges; n++)
-                    entries[4 * a + n] = edge_enter(&c, 4 * a + n, active, cases, table, &full);
+        uint first = number * c.tile_actives, count = 0;
+        if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
+#if WORK_ITEMS == 1
+        recent_edges recent;
+        for (uint n = 0; n < RECENT_EDGES; n++) recent.points[n] = 0;
+        for (uint n = 0; n < count + FETCH_AHEAD; n++) {
+            if (n < count) edges_hash(&c, first + n, active, cases, table, entries, &recent);
+            if (n >= FETCH_AHEAD / 2 && n - FETCH_AHEAD / 2 < count)
+                edges_prefetch(first + n - FETCH_AHEAD / 2, active, table, entries);
+            if (n >= FETCH_AHEAD) edges_enter(&c, first + n - FETCH_AHEAD, active, cases, table, entries, &full);
+        }
+#else
+        for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+            uint a = first + n, edges = edges_of(a, active, cases);
+            for (uint place = 4 * a; place < 4 * a + edges; place++) {
+                uint entry = edge_hash(edge_points(active, place, cases)) & c.table_mask;
+                entries[place] = edge_enter(&c, place, entry, active, cases, table, &full);
             }
         }
+#endif
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
@@ -63,7 +139,7 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
 /* Which vertices tetrahedron a owns. */
 inline_always uint owned_edges(uint a, global const active_tetrahedron *active, global const uchar *cases,
                                global const uint *table, global const uint *entries) {
-    uint owned = 0, edges = cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
+    uint owned = 0, edges = edges_of(a, active, cases);
     for (uint n = 0; n < edges; n++) owned |= (uint)(table[entries[4 * a + n]] == 4 * a + n) << n;
     return owned;
 }
@@ -76,6 +152,8 @@ inline_always uint2 tile_number(tile_tools k, uint number, global const active_t
     for (uint start = 0; start < k.c->tile_actives; start += WORK_ITEMS) {
         uint a = number * k.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
         bool exists = start + (uint)get_local_id(0) < k.c->tile_actives && a < k.c->active_count;
+        if (WORK_ITEMS == 1 && a + FETCH_AHEAD < k.c->active_count)
+            for (uint n = 0; n < 4; n++) line_prefetch(table + entries[4 * (a + FETCH_AHEAD) + n]);
         if (exists) owned = owned_edges(a, active, cases, table, entries);
         uint2 before = group_prefix((uint2)((uint)popcount(owned), 0), &running, k.sums);
         if (exists && out) out[a].vertex = before.x, out[a].owned = owned;

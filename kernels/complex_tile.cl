@@ -12,6 +12,16 @@ typedef struct tile_tools {
     local uint2 *sums;  /* one per work-item and one more */
 } tile_tools;
 
+/* Where a work-item has a tile to itself it asks for what its items will need some items before: what is fetched first
+ * at this distance, what that leads to at half of it. */
+enum { FETCH_AHEAD = 16 };
+
+#if WORK_ITEMS > 1
+#define line_prefetch(address) ((void)(address))
+#endif
+
+inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* of one that is not 0 */
+
 /* The group's next number. Called by all of it. */
 inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     group_barrier();

@@ -179,9 +179,9 @@ static void run_describe(complex_run *r, tc_grid *grid, double isovalue) {
                            .point_count = c->point_count,
                            .tetrahedron_count = c->tetrahedron_count,
                            .cluster_count = cluster_count(c)};
-    const uint32_t tile = o->tile_bricks ? o->tile_bricks : 64;
+    const uint32_t tile = o->tile_bricks ? o->tile_bricks : o->work_items == 1 ? 512 : 64;
     r->job.tile_clusters = o->work_items > tile ? o->work_items : tile;
-    r->job.tile_actives = r->job.tile_clusters;
+    r->job.tile_actives = o->work_items == 1 && !o->tile_bricks ? 1024 : r->job.tile_clusters;
     r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
 }
 
