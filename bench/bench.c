@@ -71,9 +71,10 @@ static int case_measure(const bench_options *o, const measurement *m, const devi
 
 /* Describes the samples of case n of the command line, fields varying slowest, sizes fastest. */
 static int case_samples(const bench_options *o, int n, samples *out) {
-    if (o->input) return samples_read(o, out);
     int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
-    return samples_describe(o->fields[f], o->dims[size], o->types[type], out);
+    int status = o->input ? samples_read(o, out) : samples_describe(o->fields[f], o->dims[size], o->types[type], out);
+    if (!status) samples_place(out, o->grid);
+    return status;
 }
 
 /* Makes the samples, where they and then both engines' meshes fit, and measures. */
@@ -81,8 +82,8 @@ static int samples_measure(tc_context *context, const bench_options *o, samples 
                            case_result *result) {
     measurement m;
     uint64_t working = s->bytes / tc_type_bytes(s->grid.type) * WORKING_BYTES, mesh = 0;
-    measure_begin(context, s, o->iso, o->second, &m, result);
-    if (!case_fits(o, s->bytes + working, &m, result)) return 0;
+    measure_begin(context, s, o->method, o->iso, o->second, &m, result);
+    if (!case_fits(o, s->bytes + s->coordinate_bytes + working, &m, result)) return 0;
     int status = samples_make(s);
     if (!status && o->sweep) status = measure_mesh_bytes(&m, &mesh);
     if (!status && case_fits(o, 2 * mesh + working, &m, result)) status = case_measure(o, &m, limits, result);

@@ -12,6 +12,8 @@
 
 #define AXIS_LIMIT ((int64_t)1 << 24) /* the library's */
 
+const char *const bench_grid_names[BENCH_GRIDS] = {"uniform", "rectilinear", "curvilinear"};
+
 /* ---------------------------------------------------------------------------------------------------------- values */
 
 static int list_full(const char *name) {
@@ -87,9 +89,18 @@ static int take_second(const char *text, bench_options *o) {
 }
 
 static int take_method(const char *text, bench_options *o) {
-    (void)o;
-    if (strcmp(text, "tetra") == 0) return 0;
-    return fail(STATUS_USAGE, "--method: '%s' is not in this version; use tetra", text);
+    o->method = strcmp(text, "hybrid") == 0 ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
+    if (o->method || strcmp(text, "tetra") == 0) return 0;
+    return fail(STATUS_USAGE, "--method: '%s' is neither tetra nor hybrid", text);
+}
+
+static int take_grid(const char *text, bench_options *o) {
+    for (int grid = 0; grid < BENCH_GRIDS; grid++)
+        if (strcmp(text, bench_grid_names[grid]) == 0) {
+            o->grid = (bench_grid)grid;
+            return 0;
+        }
+    return fail(STATUS_USAGE, "--grid: '%s' is none of uniform, rectilinear, curvilinear", text);
 }
 
 static int take_repeat(const char *text, bench_options *o) {
@@ -145,7 +156,11 @@ static const option table[] = {
      "others at 512 but sphere (u8, f32), gyroid and empty (u8). What does\n"
      "not fit the free memory is left out, with a notice"},
     {"--method", "M", take_method,
-     "tetra, five tetrahedra per cell (the default, and the only one)"},
+     "tetra, five tetrahedra per cell (the default), or hybrid, marching\n"
+     "cubes with the same topology"},
+    {"--grid", "G", take_grid,
+     "uniform (the default), rectilinear or curvilinear: where the samples\n"
+     "lie; of the others each is a little off its place on the first"},
     {"--input", "FILE", take_input,
      "a volume file instead of fields; raw ones need --dims and --type"},
     {"--device", "SPEC", take_device,

@@ -42,17 +42,24 @@ spread spread_of(double *values, int count) {
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
-void measure_begin(tc_context *context, const samples *s, double iso, double second_iso, measurement *m,
-                   case_result *result) {
+const char *method_name(tc_method method) { return method == TC_METHOD_HYBRID ? "hybrid" : "tetra"; }
+
+void measure_begin(tc_context *context, const samples *s, tc_method method, double iso, double second_iso,
+                   measurement *m, case_result *result) {
     const int64_t *dims = s->grid.dims;
     *m = (measurement){.context = context, .samples = s};
     tc_extract_options_init(&m->first);
     m->first.isovalue = iso;
+    m->first.method = method;
     m->second = m->first;
     m->second.isovalue = second_iso;
-    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s", s->name, dims[0], dims[1],
-             dims[2], tc_type_name(s->grid.type));
-    *result = (case_result){.field = s->name, .type = s->grid.type, .sample_bytes = s->bytes};
+    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s%s", s->name, dims[0], dims[1],
+             dims[2], tc_type_name(s->grid.type), method == TC_METHOD_HYBRID ? " hybrid" : "");
+    *result = (case_result){.field = s->name,
+                            .type = s->grid.type,
+                            .grid = bench_grid_names[s->placed],
+                            .method = method,
+                            .sample_bytes = s->bytes};
     memcpy(result->dims, dims, sizeof result->dims);
 }
 

@@ -32,6 +32,8 @@ typedef struct case_result {
     const char *field;
     int64_t dims[3];
     tc_type type;
+    const char *grid;
+    tc_method method;
     uint64_t sample_bytes, mesh_bytes; /* of the first surface */
     surface first, second;
     int repeat; /* timed extractions of each kind */
@@ -51,8 +53,8 @@ typedef struct measurement {
 } measurement;
 
 /* Names the case in *m and *result. */
-void measure_begin(tc_context *context, const samples *s, double iso, double second_iso, measurement *m,
-                   case_result *result);
+void measure_begin(tc_context *context, const samples *s, tc_method method, double iso, double second_iso,
+                   measurement *m, case_result *result);
 
 /* What the larger one of the two meshes takes. */
 int measure_mesh_bytes(const measurement *m, uint64_t *bytes);
@@ -70,6 +72,8 @@ int measure_cold_times(const measurement *m, int repeat, double patience_ms, cas
 
 /* result->repeat warm extractions of each kind to the other times of the device, and the ratio to the limits. */
 int measure_warm_times(const measurement *m, const device_limits *limits, case_result *result);
+
+const char *method_name(tc_method method);
 
 /* Sorts the values. */
 spread spread_of(double *values, int count);

@@ -6,9 +6,12 @@ others wrap a numpy memmap of it. Tetracubes verifies its mesh against its refer
 take turns, in the reverse order on every other repeat, so that all see the same state of the machine:
 
   ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
+  hybrid  the same by --method hybrid, up to 512^3 samples: about as many triangles as the others make
   vtk     vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
           are all cores unless --threads says otherwise
   vtk_mc  vtkMarchingCubes.Update(), likewise, up to 512^3 samples; it has one thread
+  vtk_contour  vtkContourFilter.Update() in place of all others on a curvilinear grid, FIELD:N:TYPE:curvilinear, a
+          vtkStructuredGrid of the points that tetracubes-bench --grid curvilinear makes
   skimage skimage.measure.marching_cubes, up to 256^3 samples; it has one thread, and always makes normals and values
 
 A peer whose first turn, which does not count, takes over a second has three turns, over five seconds one. Of a cube of 1024 or more, ours at
@@ -36,11 +39,12 @@ from typing import NamedTuple
 HERE = os.path.dirname(os.path.abspath(__file__))
 DEFAULT_CASES = [f"{field}:{size}:{kind}" for field, kind, sizes in
                  (("sphere", "u8", (64, 128, 256, 512, 1024)), ("gyroid", "u8", (64, 128, 256, 512)),
-                  ("sphere", "f32", (64, 128, 256, 512))) for size in sizes]
+                  ("sphere", "f32", (64, 128, 256, 512))) for size in sizes] + ["sphere:256:f32:curvilinear"]
 REAL_VOLUME, REAL_ISO = "uniform/embryo.nrrd", 80.0  # of the folder TETRACUBES_DATA
 REST = 0.01  # seconds before every turn: the others' threads have gone to sleep by then
 SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
 HALVED_FROM = 1024
+HYBRID_MOST = 512 ** 3  # samples
 MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
 
 try:
@@ -48,9 +52,9 @@ try:
     import skimage
     from skimage.measure import marching_cubes
     from vtkmodules.util.numpy_support import get_vtk_array_type, numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkSMPTools, vtkVersion
-    from vtkmodules.vtkCommonDataModel import vtkImageData
-    from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D, vtkMarchingCubes
+    from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools, vtkVersion
+    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkStructuredGrid
+    from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkFlyingEdges3D, vtkMarchingCubes
 except ImportError as missing:
     if not {"-h", "--help"} & set(sys.argv):
         sys.exit(f"peers.py: {missing}; run bench/peers-setup, then start this script by /usr/bin/python3")
@@ -69,8 +73,8 @@ def spread(times):
 class Samples:
     """The samples of one case in a raw file, and how the two sides open it."""
 
-    def __init__(self, bench, path, options):
-        self.path = path
+    def __init__(self, bench, path, options, grid="uniform"):
+        self.path, self.grid = path, grid
         command = [bench, *options, "--dump", self.path]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
         if done.returncode:
@@ -79,11 +83,20 @@ class Samples:
         self.dims, self.type = made["dims"], made["type"]
 
     def options(self):
-        return ["--input", self.path, "--dims", ",".join(map(str, self.dims)), "--type", self.type]
+        return ["--input", self.path, "--dims", ",".join(map(str, self.dims)), "--type", self.type, "--grid", self.grid]
 
     def array(self):
         """Copy-on-write: nobody writes, but VTK asks for writable memory."""
         return numpy.memmap(self.path, dtype=NUMPY_TYPES[self.type], mode="c", shape=tuple(reversed(self.dims)))
+
+    def points(self):
+        """Those of a curvilinear grid, as bench/samples.c makes them."""
+        x, y, z = (2.0 * numpy.arange(n) / (n - 1) - 1.0 for n in self.dims)
+        points = numpy.empty((*reversed(self.dims), 3), dtype="f4")
+        points[..., 0] = x[None, None, :] + 0.05 * numpy.sin(3.0 * y)[None, :, None]
+        points[..., 1] = y[None, :, None] + 0.05 * numpy.sin(3.0 * z)[:, None, None]
+        points[..., 2] = z[:, None, None] + 0.05 * numpy.sin(3.0 * x)[None, None, :]
+        return points.reshape(-1, 3)
 
     def count(self):
         return self.dims[0] * self.dims[1] * self.dims[2]
@@ -92,8 +105,9 @@ class Samples:
 class Ours:
     """tetracubes-bench, kept running between turns."""
 
-    def __init__(self, bench, samples, iso, device, warm_repeats):
-        command = [bench, *samples.options(), "--iso", repr(iso), "--turns", "--repeat", str(warm_repeats)]
+    def __init__(self, bench, samples, iso, device, warm_repeats, method="tetra"):
+        command = [bench, *samples.options(), "--iso", repr(iso), "--turns", "--repeat", str(warm_repeats),
+                   "--method", method]
         if device:
             command += ["--device", device]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
@@ -128,14 +142,19 @@ class Ours:
 
 
 class VtkFilter:
-    """An isosurface filter of VTK on an image that wraps the samples."""
+    """An isosurface filter of VTK on a data set that wraps the samples."""
 
     def __init__(self, kind, samples, iso):
         values = samples.array().reshape(-1)
         scalars = numpy_to_vtk(values, deep=0, array_type=get_vtk_array_type(values.dtype))
         self.keep = values
-        self.image = vtkImageData()
+        self.image = vtkImageData() if samples.grid == "uniform" else vtkStructuredGrid()
         self.image.SetDimensions(samples.dims)
+        if samples.grid != "uniform":
+            self.coordinates = samples.points()
+            points = vtkPoints()
+            points.SetData(numpy_to_vtk(self.coordinates, deep=0))
+            self.image.SetPoints(points)
         self.image.GetPointData().SetScalars(scalars)
         self.kind, self.iso = kind, iso
         self.triangles = 0
@@ -173,6 +192,8 @@ class ScikitImage:
 
 def peers_of(samples, iso):
     """Those that can do it in seconds, by the key of their results."""
+    if samples.grid == "curvilinear":
+        return {"vtk_contour": VtkFilter(vtkContourFilter, samples, iso)}
     peers = {"vtk": VtkFilter(vtkFlyingEdges3D, samples, iso)}
     if samples.count() <= 512 ** 3:
         peers["vtk_mc"] = VtkFilter(vtkMarchingCubes, samples, iso)
@@ -207,16 +228,19 @@ def take_turns(name, sides, repeat):
     return times
 
 
-def result_of(case, samples, report, times, peers):
-    """What the JSON file tells of a case; report is that of tetracubes-bench."""
+def result_of(case, samples, reports, times, peers):
+    """What the JSON file tells of a case; reports are those of tetracubes-bench."""
+    report = reports["ours"]
     measured = report["cases"][0]
+    first = next(iter(peers))
     result = {
         "case": case.name,
         "dims": samples.dims,
         "type": samples.type,
+        "grid": samples.grid,
         "iso": case.iso,
         "extract_ms": spread(times["ours"]),
-        "ratio": round(statistics.median(times["vtk"]) / statistics.median(times["ours"]), 3),
+        "ratio": round(statistics.median(times[first]) / statistics.median(times["ours"]), 3),
         "triangles": measured["triangles"],
         "extract_warm_ms": measured["extract_warm_ms"],
         "limit_ms": measured["limit_ms"],
@@ -229,29 +253,36 @@ def result_of(case, samples, report, times, peers):
         result.update({f"{key}_ms": spread(times[key]), f"{key}_triangles": peer.triangles})
     if "half" in times:
         result["half_ms"] = spread(times["half"])
+    if "hybrid" in times:
+        result["hybrid_ms"] = spread(times["hybrid"])
+        result["hybrid_triangles"] = reports["hybrid"]["cases"][0]["triangles"]
+        result["hybrid_ratio"] = round(statistics.median(times["vtk"]) / statistics.median(times["hybrid"]), 3)
     return result
 
 
 def run_case(arguments, case, folder):
     """Its result."""
     progress(f"{case.name}: making samples")
-    samples = Samples(arguments.bench, os.path.join(folder, "samples.raw"), case.options)
+    samples = Samples(arguments.bench, os.path.join(folder, "samples.raw"), case.options, case.grid)
     opened = {"ours": samples}
     if case.half_options:
-        opened["half"] = Samples(arguments.bench, os.path.join(folder, "half.raw"), case.half_options)
+        opened["half"] = Samples(arguments.bench, os.path.join(folder, "half.raw"), case.half_options, case.grid)
     ours = {}
     try:
         for key, its in opened.items():
             progress(f"{case.name}: verifying")
             ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
+        if samples.count() <= HYBRID_MOST:
+            progress(f"{case.name}: verifying the hybrid")
+            ours["hybrid"] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, "hybrid")
         peers = peers_of(samples, case.iso)
         times = take_turns(case.name, {**ours, **peers}, arguments.repeat)
-        report = ours["ours"].report()
+        reports = {key: side.report() for key, side in ours.items()}
     finally:
         for side in ours.values():
             side.stop()
         progress("")
-    return result_of(case, samples, report, times, peers)
+    return result_of(case, samples, reports, times, peers)
 
 
 def shown(times):
@@ -266,21 +297,25 @@ def shown_ratio(result, key):
     return f"{median:.1f} ({median / result['extract_ms']['median']:.2f})"
 
 
-COLUMNS = "{:<24} {:>24} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
+COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
 
 
 def print_head():
-    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "triangles",
+    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "vtkContourFilter", "triangles",
                          "of VTK", "limit ratio"))
 
 
 def print_row(result):
     print(COLUMNS.format(result["case"], shown(result["extract_ms"]), shown_ratio(result, "vtk"),
-                         shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"), result["triangles"],
-                         result["vtk_triangles"], f"{result['limit_ratio']:.2f}"), flush=True)
+                         shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"),
+                         shown_ratio(result, "vtk_contour"), result["triangles"],
+                         result.get("vtk_triangles", result.get("vtk_contour_triangles")), f"{result['limit_ratio']:.2f}"), flush=True)
     if "half_ms" in result:
         growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
         print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
+    if "hybrid_ms" in result:
+        print(f"    hybrid: {shown(result['hybrid_ms'])}, {result['hybrid_triangles']} triangles; vtkFlyingEdges3D takes "
+              f"{result['hybrid_ratio']:.2f} times as long", flush=True)
 
 
 def find_bench():
@@ -298,21 +333,24 @@ class Case(NamedTuple):
     options: list
     iso: float
     half_options: list = []
-    sample_bytes: int = 0  # 0: not known, a file's
+    sample_bytes: int = 0  # 0: not known, a file's; of curvilinear grids with the points
+    grid: str = "uniform"
 
 
 def parse_case(text):
-    """sphere:512:u8"""
+    """sphere:512:u8, or sphere:512:u8:curvilinear"""
     parts = text.split(":")
+    grid = parts.pop() if len(parts) == 4 and parts[3] in ("uniform", "curvilinear") else "uniform"
     if len(parts) != 3 or parts[2] not in NUMPY_TYPES or not re.fullmatch(r"\d+(,\d+,\d+)?", parts[1]):
-        raise Failure(f"--cases: '{text}' is not FIELD:N:TYPE, as in sphere:512:u8")
+        raise Failure(f"--cases: '{text}' is not FIELD:N:TYPE or FIELD:N:TYPE:curvilinear, as in sphere:512:u8")
     field, dims, kind = parts
     options = ["--field", field, "--type", kind, "--dims"]
     half = [*options, str(int(dims) // 2)] if "," not in dims and int(dims) >= HALVED_FROM else []
     sizes = [int(size) for size in dims.split(",")]
     count = sizes[0] ** 3 if len(sizes) == 1 else math.prod(sizes)
-    return Case(f"{field} {dims if ',' in dims else f'{dims}^3'} {kind}", [*options, dims], 127.5, half,
-                count * numpy.dtype(NUMPY_TYPES[kind]).itemsize)
+    name = f"{field} {dims if ',' in dims else f'{dims}^3'} {kind}{'' if grid == 'uniform' else ' ' + grid}"
+    item_bytes = numpy.dtype(NUMPY_TYPES[kind]).itemsize + (0 if grid == "uniform" else 12)
+    return Case(name, [*options, dims], 127.5, half, count * item_bytes, grid)
 
 
 def default_cases():

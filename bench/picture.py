@@ -8,6 +8,13 @@ r"""Renders PLY meshes side by side into a PNG: the README's picture.
     xvfb-run -a /usr/bin/python3 bench/picture.py tangle.ply gyroid.ply marschner-lobb.ply \
         -o bench/pictures/surfaces.png
 
+and the paper's blunt fin, with the fin and the plate that it stands on:
+
+    fin=$TETRACUBES_DATA/curvilinear/bluntfin
+    tetracubes extract ${fin}xyz.bin ${fin}q.bin --field density --iso 2 --normals -o fin.ply
+    xvfb-run -a /usr/bin/python3 bench/picture.py fin.ply --walls ${fin}xyz.bin --view=-1.4,1.8,0.9 --zoom 1.1 \
+        --aspect 1.4 --height 420 -o bench/pictures/bluntfin.png
+
 Needs VTK (Debian: python3-vtk9) and, without a display, Xvfb (Debian: xvfb, xauth, libgl1-mesa-dri).
 """
 import argparse
@@ -16,24 +23,71 @@ import vtk
 
 COLOURS = [(0.93, 0.55, 0.24), (0.25, 0.56, 0.78), (0.42, 0.66, 0.40)]  # outside of the surface, mesh by mesh
 INSIDE = (0.93, 0.90, 0.84)
+WALL, WALL_LINES = (0.80, 0.82, 0.85), (0.66, 0.69, 0.74)
+WALL_REACH = 0.45  # around a mesh, of the size of its box
 MARGIN = 0.64  # around a mesh of unit size: the diagonal of its box has to fit
 
 
-def surface(path, colour):
-    """Actor of a PLY file, centred, of unit size."""
+def read_surface(path):
     reader = vtk.vtkPLYReader()
     reader.SetFileName(path)
     reader.Update()
-    mesh = reader.GetOutput()
-    if mesh.GetNumberOfPolys() == 0:
+    if reader.GetOutput().GetNumberOfPolys() == 0:
         raise SystemExit(f"{path}: no triangles; give a PLY file that the tool wrote")
+    return reader.GetOutput()
+
+
+def read_walls(path):
+    """The faces j = 0 and k = 0 of a Plot3D grid of one block."""
+    reader = vtk.vtkMultiBlockPLOT3DReader()
+    reader.SetXYZFileName(path)
+    reader.AutoDetectFormatOn()
+    reader.Update()
+    grid = reader.GetOutput().GetBlock(0)
+    if grid is None:
+        raise SystemExit(f"{path}: no Plot3D grid")
+    faces = vtk.vtkAppendPolyData()
+    for axis in (1, 2):
+        extent = list(grid.GetExtent())
+        extent[2 * axis + 1] = extent[2 * axis]
+        face = vtk.vtkStructuredGridGeometryFilter()
+        face.SetInputData(grid)
+        face.SetExtent(*extent)
+        face.Update()
+        faces.AddInputData(face.GetOutput())
+    faces.Update()
+    return faces.GetOutput()
+
+
+def clipped(walls, mesh):
+    """To the box of the mesh, widened."""
+    bounds = vtk.vtkBoundingBox(mesh.GetBounds())
+    bounds.Inflate(WALL_REACH * bounds.GetMaxLength())
+    low, high = bounds.GetMinPoint(), bounds.GetMaxPoint()
+    box = vtk.vtkBox()
+    box.SetBounds(low[0], high[0], low[1], high[1], low[2], high[2])
+    clip = vtk.vtkClipPolyData()
+    clip.SetInputData(walls)
+    clip.SetClipFunction(box)
+    clip.InsideOutOn()
+    clip.Update()
+    return clip.GetOutput()
+
+
+def frame(mesh):
+    """Transform that centres it and makes it of unit size."""
     bounds = mesh.GetBounds()
+    centre = [(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 for axis in range(3)]
     size = max(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3))
     place = vtk.vtkTransform()
     place.Scale(1 / size, 1 / size, 1 / size)
-    place.Translate(*(-(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 for axis in range(3)))
+    place.Translate(*(-c for c in centre))
+    return place
+
+
+def actor_of(mesh, colour, place):
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(reader.GetOutputPort())
+    mapper.SetInputData(mesh)
     mapper.ScalarVisibilityOff()
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
@@ -51,23 +105,47 @@ def surface(path, colour):
     return actor
 
 
-def panel(path, index, count):
+def walls_of(mesh, place):
+    """Faint, lined by the grid."""
+    actor = actor_of(mesh, WALL, place)
+    for side in (actor.GetProperty(), actor.GetBackfaceProperty()):
+        side.SetColor(*WALL)
+        side.SetOpacity(0.45)
+        side.SetSpecular(0)
+        side.EdgeVisibilityOn()
+        side.SetEdgeColor(*WALL_LINES)
+    return actor
+
+
+def panel(arguments, index):
     """Renderer of one mesh, in its part of the window."""
+    count = len(arguments.mesh)
+    mesh = read_surface(arguments.mesh[index])
+    place = frame(mesh)
     renderer = vtk.vtkRenderer()
     renderer.SetViewport(index / count, 0, (index + 1) / count, 1)
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(surface(path, COLOURS[index % len(COLOURS)]))
+    renderer.AddActor(actor_of(mesh, COLOURS[index % len(COLOURS)], place))
+    if arguments.walls:
+        renderer.AddActor(walls_of(clipped(read_walls(arguments.walls), mesh), place))
     renderer.SetUseFXAA(True)
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()
     camera.SetFocalPoint(0, 0, 0)
-    camera.SetPosition(0.9, -1.7, 1.5)
+    camera.SetPosition(*arguments.view)
     camera.SetViewUp(0, 0, 1)
-    camera.SetParallelScale(0.5 * (1 + MARGIN))
+    camera.SetParallelScale(0.5 * (1 + MARGIN) / arguments.zoom)
     renderer.ResetCameraClippingRange()
     lights = vtk.vtkLightKit()
     lights.AddLightsToRenderer(renderer)
     return renderer
+
+
+def direction(text):
+    numbers = tuple(map(float, text.split(",")))
+    if len(numbers) != 3:
+        raise ValueError(text)
+    return numbers
 
 
 def main():
@@ -75,14 +153,18 @@ def main():
     parser.add_argument("mesh", nargs="+", help="PLY files")
     parser.add_argument("-o", "--output", required=True, help="PNG to write")
     parser.add_argument("--height", type=int, default=360, help="of the picture, in pixels")
+    parser.add_argument("--aspect", type=float, default=1.0, help="width of a mesh's part to its height")
+    parser.add_argument("--walls", metavar="GRID", help="Plot3D grid, of which the faces j = 0 and k = 0 are drawn too")
+    parser.add_argument("--view", type=direction, default=(0.9, -1.7, 1.5), metavar="X,Y,Z", help="camera's direction")
+    parser.add_argument("--zoom", type=float, default=1.0)
     arguments = parser.parse_args()
     count = len(arguments.mesh)
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
-    window.SetSize(arguments.height * count, arguments.height)
-    for index, path in enumerate(arguments.mesh):
-        window.AddRenderer(panel(path, index, count))
+    window.SetSize(round(arguments.height * arguments.aspect) * count, arguments.height)
+    for index in range(count):
+        window.AddRenderer(panel(arguments, index))
     window.Render()
     picture = vtk.vtkWindowToImageFilter()
     picture.SetInput(window)

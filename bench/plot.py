@@ -43,7 +43,8 @@ def points(cases, key):
 
 def draw_panel(axes, result, field, kind):
     ours = [case for case in result["cases"] if (case["field"], case["type"]) == (field, kind)]
-    peers = [case for case in result.get("peers", []) if (case["case"].split()[0], case["type"]) == (field, kind)]
+    peers = [case for case in result.get("peers", []) if (case["case"].split()[0], case["type"]) == (field, kind)
+             and case.get("grid", "uniform") == "uniform"]
     for cases, series in ((peers, PEERS), (ours, OURS)):
         for key, label, colour, form in series:
             sizes, times = points(cases, key)

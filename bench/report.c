@@ -36,7 +36,8 @@ static void set_hash(json_t *object, const char *key, uint64_t hash) {
 static json_t *case_json(const case_result *c) {
     json_t *object = name_json(c);
     json_object_set_new(object, "iso", json_real(c->first.iso));
-    json_object_set_new(object, "method", json_string("tetra"));
+    json_object_set_new(object, "grid", json_string(c->grid));
+    json_object_set_new(object, "method", json_string(method_name(c->method)));
     json_object_set_new(object, "vertices", json_integer((json_int_t)c->first.vertex_count));
     json_object_set_new(object, "triangles", json_integer((json_int_t)c->first.triangle_count));
     set_hash(object, "hash", c->first.hash);
@@ -106,7 +107,8 @@ static void print_row(const case_result *c) {
         snprintf(size, sizeof size, "%" PRId64 "^3", d[0]);
     else
         snprintf(size, sizeof size, "%" PRId64 "x%" PRId64 "x%" PRId64, d[0], d[1], d[2]);
-    snprintf(name, sizeof name, "%.24s %s %s", c->field, size, tc_type_name(c->type));
+    snprintf(name, sizeof name, "%.24s %s %s%s", c->field, size, tc_type_name(c->type),
+             c->method == TC_METHOD_HYBRID ? " hybrid" : "");
     snprintf(times, sizeof times, "%.2f (%.2f - %.2f)", c->extract_ms.median, c->extract_ms.min, c->extract_ms.max);
     double warm_ms = c->first_times.total_ms.median;
     printf("%-25s %11" PRIu64 " %22s %9.2f   %8.2f   %8.2f %7.2f %9.3f %6.2f %9.2f  %8.2f %9.1f\n", name,

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 #include <sys/mman.h>
 
@@ -27,8 +28,65 @@ int samples_describe(const field *f, const int64_t dims[3], tc_type type, sample
     return 0;
 }
 
+void samples_place(samples *s, bench_grid grid) {
+    const uint64_t x = (uint64_t)s->grid.dims[0], y = (uint64_t)s->grid.dims[1], z = (uint64_t)s->grid.dims[2];
+    if (s->grid.axes[0] || s->grid.points) return;
+    s->placed = grid;
+    s->coordinate_bytes = grid == BENCH_CURVILINEAR ? 12 * x * y * z : grid == BENCH_RECTILINEAR ? 4 * (x + y + z) : 0;
+}
+
+/* Of sample n along an axis of so many, and how far off it is put. */
+static double axis_position(int64_t n, int64_t count) { return 2.0 * (double)n / (double)(count - 1) - 1.0; }
+
+static double axis_step(double position) { return 0.05 * sin(3.0 * position); }
+
+static void axes_make(samples *s) {
+    float *at = s->coordinates;
+    for (int axis = 0; axis < 3; axis++) {
+        s->grid.axes[axis] = at;
+        for (int64_t n = 0; n < s->grid.dims[axis]; n++) {
+            double position = axis_position(n, s->grid.dims[axis]);
+            *at++ = (float)(position + axis_step(position));
+        }
+    }
+}
+
+/* x moves with y, y with z, z with x. */
+static int points_make(samples *s) {
+    const int64_t *dims = s->grid.dims;
+    float *at = s->coordinates;
+    for (int64_t k = 0; k < dims[2]; k++) {
+        double z = axis_position(k, dims[2]), y_step = axis_step(z);
+        for (int64_t j = 0; j < dims[1]; j++) {
+            double y = axis_position(j, dims[1]), x_step = axis_step(y);
+            for (int64_t i = 0; i < dims[0]; i++) {
+                double x = axis_position(i, dims[0]);
+                *at++ = (float)(x + x_step);
+                *at++ = (float)(y + y_step);
+                *at++ = (float)(z + axis_step(x));
+            }
+        }
+        if (progress_update(NULL, "making points", (double)(k + 1) / (double)dims[2])) return progress_status();
+    }
+    s->grid.points = s->coordinates;
+    return 0;
+}
+
+static int coordinates_make(samples *s) {
+    if (!s->coordinate_bytes) return 0;
+    void *memory = mmap(NULL, s->coordinate_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED)
+        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the points; give smaller --dims",
+                    s->coordinate_bytes >> 20);
+    s->coordinates = memory;
+    if (s->placed == BENCH_CURVILINEAR) return points_make(s);
+    axes_make(s);
+    return 0;
+}
+
 int samples_make(samples *s) {
-    if (!s->made_from) return 0;
+    int status = coordinates_make(s);
+    if (status || !s->made_from) return status;
     void *memory = mmap(NULL, s->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
         return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims", s->bytes >> 20);
@@ -80,6 +138,7 @@ int samples_dump(const samples *s, const char *path) {
 
 void samples_release(samples *s) {
     if (s->made) munmap(s->made, s->bytes);
+    if (s->coordinates) munmap(s->coordinates, s->coordinate_bytes);
     volume_release(&s->read);
     *s = (samples){0};
 }

@@ -12,6 +12,9 @@ typedef struct samples {
     uint64_t bytes;
     void *made;  /* page-aligned, so that a device that shares the host's memory uses it in place; or NULL */
     volume read; /* the file's, where there is one */
+    bench_grid placed;
+    float *coordinates; /* axes one after the other, or points; page-aligned, or NULL */
+    uint64_t coordinate_bytes;
 } samples;
 
 /* Describes samples of an analytic field, for samples_make to take the memory for; the matrix is the one that
@@ -19,7 +22,11 @@ typedef struct samples {
  * be released in any case. */
 int samples_describe(const field *f, const int64_t dims[3], tc_type type, samples *out);
 
-/* Makes those described; samples of a file are there already. */
+/* Has the grid, described or read, be of this kind: samples_make then makes its coordinates, in [-1, 1] and a smooth
+ * small step away. Ones that it has already are kept. */
+void samples_place(samples *s, bench_grid grid);
+
+/* Makes those described, and coordinates; samples of a file are there already. */
 int samples_make(samples *s);
 
 /* Samples of the file o->input, likewise. */

@@ -14,7 +14,8 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 README = os.path.join(os.path.dirname(HERE), "README.md")
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
-PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms")]
+PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms"),
+         ("vtk_contour", "vtkContourFilter, ms")]
 HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the README's table
 HEADLINE_SIZE = 512
 SAMPLE_BYTES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
@@ -51,13 +52,18 @@ def peer_cell(peer, key):
     return f"{number(median)} (**{median / peer['extract_ms']['median']:.2f}**)"
 
 
+def peer_name(peer):
+    grid = peer.get("grid", "uniform")
+    return f"{peer['case'].split()[0]} {size(peer['dims'])} {peer['type']}{'' if grid == 'uniform' else ', ' + grid}"
+
+
 def peers_table(peers):
     """With a column for each peer that any of them has."""
     present = [(key, title) for key, title in PEERS if any(f"{key}_ms" in peer for peer in peers)]
     head = ["samples", "Tetracubes, ms", *(title for _, title in present), "triangles", "VTK's triangles",
             "× memory limit"]
-    rows = [[f"{peer['case'].split()[0]} {size(peer['dims'])} {peer['type']}", ms(peer["extract_ms"]),
-             *(peer_cell(peer, key) for key, _ in present), f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
+    rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present),
+             f"{peer['triangles']:,}", f"{peer.get('vtk_triangles', peer.get('vtk_contour_triangles')):,}",
              f"{peer['limit_ratio']:.1f}"] for peer in peers]
     return table(head, rows)
 
@@ -69,8 +75,8 @@ def growth_text(peers):
 
 
 def is_headline_peer(peer):
-    """Large, or of a real volume."""
-    return max(peer["dims"]) >= HEADLINE_SIZE or "^" not in peer["case"]
+    """Large, of a real volume, or not uniform."""
+    return max(peer["dims"]) >= HEADLINE_SIZE or peer.get("grid", "uniform") != "uniform" or "^" not in peer["case"]
 
 
 def peers_text(result, peers):

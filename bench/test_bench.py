@@ -15,7 +15,7 @@ import tempfile
 BENCH = sys.argv[1]
 SPREADS = ["classify_ms", "emit_ms", "extract_ms", "extract_warm_ms", "second_classify_ms", "second_emit_ms",
            "second_warm_ms", "reference_ms"]
-CASE_KEYS = {"field", "dims", "type", "iso", "method", "vertices", "triangles", "hash", "repeats", "second_iso",
+CASE_KEYS = {"field", "dims", "type", "iso", "grid", "method", "vertices", "triangles", "hash", "repeats", "second_iso",
              "second_vertices", "second_triangles", "second_hash", "limit_ms", "limit_ratio", *SPREADS}
 checks = failures = 0
 
@@ -33,9 +33,9 @@ def bench(*arguments, text=""):
                           timeout=300, check=False)
 
 
-def expect_case(case, label):
+def expect_case(case, label, method="tetra"):
     expect(set(case) == CASE_KEYS, f"{label}: keys {sorted(case)}")
-    expect(case["method"] == "tetra", f"{label}: method {case['method']}")
+    expect(case["method"] == method, f"{label}: method {case['method']}")
     expect(len(case["hash"]) == 16 and int(case["hash"], 16) >= 0, f"{label}: hash {case['hash']}")
     for key in SPREADS:
         times = case[key]
@@ -101,6 +101,16 @@ def cases_of(*arguments):
     return json.loads(done.stdout)
 
 
+def test_grids(made):
+    """The same surface in other places."""
+    case = ["--field", "sphere", "--dims", "17", "--type", "u8"]
+    grids = {grid: cases_of(*case, "--grid", grid)["cases"][0] for grid in ("uniform", "rectilinear", "curvilinear")}
+    for grid, result in grids.items():
+        expect(result["grid"] == grid and result["triangles"] == made["triangles"], f"--grid {grid}: {result}")
+    expect(grids["uniform"]["hash"] == made["hash"], "--grid uniform is not the default")
+    expect(len({result["hash"] for result in grids.values()}) == 3, "grids do not differ in their vertices")
+
+
 def test_second(made):
     """It is the surface that this isovalue alone has, and another one than the first."""
     expect(made["second_iso"] == 127.5 * 1.05, f"second isovalue {made['second_iso']}")
@@ -137,6 +147,14 @@ def test_sweep():
     expect("left out" in done.stderr, f"too large: says {done.stderr!r}")
 
 
+def test_hybrid():
+    arguments = ["--field", "gyroid", "--dims", "40", "--type", "u8"]
+    tetra, hybrid = (cases_of(*arguments, *method)["cases"][0] for method in ([], ["--method", "hybrid"]))
+    expect_case(hybrid, "--method hybrid", "hybrid")
+    ratio = tetra["triangles"] / hybrid["triangles"]
+    expect(2.2 < ratio < 2.6, f"the tetrahedra have {ratio} times the triangles")
+
+
 def test_table():
     done = bench("--field", "sphere", "--dims", "9", "--dims", "9,10,11", "--type", "u8", "--repeat", "1")
     rows = [line for line in done.stdout.splitlines() if line.startswith("sphere ")]
@@ -171,7 +189,7 @@ def test_statuses(folder):
     for status, words, arguments in [
             (2, "--field", ["--feild", "sphere"]), (2, "sphere", ["--field", "spher"]), (2, "--dims", ["--dims", "1"]),
             (2, "--dims", ["--dims", "5,5"]), (2, "--dims", ["--dims", "64,"]), (2, "--type", ["--type", "u9"]),
-            (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "hybrid"]),
+            (2, "--iso", ["--iso", "nan"]), (2, "--repeat", ["--repeat", "0"]), (2, "--method", ["--method", "cubes"]),
             (2, "--json", ["--json=1"]), (2, "needs a value", ["--dims"]), (2, "--turns", ["--turns"]),
             (2, "--second", ["--second", "x"]), (2, "--second", ["--second", "127.5"]), (2, "--sweep", ["--swep"]),
             (2, "--sweep", ["--sweep", "--turns", "--field", "empty", "--dims", "9", "--type", "u8"]),
@@ -193,6 +211,7 @@ def test_statuses(folder):
 def main():
     with tempfile.TemporaryDirectory(prefix="tetracubes-bench-test-") as folder:
         made = test_json()
+        test_grids(made)
         test_second(made)
         test_sweep()
         test_table()

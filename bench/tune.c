@@ -290,6 +290,7 @@ static int cases_make(search *s) {
             for (int size = 0; size < o->dims_count && !status; size++) {
                 samples *made = &s->cases[s->case_count++].s;
                 status = samples_describe(o->fields[f], o->dims[size], o->types[type], made);
+                if (!status) samples_place(made, o->grid);
                 if (!status) status = samples_make(made);
             }
     for (int n = 0; n < s->case_count && !status; n++) status = reference_hash(s, &s->cases[n]);

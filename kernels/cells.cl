@@ -1,34 +1,70 @@
 /*
  * cells.cl - grids with missing samples: one bit per cube whose eight corners are present
  *
- * Made before kernel 1, only where a sample is missing (not finite, or equal to the missing value). The cells buffer
- * holds the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists only on an edge of a present
- * cube.
+ * Made before kernel 1, only where a sample is missing (not finite, equal to the missing value, or blanked) or a cube
+ * is blanked. The cells buffer holds the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists
+ * only on an edge of a present cube.
  */
 #if MISSING
 
-inline_always ulong word_present(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+/* Bit n for byte `first` + n, which is not 0; bytes from `end` on are not read. */
+inline_always ulong bytes_word(global const uchar *bytes, ulong first, ulong end) {
     ulong word = 0;
+    for (uint part = 0; part < 4 && first + 16 * part < end; part++) {
+        uchar16 loaded = 0;
+        ulong n = first + 16 * part;
+        if (n + 16 <= end) {
+            loaded = vload16(0, bytes + n);
+        } else {
+            uchar last[16];
+            for (uint m = 0; m < 16; m++) last[m] = n + m < end ? bytes[n + m] : (uchar)0;
+            loaded = vload16(0, last);
+        }
+        word |= (ulong)mask_pack(loaded != (uchar16)0) << (16 * part);
+    }
+    return word;
+}
+
+/* At place n of the sample buffer. */
+inline_always bool sample_missing(global const BITS *samples, global const uchar *blanked, const slab *s, ulong n) {
+    BITS bits = samples[n];
+    bool missing = s->has_nodata && (bits == (BITS)s->nodata_bits[0] || bits == (BITS)s->nodata_bits[1]);
+#if FLOATING
+    missing = missing || (bits & EXPONENT) == EXPONENT;
+#endif
+    return missing || (s->has_blanked_samples && blanked[n + s->blanked_offset]);
+}
+
+inline_always ulong word_present(global const BITS *samples, global const uchar *blanked, const slab *s, uint y, uint z,
+                                 uint w) {
+    ulong word = 0, start = row_start(s, y, z);
     for (uint part = 4 * w; part < 4 * w + 4 && 16 * part < s->nx; part++) {
-        BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
+        BITS16 bits = samples_load(samples, s, start + 16 * part);
         word |= (ulong)(~mask_pack(missing_mask(bits, s)) & 0xffff) << (16 * (part & 3));
     }
+    if (s->has_blanked_samples)
+        word &= ~bytes_word(blanked, start + 64 * w + s->blanked_offset,
+                            s->sample_offset + s->sample_count + s->blanked_offset);
     return word & word_valid(s, w);
 }
 
 /* Present samples of a row, and those whose right-hand neighbour is present too. */
-inline_always ulong word_present_pair(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
-    ulong word = word_present(samples, s, y, z, w);
-    ulong next = 0;
-    if (w + 1 < s->words_x) {
-        ulong n = row_start(s, y, z) + 64ul * (w + 1);
-        next = (mask_pack(missing_mask((BITS16)samples[n], s)) & 1) ^ 1;
-    }
+inline_always ulong word_present_pair(global const BITS *samples, global const uchar *blanked, const slab *s, uint y,
+                                      uint z, uint w) {
+    ulong word = word_present(samples, blanked, s, y, z, w);
+    ulong next = w + 1 < s->words_x && !sample_missing(samples, blanked, s, row_start(s, y, z) + 64ul * (w + 1));
     return word & word_shifted(word, next);
 }
 
+/* Blanked cubes of a row; what lies beyond its end is meaningless. */
+inline_always ulong word_blanked(global const uchar *blanked, const slab *s, uint y, uint z, uint w) {
+    ulong row = s->blanked_cell_offset + ((ulong)(z - s->sample_z) * (s->ny - 1) + y) * (s->nx - 1);
+    return bytes_word(blanked, row + 64ul * w, s->blanked_cell_offset + s->blanked_cell_count);
+}
+
 /* All groups together go through the words of the planes from cell_z on, plane_count of them. */
-kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells, uint plane_count) {
+kernel void cells_mark(slab s, global const BITS *samples, global const uchar *blanked_samples,
+                       global const uchar *blanked_cells, global ulong *cells, uint plane_count) {
     uint row_count = s.ny * plane_count;
     for (uint row = (uint)get_group_id(0); row < row_count; row += (uint)get_num_groups(0)) {
         uint y = row % s.ny, z = s.cell_z + row / s.ny;
@@ -36,10 +72,11 @@ kernel void cells_mark(slab s, global const BITS *samples, global ulong *cells, 
         for (uint first = 0; first < s.words_x; first += WORK_ITEMS) {
             uint w = first + (uint)get_local_id(0);
             if (w >= s.words_x) continue;
-            ulong present = last ? 0 : word_present_pair(samples, &s, y, z, w);
-            if (present) present &= word_present_pair(samples, &s, y + 1, z, w);
-            if (present) present &= word_present_pair(samples, &s, y, z + 1, w);
-            if (present) present &= word_present_pair(samples, &s, y + 1, z + 1, w);
+            ulong present = last ? 0 : word_present_pair(samples, blanked_samples, &s, y, z, w);
+            if (present) present &= word_present_pair(samples, blanked_samples, &s, y + 1, z, w);
+            if (present) present &= word_present_pair(samples, blanked_samples, &s, y, z + 1, w);
+            if (present) present &= word_present_pair(samples, blanked_samples, &s, y + 1, z + 1, w);
+            if (present && s.has_blanked_cells) present &= ~word_blanked(blanked_cells, &s, y, z, w);
             cells[(ulong)row * s.words_x + w] = present;
         }
     }

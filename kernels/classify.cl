@@ -53,25 +53,25 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
     return (uint2)(shared[0], shared[1]);
 }
 
-/* What comes before a brick within the tile becomes what comes before it in the slab. Appends the bricks that emit
- * something to the list. */
-inline_always void tile_finish(const slab *s, tile t, uint2 prefix, global brick_state *bricks, global uint *active,
-                               global uint *head, local uint *shared) {
-    uint first = brick_index(s, t.y0, t.z0, 0);
-    uint count = layer_bricks(s, t) * ((t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES);
-    uint lid = (uint)get_local_id(0);
+/* What comes before a brick within the tile becomes what comes before it in the slab: of bricks that emit something,
+ * which the list gets, and of the first of a layer, which the host reads. */
+inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emitting, global brick_state *bricks,
+                               global uint *active, global uint *head, local uint *shared) {
+    uint first = brick_index(s, t.y0, t.z0, 0), layer = layer_bricks(s, t);
+    uint layers = (t.z1 - t.z0 + BRICK_PLANES - 1) / BRICK_PLANES;
     group_barrier();
-    if (lid == 0) shared[0] = 0;
+    if (get_local_id(0) == 0) {
+        shared[0] = emitting;
+        shared[1] = emitting ? atomic_add(&head[STATE_ACTIVE_BRICKS], emitting) : 0;
+    }
     group_barrier();
-    for (uint start = 0; start < count; start += WORK_ITEMS)
-        if (start + lid < count && bricks[first + start + lid].rows) atomic_inc(&shared[0]);
-    group_barrier();
-    if (lid == 0) shared[1] = shared[0] ? atomic_add(&head[STATE_ACTIVE_BRICKS], shared[0]) : 0;
-    group_barrier();
+    uint stride = shared[0] ? 1 : layer, count = layer * layers / stride;
     for (uint start = 0; start < count; start += WORK_ITEMS) {
-        uint n = start + lid;
-        if (n < count) bricks[first + n].vertices += prefix.x, bricks[first + n].triangles += prefix.y;
-        if (n < count && bricks[first + n].rows) active[atomic_inc(&shared[1])] = first + n;
+        uint n = (start + (uint)get_local_id(0)) * stride;
+        bool emits = n < layer * layers && bricks[first + n].rows;
+        if (emits || (n < layer * layers && n % layer == 0))
+            bricks[first + n].vertices += prefix.x, bricks[first + n].triangles += prefix.y;
+        if (emits) active[atomic_inc(&shared[1])] = first + n;
     }
 }
 
@@ -80,6 +80,7 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
                                global brick_state *bricks, global uint *active, global uint *head, global uint *tiles,
                                local uint *shared) {
     uint2 prefix = tile_prefix(s, number, samples, cells, tiles, shared);
+    uint emitting = tiles[TILE_WORDS * number + TILE_BRICKS];
     if (get_local_id(0) == 0) {
         uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
         uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);
@@ -87,7 +88,7 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
         scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
         if (number + 1 == s->tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
     }
-    tile_finish(s, tile_locate(s, number), prefix, bricks, active, head, shared);
+    tile_finish(s, tile_locate(s, number), prefix, emitting, bricks, active, head, shared);
 }
 
 /* state: heads and tiles of the slabs, cleared. scratch: per group, room for the halo of a tile. */
@@ -124,7 +125,8 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             halo_make(&s, t, samples, ranges, k.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
-                layer_count(&s, t, z, k, cells, offsets, triangle_offsets, &sums
+                layer_count(&s, t, z, k, cells, ranges, offsets, triangle_offsets, &sums,
+                            &tiles[TILE_WORDS * number + TILE_BRICKS]
 #if WORK_ITEMS > 1
                             ,
                             rows

@@ -47,11 +47,10 @@ inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z
 inline_always void halo_make(const slab *s, tile t, global const BITS *samples, global const brick_range *ranges,
                              global ulong *scratch) {
     if (t.y1 < s->ny)
-        for (uint z = t.z0; z < t.z1; z++)
-            row_words_make(s, t.y1, z, samples, ranges, scratch + halo_row(s, t, z, 0), 1);
+        for (uint z = t.z0; z < t.z1; z++) row_words_make(s, t.y1, z, samples, ranges, scratch + halo_row(s, t, z, 0));
     if (t.z1 < s->nz)
-        for (uint y = t.y0; y < min(t.y1 + 1, s->ny); y++)
-            row_words_make(s, y, t.z1, samples, ranges, scratch + halo_plane(s, t, y, 0), BRICK_ROWS);
+        for (uint y = t.y0; y < min(t.y1 + 1, s->ny); y += BRICK_ROWS)
+            rows_words_make(s, y, min(t.y1 + 1, s->ny), t.z1, samples, ranges, scratch + halo_plane(s, t, y, 0));
 }
 
 typedef struct emission {
@@ -102,17 +101,23 @@ inline_always ulong tile_word(const slab *s, tile t, uint y, uint z, uint w, til
     return *tile_row(s, t, y, z, w, k) & word_valid(s, w);
 }
 
-/* Whether the samples that follow a uniform brick in x, y or z have one on the other side. */
-inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, ulong uniform) {
-    const uint up = y + BRICK_ROWS, deep = z + BRICK_PLANES;
+/* Whether the samples that follow a uniform brick in x, y or z have one on the other side. Those of its tile that are
+ * uniform too have not where they are on its side. */
+inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, uint sign) {
+    const ulong uniform = sign_word(sign);
     lanes differ = 0;
-    for (uint plane = z; plane <= deep && plane < s->nz; plane++) {
-        if (plane == deep) differ |= (vload8(0, tile_row(s, t, y, plane, w, k)) ^ uniform) & rows_valid(s, y, w);
-        if (w + 1 < s->words_x)
-            differ |= (vload8(0, tile_row(s, t, y, plane, w + 1, k)) ^ uniform) & rows_valid(s, y, w + 1) & 1ul;
-        if (up < s->ny) {
-            differ.s0 |= (*tile_row(s, t, up, plane, w, k) ^ uniform) & word_valid(s, w);
-            if (w + 1 < s->words_x) differ.s0 |= (*tile_row(s, t, up, plane, w + 1, k) ^ uniform) & 1ul;
+    for (uint n = 1; n < 8; n++) {
+        const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
+        if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
+        if (up < t.y1 && deep < t.z1 && k.bricks[brick_index(s, up, deep, across)].sign == sign) continue;
+        const ulong columns = n & 1 ? 1 : word_valid(s, across);
+        const uint end = n & 4 ? deep + 1 : min(z + BRICK_PLANES, t.z1);
+        for (uint plane = deep; plane < end; plane++) {
+            global const ulong *row = tile_row(s, t, up, plane, across, k);
+            if (n & 2)
+                differ.s0 |= (*row ^ uniform) & columns;
+            else
+                differ |= (vload8(0, row) ^ uniform) & rows_valid(s, up, across) & columns;
         }
     }
     return lanes_any(differ) != 0;
@@ -130,7 +135,7 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
                         (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
                         (behind[up + across].sign ^ sign);
     const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);
-    return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign_word(sign));
+    return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign);
 }
 
 /* Rows y to y + 7 and y + 1 to y + 8. */
@@ -175,16 +180,40 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
     return mask;
 }
 
+/* Whether a run of bricks and those at higher x, y and z are known to be all on one side: nothing of it emits. */
+inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, uint count,
+                               global const brick_range *ranges) {
+    const uint up = y + BRICK_ROWS < s->ny ? s->words_x : 0;
+    const uint deep = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
+    const uint across = w + count < s->words_x ? count : count - 1;
+    if (z + BRICK_PLANES >= s->z1 && s->z1 < s->nz) return false;
+    if (!s->ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
+    global const brick_range *here = ranges + s->range_offset + brick_index(s, y, z, w);
+    uint sign = run_sign(s, here, count);
+    return sign != SIGN_MIXED && run_sign(s, here + up, count) == sign && run_sign(s, here + deep, count) == sign &&
+           run_sign(s, here + up + deep, count) == sign && range_sign(s, here[across]) == sign &&
+           range_sign(s, here[up + across]) == sign && range_sign(s, here[deep + across]) == sign &&
+           range_sign(s, here[up + deep + across]) == sign;
+}
+
 /* Counts the layer that begins with plane z, brick by brick; *sums runs on from brick to brick. What comes before a
- * brick is stored within the tile. */
+ * brick is stored within the tile. *emitting: how many bricks of the tile emit something. */
 inline_always void layer_count(const slab *s, tile t, uint z, tile_words k, global const ulong *cells,
-                               global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
+                               global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
+                               emission *sums, global uint *emitting) {
+    global brick_state *first = &k.bricks[brick_index(s, t.y0, z, 0)];
+    first->vertices = sums->vertices, first->triangles = sums->triangles;
     for (uint y = t.y0; y < t.y1; y += BRICK_ROWS)
-        for (uint w = 0; w < s->words_x; w++) {
-            global brick_state *b = &k.bricks[brick_index(s, y, z, w)];
-            b->vertices = sums->vertices, b->triangles = sums->triangles;
-            if (brick_emits(s, t, y, z, w, k))
+        for (uint run = 0; run < s->words_x; run += RUN_BRICKS_X) {
+            uint end = min(run + RUN_BRICKS_X, s->words_x);
+            if (run_skipped(s, t, y, z, run, end - run, ranges)) continue;
+            for (uint w = run; w < end; w++) {
+                if (!brick_emits(s, t, y, z, w, k)) continue;
+                global brick_state *b = &k.bricks[brick_index(s, y, z, w)];
+                b->vertices = sums->vertices, b->triangles = sums->triangles;
                 b->rows = brick_count(s, t, y, z, w, k, cells, offsets, triangle_offsets, sums);
+                *emitting += b->rows != 0;
+            }
         }
 }
 
@@ -228,8 +257,8 @@ inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w
  * a barrier, and work-items without a row count another one's, as compilers have gone wrong on either. All work-items
  * leave with the same sums. */
 inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, global const ulong *cells,
-                               global ulong *offsets, global ushort *triangle_offsets, emission *sums,
-                               local row_report *rows) {
+                               global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
+                               emission *sums, global uint *emitting, local row_report *rows) {
     uint count = layer_bricks(s, t);
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
         {
@@ -260,6 +289,7 @@ inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, glo
             if (lid == first && n + lid / BRICK_WORDS < count) {
                 k.bricks[number].vertices = vertices, k.bricks[number].triangles = triangles;
                 k.bricks[number].rows = mask;
+                if (mask) atomic_inc(emitting);
             }
             if (own.vertices + own.triangles > 0) {
                 offsets[BRICK_WORDS * number + lid - first] = rows[lid].packed + before.vertices;

@@ -3,7 +3,7 @@
  *
  * Runs over the list that kernel 1 left. Groups stay and take runs of active bricks by ticket. How a brick is emitted
  * depends on who shares it: emit_brick.cl, emit_rows.cl. Triangles come from the table of a cube (2 parities x 256
- * patterns), which the host derives from the 16 cases of a tetrahedron.
+ * patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the hybrid method has.
  */
 
 /* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,
@@ -16,10 +16,12 @@
 kernel void emit(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
                  global const ulong *offsets, global const ushort *triangle_offsets, global const brick_state *bricks,
                  global const uint *active, global uint *state, global const ushort *cases, global float *positions,
-                 global float *normals, global uint *triangles) {
+                 global float *normals, global uint *triangles, global const float *coordinates,
+                 global const uchar *blanked) {
     local uint shared[1];
     brick_work work;
     mesh_buffers mesh = {positions + s.position_offset, normals + s.position_offset, triangles + s.triangle_offset};
+    grid_arrays in = {samples, coordinates, blanked};
     row_results k1 = {words + UNIFORM_BRICKS * BRICK_WORDS, offsets, cells, triangle_offsets, bricks};
     global uint *head = state + s.head_offset;
     active += s.active_offset;
@@ -39,7 +41,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
             if (n + 1 < active_count) brick_prefetch(&s, active[n + 1], brick_corner(&s, active[n + 1]), k1);
 #endif
             if (n < end && number >= s.brick_first && number < s.brick_last)
-                brick_emit(&s, number, brick_corner(&s, number), samples, k1, cases, mesh, &work);
+                brick_emit(&s, number, brick_corner(&s, number), in, k1, cases, mesh, &work);
         }
     }
 }

@@ -13,14 +13,24 @@
  */
 #if WORK_ITEMS == 1
 
-#define LIST_EDGES  (BRICK_WORDS * 64 * 6)
+#define NUMBER_STEP NUMBER_TYPES(HYBRID)
+#define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
 #define LIST_CUBES  (BRICK_WORDS * 64)
 #define LIST_STEP   2 /* items stored at once */
 #define BATCH_EDGES 1024
 #define BATCH_STEP  16
-#define CASE_STEP   15 /* indices copied at once: most cubes emit up to five triangles */
-#define CASE_MOST   30
-#define CASE_EXACT  4 /* last cubes of a brick, of which what is too much, four triangles at most, is another's */
+
+/* Indices copied at once, as many as most cubes have at the most; those of the largest case; last cubes of a brick, of
+ * which what is too much, so many triangles at most, is another's. */
+#if HYBRID
+#define CASE_STEP  9
+#define CASE_MOST  18
+#define CASE_EXACT 2
+#else
+#define CASE_STEP  15
+#define CASE_MOST  30
+#define CASE_EXACT 4
+#endif
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {
@@ -28,10 +38,10 @@ typedef struct brick_signs {
 } brick_signs;
 
 typedef struct brick_work {
-    ulong crossed[BRICK_PLANES][6][BRICK_ROWS];
+    ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
-    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_TYPES];
+    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP];
     uint list[LIST_EDGES + LIST_STEP]; /* edges as PLACE has them; cubes: see cubes_list */
     ushort cases[LIST_CUBES];
 #ifdef REAL
@@ -95,7 +105,7 @@ inline_always void row_number(uint *number, ulong crossed, uint first) {
     do {
 #pragma unroll
         for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1)
-            number[NUMBER_TYPES * lowest_bit(crossed)] = first++;
+            number[NUMBER_STEP * lowest_bit(crossed)] = first++;
     } while (crossed);
 }
 
@@ -104,9 +114,9 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, z);
+        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
 #pragma unroll
-        for (uint type = 0; type < 6; type++) {
+        for (uint type = 0; type < EDGE_TYPES; type++) {
             const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
@@ -115,7 +125,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
                 for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) {
                     uint bit = lowest_bit(crossed);
                     work->list[count + n] = (bit & 1 ? codes[1] : codes[0]) + bit;
-                    number[NUMBER_TYPES * bit + type] = first + count + n;
+                    number[NUMBER_STEP * bit + type] = first + count + n;
                 }
                 count += LIST_STEP;
             } while (crossed);
@@ -138,11 +148,11 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     ulong crossed[3][BRICK_ROWS];
     vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
     for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
-        uint y = lowest_bit(rows), *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, y, BRICK_PLANES);
+        uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
         row_number(number, crossed[0][y], number_of(o, 0));
         row_number(number + 1, crossed[1][y], number_of(o, 1));
-        row_number(number + 3, crossed[2][y], number_of(o, 3));
+        if (!HYBRID) row_number(number + 3, crossed[2][y], number_of(o, 3));
     }
 }
 
@@ -157,7 +167,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         const ulong even = even_cubes(s, y, c.z + n), a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
         const ulong c0 = has_z ? signs->rows[1][n + 1].at.s0 : a0, c1 = has_z ? signs->rows[1][n + 1].next.s0 : 0;
         ulong x = (a0 ^ a1) & has_x, z = a0 ^ c0;
-        ulong xz = has_z ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
+        ulong xz = has_z && !HYBRID ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
 #if MISSING
         crossings k = {{x, 0, z, 0, xz, 0}};
         crossings_keep(s, k1.cells, y, c.z + n, w, &k);
@@ -165,10 +175,10 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
 #endif
         if (!(x | z | xz)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
-        uint *number = work->number + NUMBER_TYPES * NUMBER_PLACE(0, BRICK_ROWS, n);
+        uint *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, BRICK_ROWS, n);
         row_number(number, x, number_of(o, 0));
         row_number(number + 2, z, number_of(o, 2));
-        row_number(number + 4, xz, number_of(o, 4));
+        if (!HYBRID) row_number(number + 4, xz, number_of(o, 4));
     }
 }
 
@@ -180,7 +190,7 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint place = NUMBER_TYPES * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
+        uint place = NUMBER_STEP * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
         work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
     }
 }
@@ -198,7 +208,7 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (n < BRICK_PLANES && z + 1 < s->nz) {
             const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
             k.type[2] = a ^ behind;
-            k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
+            if (!HYBRID) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
             up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
         }
 #if MISSING
@@ -216,46 +226,61 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
 
 #ifdef REAL
 
-/* The samples at the ends of listed edges. */
-inline_always void batch_gather(const uint *list, uint count, global const BITS *samples, brick_work *work) {
+/* The samples at the ends of listed edges; of points it only asks for the cache lines. */
+inline_always void batch_gather(const slab *s, const uint *list, uint count, grid_arrays in, brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        global const BITS *from = samples + work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
-        work->a[n] = *from;
-        work->b[n] = from[work->step[list[n] >> 14]];
+        const ulong from = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        const ulong to = from + work->step[list[n] >> 14];
+        work->a[n] = in.samples[from];
+        work->b[n] = in.samples[to];
+#if GRID == 2
+        line_prefetch(in.coordinates + (3 * from + s->point_offset));
+        line_prefetch(in.coordinates + (3 * to + s->point_offset));
+#endif
     }
 }
 
+/* What lies past the end of the list may be computed with, but is no place in a grid. */
+#if GRID
+#define POSITIONS_AT_ONCE(left) (left)
+#else
+#define POSITIONS_AT_ONCE(left) BATCH_STEP
+#endif
+
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
-inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out,
-                               global const BITS *samples, mesh_buffers mesh, const brick_work *work) {
+inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
+                               mesh_buffers mesh, const brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
-        for (uint n = 0; n < BATCH_STEP; n++) {
+        uint left = min(count - first, (uint)BATCH_STEP);
+        for (uint n = 0; n < BATCH_STEP; n++)
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
-            position_make(s, brick, list[first + n], t[n], positions + 3 * n);
+        for (uint n = 0; n < POSITIONS_AT_ONCE(left); n++) {
+            uint place = list[first + n];
+            position_make(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
+                          work->step[place >> 14], t[n], positions + 3 * n);
         }
         global float *position = mesh.positions + 3 * (out + first);
-        uint left = min(count - first, (uint)BATCH_STEP);
         if (left == BATCH_STEP)
             for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, position);
         else
             for (uint n = 0; n < 3 * left; n++) position[n] = positions[n];
 #if NORMALS
         for (uint n = 0; n < left; n++)
-            normal_store(samples, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
+            normal_store(in, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
 #endif
     }
 }
 
-inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, global const BITS *samples,
-                                 mesh_buffers mesh, brick_work *work) {
+inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, grid_arrays in, mesh_buffers mesh,
+                                 brick_work *work) {
     for (uint z = 0; z < BRICK_PLANES; z++)
         for (uint y = 0; y <= BRICK_ROWS; y++)
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
-        batch_gather(work->list + first, batch, samples, work);
-        batch_store(s, brick, work->list + first, batch, out + first, samples, mesh, work);
+        batch_gather(s, work->list + first, batch, in, work);
+        batch_store(s, brick, work->list + first, batch, out + first, in, mesh, work);
     }
 }
 
@@ -295,7 +320,7 @@ inline_always void cases_find(const slab *s, uint count, brick_work *work) {
 /* Loops as written: gathers cost more than what they replace. */
 inline_always void triangles_emit(uint count, global const ushort *cases, global uint *index, const brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        const uint *number = work->number + NUMBER_TYPES * (work->list[n] >> 14);
+        const uint *number = work->number + NUMBER_STEP * (work->list[n] >> 14);
         global const ushort *entry = cases + CASE_ITEMS * work->cases[n];
         uint indices = 3u * *entry++;
         if (n + CASE_EXACT < count) {
@@ -326,7 +351,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
         crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &k);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
-        for (uint type = 0; type < 6; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
+        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
         vstore8(active, 0, work->active[n]);
     }
 }
@@ -359,20 +384,20 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
     line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up + deep));
 }
 
-inline_always void brick_emit(const slab *s, uint number, corner c, global const BITS *samples, row_results k1,
+inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
                               global const ushort *cases, mesh_buffers mesh, brick_work *work) {
     brick_signs signs;
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;
 #ifdef REAL
-    samples_prefetch(s, c, state.rows, samples);
+    samples_prefetch(s, c, state.rows, in.samples);
 #endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
     uint count = edges_list(s, state.rows, first, work);
 #ifdef REAL
-    vertices_emit(s, c, count, first - s->vertex_window, samples, mesh, work);
+    vertices_emit(s, c, count, first - s->vertex_window, in, mesh, work);
 #endif
     plane_number(s, c, &signs, k1, work);
     next_rows_number(s, c, &signs, k1, work);

@@ -12,20 +12,21 @@
 
 /* All vertices of a row of 64 samples, in order, from place `out` in the mesh on. */
 inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint w, const crossings *k, ulong out,
-                                global const BITS *samples, mesh_buffers mesh) {
+                                grid_arrays in, mesh_buffers mesh) {
     ulong even = even_cubes(s, y, z);
     uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
-    for (uint type = 0; type < 6; type++) {
+    for (uint type = 0; type < EDGE_TYPES; type++) {
         for (ulong crossed = k->type[type]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
             uint place = edge_place(type, !(even >> bit & 1)) + row + bit;
             ulong from = row_start(s, brick.y + (place >> 7 & 0xf), z) + brick.x + (place & 0x7f);
-            BITS a = samples[from], b = samples[from + place_step(s, place)];
+            long step = place_step(s, place);
+            BITS a = in.samples[from], b = in.samples[from + step];
             float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
-            position_make(s, brick, place, t, position);
+            position_make(s, in, brick, place, from, step, t, position);
             for (uint n = 0; n < 3; n++) mesh.positions[3 * out + n] = position[n];
 #if NORMALS
-            normal_store(samples, s, brick, place, t, mesh.normals + 3 * out);
+            normal_store(in, s, brick, place, t, mesh.normals + 3 * out);
 #endif
         }
     }
@@ -105,15 +106,15 @@ inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_resu
 inline_always void crossings_beside(const cube_rows *r, crossings *b, crossings *c, crossings *d) {
     b->type[0] = r->b0 ^ r->b1;
     b->type[2] = r->b0 ^ r->d0;
-    b->type[4] = choose(r->even, r->b1 ^ r->d0, r->b0 ^ r->d1);
+    if (!HYBRID) b->type[4] = choose(r->even, r->b1 ^ r->d0, r->b0 ^ r->d1);
     c->type[0] = r->c0 ^ r->c1;
     c->type[1] = r->c0 ^ r->d0;
-    c->type[3] = choose(r->even, r->c1 ^ r->d0, r->c0 ^ r->d1);
+    if (!HYBRID) c->type[3] = choose(r->even, r->c1 ^ r->d0, r->c0 ^ r->d1);
     d->type[0] = r->d0 ^ r->d1;
 }
 
-inline_always void row_emit(const slab *s, corner brick, uint number, uint place, global const BITS *samples,
-                            row_results k1, global const ushort *cases, mesh_buffers mesh) {
+inline_always void row_emit(const slab *s, corner brick, uint number, uint place, grid_arrays in, row_results k1,
+                            global const ushort *cases, mesh_buffers mesh) {
     uint y = brick.y + place % BRICK_ROWS, z = brick.z + place / BRICK_ROWS, w = brick.x / 64;
     cube_rows r = cube_rows_of(s, y, z, w, row_of(s, y, z, w, k1), row_of(s, y + 1, z, w, k1),
                                row_of(s, y, z + 1, w, k1), row_of(s, y + 1, z + 1, w, k1));
@@ -125,7 +126,7 @@ inline_always void row_emit(const slab *s, corner brick, uint number, uint place
 #endif
     const owner own = owner_of(s, y, z, w, k1);
 #ifdef REAL
-    row_vertices(s, brick, y, z, w, &a, (uint)(number_of(own, 0) - s->vertex_window), samples, mesh);
+    row_vertices(s, brick, y, z, w, &a, (uint)(number_of(own, 0) - s->vertex_window), in, mesh);
 #endif
     if (!active) return;
     crossings b = {{0, 0, 0, 0, 0, 0}}, c = b, d = b;
@@ -150,10 +151,10 @@ typedef struct brick_work {
 inline_always void brick_work_begin(const slab *s, brick_work *work) { work->none = 0; }
 
 /* The work-item's row of brick `number`. */
-inline_always void brick_emit(const slab *s, uint number, corner brick, global const BITS *samples, row_results k1,
+inline_always void brick_emit(const slab *s, uint number, corner brick, grid_arrays in, row_results k1,
                               global const ushort *cases, mesh_buffers mesh, brick_work *work) {
     uint place = (uint)get_local_id(0) % BRICK_WORDS;
-    if (k1.bricks[number].rows >> place & 1) row_emit(s, brick, number, place, samples, k1, cases, mesh);
+    if (k1.bricks[number].rows >> place & 1) row_emit(s, brick, number, place, in, k1, cases, mesh);
 }
 
 #endif

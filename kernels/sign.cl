@@ -7,57 +7,12 @@
  * a time, next to each other in x, so that samples are read in long runs, 64 by vectors of Clang's; else four
  * work-items share a row of 64 samples.
  */
-#if FLOATING == 32
-typedef int signed_bits;
-#define SIGNED16 int16
-#elif FLOATING == 64
-typedef long signed_bits;
-#define SIGNED16 long16
-#endif
-
-#if FLOATING
-#define KEY_SIGN ((BITS)1 << (FLOATING - 1))
-/* From here on keys are infinite or NaN, up to its complement too. */
-#define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
-#endif
-
-inline_always uint key_upper(BITS key) {
-#if FLOATING == 64
-    return (uint)(key >> 32);
-#else
-    return (uint)key;
-#endif
-}
-
-/* Where a sample is missing the range tells nothing. */
-inline_always bool range_finite(brick_range range) {
-#if FLOATING
-    return range.high < KEY_INFINITY && range.low > ~KEY_INFINITY;
-#else
-    return true;
-#endif
-}
-
-inline_always uint range_sign(const slab *s, brick_range range) {
-    if (!range_finite(range)) return SIGN_MIXED;
-    return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
-}
-
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 
 /* Of the brick that a word is in, of any tile; mixed on the first visit. */
 inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global const brick_range *ranges) {
     return s->ranges_known ? range_sign(s, ranges[s->range_offset + brick_index(s, y, z, w)]) : SIGN_MIXED;
 }
-
-inline_always uint keys_least(BITS16 keys) {
-    PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
-    PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
-    return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
-}
-
-/* The largest upper half is the complement of the complement's least. */
-inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }
 
 inline_always void brick_sign_store(uint number, uint sign, global brick_state *bricks) {
     brick_state b = {0, 0, 0, sign};
@@ -178,42 +133,92 @@ inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count
     }
 }
 
-/* Of bricks whose ranges are known: those that are mixed are asked for first. */
-inline_always void run_visit_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
-                                   global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
-    uint first = brick_index(s, y0, z0, w), mixed = 0;
-    for (uint n = 0; n < count; n++) {
-        uint sign = range_sign(s, ranges[s->range_offset + first + n]);
-        brick_sign_store(first + n, sign, bricks);
-        if (sign != SIGN_MIXED) continue;
+/* The sign that a run of bricks has in common. */
+inline_always uint run_sign(const slab *s, global const brick_range *ranges, uint count) {
+    brick_range whole = ranges[0];
+    if (count == RUN_BRICKS_X) {
+        uint16 r = vload16(0, (global const uint *)ranges);
+        uint4 low = min(r.even.lo, r.even.hi), high = max(r.odd.lo, r.odd.hi);
+        whole.low = min(min(low.x, low.y), min(low.z, low.w));
+        whole.high = max(max(high.x, high.y), max(high.z, high.w));
+    }
+    for (uint n = 1; n < count && count != RUN_BRICKS_X; n++) {
+        whole.low = min(whole.low, ranges[n].low);
+        whole.high = max(whole.high, ranges[n].high);
+    }
+    return range_sign(s, whole);
+}
+
+/* Signs of bricks whose ranges are known. Returns which are mixed, whose samples it asks for. */
+inline_always uint run_sign_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
+                                  global brick_state *bricks, global const brick_range *ranges) {
+    const uint first = brick_index(s, y0, z0, w);
+    const uint sign = run_sign(s, ranges + s->range_offset + first, count);
+    uint mixed = 0;
+    for (uint n = 0; n < count; n++) brick_sign_store(first + n, sign, bricks);
+    for (uint n = 0; n < count && sign == SIGN_MIXED; n++) {
+        uint own = range_sign(s, ranges[s->range_offset + first + n]);
+        bricks[first + n].sign = own;
+        if (own != SIGN_MIXED) continue;
         mixed |= 1u << n;
         for (uint place = 0; place < BRICK_WORDS; place++)
             row_prefetch(s, y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, w + n, 1, samples);
     }
-    for (uint n = 0; n < count; n++)
-        if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + (ulong)BRICK_WORDS * (first + n));
+    return mixed;
+}
+
+inline_always void run_words_make(const slab *s, uint y0, uint z0, uint w, uint mixed, global const BITS *samples,
+                                  global ulong *words) {
+    ulong first = brick_index(s, y0, z0, w);
+    for (uint n = 0; mixed >> n; n++)
+        if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + BRICK_WORDS * (first + n));
+}
+
+/* A layer whose ranges are known: words are made one run behind, when their samples have come. */
+inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, global const BITS *samples,
+                                    global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
+    uint asked = 0, asked_y = y0, asked_w = 0;
+    for (uint y = y0; y < y1; y += BRICK_ROWS)
+        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
+            uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
+            uint mixed = run_sign_again(s, y, z, w, count, samples, bricks, ranges);
+            run_words_make(s, asked_y, z, asked_w, asked, samples, words);
+            asked = mixed, asked_y = y, asked_w = w;
+        }
+    run_words_make(s, asked_y, z, asked_w, asked, samples, words);
 }
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
+    if (s->ranges_known) {
+        layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
+        return;
+    }
     for (uint y = y0; y < y1; y += BRICK_ROWS)
-        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
-            uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
-            if (s->ranges_known)
-                run_visit_again(s, y, z, w, count, samples, words, bricks, ranges);
-            else
-                run_visit(s, y, z, w, count, samples, words, bricks, ranges, nonfinite);
-        }
+        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X)
+            run_visit(s, y, z, w, min((uint)RUN_BRICKS_X, s->words_x - w), samples, words, bricks, ranges, nonfinite);
 }
 
-/* A row of words, each `stride` words after the last. */
+/* A word of any tile. */
+inline_always ulong word_at(const slab *s, uint y, uint z, uint w, uint sign, global const BITS *samples) {
+    ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
+    return word & word_valid(s, w);
+}
+
+/* The words of a row, and those of the rows y to y + 7, below y1, brick by brick. */
 inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
-                                  global const brick_range *ranges, global ulong *out, uint stride) {
+                                  global const brick_range *ranges, global ulong *out) {
+    for (uint w = 0; w < s->words_x; w++) out[w] = word_at(s, y, z, w, sign_known(s, y, z, w, ranges), samples);
+}
+
+inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
+                                   global const brick_range *ranges, global ulong *out) {
     for (uint w = 0; w < s->words_x; w++) {
         uint sign = sign_known(s, y, z, w, ranges);
-        ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
-        out[(ulong)stride * w] = word & word_valid(s, w);
+        vstore8((lanes)(sign_word(sign) & word_valid(s, w)), w, out);
+        for (uint n = 0; n < BRICK_ROWS && sign == SIGN_MIXED && y + n < y1; n++)
+            out[BRICK_ROWS * w + n] = word_at(s, y + n, z, w, sign, samples);
     }
 }
 
@@ -228,14 +233,6 @@ inline_always BITS16 row_part_load(global const BITS *samples, const slab *s, ui
     BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
     uint left = min(s->nx - 16 * part, 16u);
     return lane < (BITS16)(BITS)left ? bits : (BITS16)bits.s0;
-}
-
-inline_always BITS16 keys16(BITS16 bits, const slab *s) {
-#if FLOATING
-    return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
-#else
-    return bits ^ (BITS)s->key_flip;
-#endif
 }
 
 /* A work-item's part of a brick's words and range. */
@@ -291,8 +288,8 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
 }
 
 /* A row of words, each `stride` words after the last. */
-inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
-                                  global const brick_range *ranges, global ulong *out, uint stride) {
+inline_always void row_words_spread(const slab *s, uint y, uint z, global const BITS *samples,
+                                    global const brick_range *ranges, global ulong *out, uint stride) {
     for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
         uint part = first + (uint)get_local_id(0), w = part / ROW_PARTS;
         if (w < s->words_x) {
@@ -302,6 +299,18 @@ inline_always void row_words_make(const slab *s, uint y, uint z, global const BI
             ((global ushort *)(out + (ulong)stride * w))[part % ROW_PARTS] = (ushort)bits;
         }
     }
+}
+
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
+                                  global const brick_range *ranges, global ulong *out) {
+    row_words_spread(s, y, z, samples, ranges, out, 1);
+}
+
+/* The words of the rows y to y + 7, below y1, brick by brick. */
+inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
+                                   global const brick_range *ranges, global ulong *out) {
+    for (uint n = 0; n < BRICK_ROWS && y + n < y1; n++)
+        row_words_spread(s, y + n, z, samples, ranges, out + n, BRICK_ROWS);
 }
 
 #endif

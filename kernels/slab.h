@@ -46,8 +46,9 @@ typedef struct brick_range {
 enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
- * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and two more. */
-enum { NUMBER_TYPES = 8, NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
+ * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and one or two more. */
+#define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
+enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
 
 /* Of a sample, counted in samples. */
 #define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
@@ -64,17 +65,22 @@ enum {
     STATE_WORDS
 };
 
-/* Words of the state buffer per tile: its two sums as scan.cl keeps them, and the next tile of the same group. */
-enum { TILE_VERTICES, TILE_TRIANGLES, TILE_NEXT, TILE_WORDS };
+/* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and the
+ * next tile of the same group. */
+enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
 typedef struct slab {
     slab_u64 sample_offset; /* of plane sample_z in the buffer, in samples */
     slab_u64 sample_count;  /* samples in the buffer from there on */
-    slab_u64 inside_low;    /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
+    slab_u64 point_offset; /* floats before the point of place 0 in the sample buffer, in that of points, modulo 2^64 */
+    slab_u64 blanked_offset;      /* likewise, bytes of the buffer of blanked samples */
+    slab_u64 blanked_cell_offset; /* of plane sample_z in the buffer of blanked cells */
+    slab_u64 blanked_cell_count;  /* in that buffer from there on */
+    slab_u64 inside_low;          /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
     slab_u64 inside_span;
-    slab_u64 key_flip;    /* integers: key = bits ^ key_flip */
-    slab_u32 key_inside;  /* keys from here on are surely inside */
-    slab_u32 key_outside; /* keys below are surely outside */
+    slab_u64 key_flip;       /* integers: key = bits ^ key_flip */
+    slab_u32 key_inside;     /* keys from here on are surely inside */
+    slab_u32 key_outside;    /* keys below are surely outside */
     slab_u64 nodata_bits[2]; /* patterns of the missing value; one twice where it has one pattern */
     slab_u32 nx, ny, nz;     /* samples of the whole grid */
     slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
@@ -92,9 +98,10 @@ typedef struct slab {
     slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
     slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset; /* of its list of active bricks */
-    slab_u32 range_offset; /* of brick 0 of the slab's window in the buffer of ranges */
+    slab_u32 range_offset;  /* of brick 0 of the slab's window in the buffer of ranges */
     slab_u32 ranges_known;
     slab_u32 has_nodata;
+    slab_u32 has_blanked_samples, has_blanked_cells;
     slab_u32 vertex_base;             /* number of the slab's first vertex */
     slab_u32 vertex_base_next;        /* of the next slab's first vertex */
     slab_u32 vertex_window;           /* number of the vertex that the position buffer starts with */

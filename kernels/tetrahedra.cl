@@ -96,6 +96,9 @@ inline_always lanes cubes_active(const cube_rows *r) {
     return any & ~all & r->has_x & r->has_y & r->has_z;
 }
 
+/* Types of edges that have vertices. */
+#define EDGE_TYPES (HYBRID ? 3 : 6)
+
 /* Edges owned by the samples of rows a whose ends differ, where both ends are in the grid. */
 typedef struct crossings {
     lanes type[6]; /* x, y, z, xy, xz, yz */
@@ -106,6 +109,8 @@ inline_always crossings crossings_owned(const cube_rows *r) {
     k.type[0] = (r->a0 ^ r->a1) & r->has_x;
     k.type[1] = (r->a0 ^ r->b0) & r->has_y;
     k.type[2] = (r->a0 ^ r->c0) & r->has_z;
+    k.type[3] = k.type[4] = k.type[5] = 0;
+    if (HYBRID) return k;
     k.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
     k.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
     k.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
@@ -130,7 +135,12 @@ inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, la
 }
 
 /* Corner n of an even cube, corner n ^ 1 of an odd one. Ones and twos of the five tetrahedra are added bit by bit, so
- * that four words are counted and not ten. */
+ * that four words are counted and not ten.
+ *
+ * In the hybrid method a loop of n vertices has n - 2 triangles. The tetrahedra's surface consists of disks with all
+ * vertices on their borders: it has n - 2 triangles too, but counts vertices on face diagonals, which are the edges of
+ * the central tetrahedron. Where that emits one triangle, three of them are crossed, where two, four: it takes two away
+ * from what the others emit, which is counted as one less than one more where it does not. */
 inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
     lanes e = r->even;
     lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
@@ -138,18 +148,25 @@ inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
     lanes p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
     lanes p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
     lanes one[5], two[5], ones, twos, fours;
-    one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &two[0]);
     one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &two[1]);
     one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &two[2]);
     one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &two[3]);
     one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &two[4]);
+#if HYBRID
+    one[0] = 0;
+    two[0] = (~(p0 | p3 | p5 | p6) | (p0 & p3 & p5 & p6)) & cubes;
+#else
+    one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &two[0]);
+#endif
     lanes carry0 = add_carry(one[0], one[1], one[2], &ones);
     lanes carry1 = add_carry(ones, one[3], one[4], &ones);
     lanes carry2 = add_carry(carry0, carry1, two[0], &twos);
     lanes carry3 = add_carry(twos, two[1], two[2], &twos);
     lanes carry4 = add_carry(twos, two[3], two[4], &twos);
     lanes eights = add_carry(carry2, carry3, carry4, &fours);
-    return lanes_popcount(ones) + 2 * lanes_popcount(twos) + 4 * lanes_popcount(fours) + 8 * lanes_popcount(eights);
+    lanes count =
+        lanes_popcount(ones) + 2 * lanes_popcount(twos) + 4 * lanes_popcount(fours) + 8 * lanes_popcount(eights);
+    return HYBRID ? count - 2 * lanes_popcount(cubes) : count;
 }
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that

@@ -5,7 +5,7 @@
  * (floats order like integers within a sign), so the test is (bits - low) <= span in unsigned integers: exact whatever
  * the device does with subnormals, and the same text for all types. Bits past the end of a row are 0.
  *
- * From the build: BITS, the unsigned type as wide as a sample; FLOATING; WORK_ITEMS; MISSING.
+ * From the build: BITS, the unsigned type as wide as a sample; FLOATING; WORK_ITEMS; MISSING; HYBRID.
  */
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef FP64

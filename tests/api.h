@@ -24,12 +24,4 @@ static inline void samples_fill(void) {
             (uint8_t)(127.5 + 50 * sin(0.7 * (n % SIZE)) + 50 * cos(0.6 * (n / SIZE % SIZE) + 0.3 * (n / SIZE / SIZE)));
 }
 
-/* The status, and a message that says something of it. */
-#define EXPECT_REFUSED(call, wanted, what)                                                                             \
-    do {                                                                                                               \
-        tc_status status_ = (call);                                                                                    \
-        EXPECT(status_ == (wanted), "%s: status %d, not %d (%s)", what, (int)status_, (int)(wanted), tc_message());    \
-        EXPECT(*tc_message(), "%s: no message", what);                                                                 \
-    } while (0)
-
 #endif

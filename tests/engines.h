@@ -64,4 +64,12 @@ static inline const char *mesh_difference(const tc_mesh_data *a, const tc_mesh_d
     return NULL;
 }
 
+/* The status, and a message that says something of it. */
+#define EXPECT_REFUSED(call, wanted, what)                                                                             \
+    do {                                                                                                               \
+        tc_status status_ = (call);                                                                                    \
+        EXPECT(status_ == (wanted), "%s: status %d, not %d (%s)", what, (int)status_, (int)(wanted), tc_message());    \
+        EXPECT(*tc_message(), "%s: no message", what);                                                                 \
+    } while (0)
+
 #endif

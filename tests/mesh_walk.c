@@ -68,7 +68,8 @@ static void samples_judge(walk *w) {
     for (int64_t n = 0; n < count; n++) {
         double value = sample_get(g->samples, g->type, n);
         w->inside[n] = value >= w->isovalue;
-        w->present[n] = isfinite(value) && !(g->has_nodata && value == g->nodata);
+        w->present[n] =
+            isfinite(value) && !(g->has_nodata && value == g->nodata) && !(g->blanked_samples && g->blanked_samples[n]);
     }
 }
 
@@ -79,7 +80,9 @@ static bool cube_is_present(const walk *w, const int64_t p[3]) {
         int64_t q[3] = {p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)};
         present = w->present[index_of(w, q)];
     }
-    return present;
+    const int64_t *n = w->grid->dims;
+    const uint8_t *blanked = w->grid->blanked_cells;
+    return present && !(blanked && blanked[(p[2] * (n[1] - 1) + p[1]) * (n[0] - 1) + p[0]]);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- edges */
@@ -125,8 +128,28 @@ static long double crossing_of(const walk *w, const int64_t a[3], const int64_t 
     return (isovalue - value_at(w, a)) / (value_at(w, b) - value_at(w, a));
 }
 
+static bool grid_has_coordinates(const tc_grid_options *g) { return g->axes[0] || g->points; }
+
+/* World coordinate of a sample, where the grid is not uniform. */
+static long double coordinate_at(const walk *w, const int64_t p[3], int row) {
+    if (w->grid->axes[0]) return (long double)w->grid->axes[row][p[row]];
+    return (long double)w->grid->points[3 * index_of(w, p) + row];
+}
+
+static bool between_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
+    bool right = t >= 0 && t <= 1;
+    for (int row = 0; row < 3; row++) {
+        long double p = coordinate_at(w, a, row), q = coordinate_at(w, b, row);
+        long double room = (fabsl(p) + fabsl(q)) * 0x1p-21L;
+        right = right && fabsl(p + t * (q - p) - (long double)is[row]) <= room;
+        if (t == 0 || t == 1) right = right && (long double)is[row] == (t == 1 ? q : p);
+    }
+    return right;
+}
+
 static bool position_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
     bool right = t >= 0 && t <= 1;
+    if (grid_has_coordinates(w->grid)) return between_is_right(w, a, b, t, is);
     for (int row = 0; row < 3; row++) {
         const double *m = w->grid->matrix[row];
         long double sum = (long double)(float)m[3], room = fabsl(sum);
@@ -156,29 +179,67 @@ static long double derivative_at(const walk *w, const int64_t p[3], int axis, lo
     return steps > 0 ? (values[1] - values[0]) / steps : 0;
 }
 
-/* Inverse transpose of the matrix, times its determinant. */
-static void cofactors_make(const walk *w, long double out[3][3]) {
+/* How positions change along an axis, by the same differences. */
+static void spacing_at(const walk *w, const int64_t p[3], int axis, long double out[3]) {
+    int64_t q[2][3];
+    long double steps = 0;
+    for (int n = 0; n < 2; n++) {
+        memcpy(q[n], p, sizeof q[n]);
+        q[n][axis] += 2 * n - 1;
+        bool there = q[n][axis] >= 0 && q[n][axis] < w->grid->dims[axis] && w->present[index_of(w, q[n])];
+        if (!there) q[n][axis] = p[axis];
+        steps += there;
+    }
+    for (int row = 0; row < 3; row++)
+        out[row] = steps > 0 ? (coordinate_at(w, q[1], row) - coordinate_at(w, q[0], row)) / steps : 0;
+}
+
+/* The Jacobian at the crossing, by rows. */
+static void jacobian_make(const walk *w, const int64_t a[3], const int64_t b[3], long double t, long double out[3][3]) {
+    for (int axis = 0; axis < 3; axis++) {
+        long double at_a[3], at_b[3];
+        if (grid_has_coordinates(w->grid)) {
+            spacing_at(w, a, axis, at_a);
+            spacing_at(w, b, axis, at_b);
+            for (int row = 0; row < 3; row++) out[row][axis] = at_a[row] + t * (at_b[row] - at_a[row]);
+        } else {
+            for (int row = 0; row < 3; row++) out[row][axis] = (long double)w->grid->matrix[row][axis];
+        }
+    }
+}
+
+/* Inverse transpose of the Jacobian, times its determinant, which is returned; *blurred: that may be 0, or of the other
+ * sign. */
+static long double cofactors_make(long double m[3][3], long double out[3][3], bool *blurred) {
+    long double room = 1e-3L, determinant = 0;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) {
-            const double(*m)[4] = w->grid->matrix;
             int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-            out[r][c] =
-                (long double)m[r1][c1] * (long double)m[r2][c2] - (long double)m[r1][c2] * (long double)m[r2][c1];
+            out[r][c] = m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
         }
+    for (int c = 0; c < 3; c++) {
+        room *= hypotl(hypotl(m[0][c], m[1][c]), m[2][c]);
+        determinant += m[0][c] * out[0][c];
+    }
+    *blurred = fabsl(determinant) <= room;
+    return determinant;
 }
 
 /* Unit length or zero; direction where cancellation and subnormals leave enough digits to tell. */
 static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
     long double gradient[3], cofactors[3][3], expected[3], size = 0, largest = 0, length = 0, dot = 0, norm = 0;
+    long double jacobian[3][3];
+    bool blurred;
     for (int axis = 0; axis < 3; axis++) {
         long double ga = derivative_at(w, a, axis, &size), gb = derivative_at(w, b, axis, &size);
         gradient[axis] = ga + t * (gb - ga);
     }
-    cofactors_make(w, cofactors);
+    jacobian_make(w, a, b, t, jacobian);
+    const bool turned = cofactors_make(jacobian, cofactors, &blurred) < 0;
     for (int row = 0; row < 3; row++) {
         expected[row] = 0;
         for (int axis = 0; axis < 3; axis++) {
-            long double term = (w->mirrored ? 1 : -1) * cofactors[row][axis];
+            long double term = (turned ? 1 : -1) * cofactors[row][axis];
             expected[row] += term * gradient[axis];
             largest = fmaxl(largest, fabsl(term));
         }
@@ -187,8 +248,8 @@ static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3
         norm += (long double)is[row] * (long double)is[row];
     }
     long double blur = largest * (size * 1e-3L + (w->grid->type == TC_F64 ? 0x1p-1050L : 0x1p-128L));
-    if (norm == 0) return length <= blur;
-    return fabsl(norm - 1) <= 1e-5L && (length <= blur || dot >= length * (1 - 1e-4L));
+    if (norm == 0) return blurred || length <= blur;
+    return fabsl(norm - 1) <= 1e-5L && (blurred || length <= blur || dot >= length * (1 - 1e-4L));
 }
 
 static const char *vertices_row(walk *w, int64_t x0, int64_t x1, int64_t y, int64_t z) {
@@ -296,10 +357,56 @@ static bool matrix_mirrors(const double m[3][4]) {
            0;
 }
 
+static bool point_counts(const tc_grid_options *g, int64_t n) {
+    bool counts = !(g->blanked_samples && g->blanked_samples[n]);
+    for (int row = 0; row < 3; row++) counts = counts && fabsf(g->points[3 * n + row]) < 0x1p127f;
+    return counts;
+}
+
+/* The Jacobian in the middle of a cube; 0 where it does not count. */
+static long double cube_jacobian(const walk *w, const int64_t p[3]) {
+    const tc_grid_options *g = w->grid;
+    long double m[3][3] = {{0}}, cofactors[3][3];
+    bool blurred;
+    const uint8_t *blanked = g->blanked_cells;
+    if (blanked && blanked[(p[2] * (g->dims[1] - 1) + p[1]) * (g->dims[0] - 1) + p[0]]) return 0;
+    for (unsigned c = 0; c < 8; c++) {
+        int64_t q[3] = {p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)};
+        if (!point_counts(g, index_of(w, q))) return 0;
+        for (int axis = 0; axis < 3; axis++)
+            for (int row = 0; row < 3; row++)
+                m[row][axis] += (c >> axis & 1 ? 0.25L : -0.25L) * coordinate_at(w, q, row);
+    }
+    return cofactors_make(m, cofactors, &blurred);
+}
+
+static bool grid_mirrors(const walk *w) {
+    const tc_grid_options *g = w->grid;
+    const int64_t *n = g->dims;
+    long double sum = 0;
+    if (g->axes[0])
+        return ((g->axes[0][n[0] - 1] < g->axes[0][0]) ^ (g->axes[1][n[1] - 1] < g->axes[1][0]) ^
+                (g->axes[2][n[2] - 1] < g->axes[2][0])) != 0;
+    if (!g->points) return matrix_mirrors(g->matrix);
+    for (int64_t z = 0; z + 1 < n[2]; z++)
+        for (int64_t y = 0; y + 1 < n[1]; y++)
+            for (int64_t x = 0; x + 1 < n[0]; x++) sum += cube_jacobian(w, (int64_t[3]){x, y, z});
+    return sum < 0;
+}
+
+/* Where cubes are blanked the oracle does not know them, and what was walked is all that is known. */
+static const char *walked_compare(walk *w) {
+    const int64_t none[3] = {-1, -1, -1};
+    if (w->mesh->vertex_count != w->vertex_count) return fault_of(w, "too many vertices, not", w->vertex_count, none);
+    if (w->mesh->triangle_count != w->triangle_count)
+        return fault_of(w, "too many triangles, not", w->triangle_count, none);
+    return NULL;
+}
+
 const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh, oracle_counts *counts) {
     static _Thread_local char text[256];
     uint64_t samples = (uint64_t)(grid->dims[0] * grid->dims[1] * grid->dims[2]);
-    walk w = {.grid = grid, .isovalue = isovalue, .mesh = mesh, .mirrored = matrix_mirrors(grid->matrix)};
+    walk w = {.grid = grid, .isovalue = isovalue, .mesh = mesh};
     oracle_counts should;
     w.parity = (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1;
     w.inside = malloc(samples);
@@ -307,12 +414,14 @@ const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_me
     w.ids = malloc(samples * EDGE_TYPES * sizeof *w.ids);
     if (!w.inside || !w.present || !w.ids) exit(EXIT_FAILURE);
     memset(w.ids, 0xff, samples * EDGE_TYPES * sizeof *w.ids);
+    w.mirrored = grid_mirrors(&w);
     samples_judge(&w);
     oracle_count(grid->dims, w.parity, w.inside, w.present, &should);
-    const char *fault = counts_compare(&w, &should);
+    const char *fault = grid->blanked_cells ? NULL : counts_compare(&w, &should);
     if (!fault) fault = rows_walk(&w, vertices_row);
     if (!fault) fault = rows_walk(&w, triangles_row);
-    if (!fault) fault = topology_compare(&w, &should, !memchr(w.present, 0, samples));
+    if (!fault && grid->blanked_cells) fault = walked_compare(&w);
+    if (!fault && !grid->blanked_cells) fault = topology_compare(&w, &should, !memchr(w.present, 0, samples));
     if (fault) snprintf(text, sizeof text, "%s", fault);
     if (counts) *counts = should;
     free(w.inside);

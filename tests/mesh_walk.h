@@ -11,8 +11,9 @@
 #include "oracle.h"
 #include "tetracubes.h"
 
-/* The first fault, in words that stay valid until the next call; NULL where there is none. Normals are checked where
- * the mesh has them. *counts, from signs alone, may be NULL. */
+/* Uniform, rectilinear and curvilinear grids. The first fault, in words that stay valid until the next call; NULL where
+ * there is none. Normals are checked where the mesh has them. *counts, from signs alone, blanked cells not among them,
+ * may be NULL. */
 const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh, oracle_counts *counts);
 
 /* FNV-1a, by words of 32 bits, over positions, normals where there are any, and triangles. */

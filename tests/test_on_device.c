@@ -114,7 +114,7 @@ static void expect_reference(const gpu *g, cl_mem samples, const tc_extract_opti
 }
 
 /* Count, allocate, emit. */
-static void test_surface(const gpu *g, tc_grid *grid, cl_mem samples, double isovalue, int normals) {
+static void test_surface(const gpu *g, tc_grid *grid, cl_mem samples, double isovalue, int normals, tc_method method) {
     tc_extract_options how;
     tc_counts counts = {.struct_size = sizeof counts};
     tc_device_mesh mesh = {.struct_size = sizeof mesh};
@@ -122,6 +122,7 @@ static void test_surface(const gpu *g, tc_grid *grid, cl_mem samples, double iso
     tc_extract_options_init(&how);
     how.isovalue = isovalue;
     how.normals = normals;
+    how.method = method;
     EXPECT(!tc_count(grid, &how, &counts), "count: %s", tc_message());
     mesh.positions = buffer_make(g, 12 * counts.vertex_count);
     mesh.normals = normals ? buffer_make(g, 12 * counts.vertex_count) : NULL;
@@ -166,6 +167,9 @@ static void test_refusals(const gpu *g, tc_grid *grid) {
     how.normals = 1;
     expect_refused(grid, &how, &mesh, "other options", "tc_count");
     how.normals = 0;
+    how.method = TC_METHOD_HYBRID;
+    expect_refused(grid, &how, &mesh, "another method", "tc_count");
+    how.method = TC_METHOD_TETRA;
     EXPECT(!tc_emit(grid, &how, &mesh, NULL), "emission after refusals: %s", tc_message());
     EXPECT(!tc_extract(grid, &how, &host_mesh), "extraction: %s", tc_message());
     expect_refused(grid, &how, &mesh, "emission after an extraction", "tc_count");
@@ -218,9 +222,10 @@ int main(void) {
     EXPECT(!tc_grid_create(context, &volume, &grid), "grid: %s", tc_message());
     if (!grid) return EXPECT_DONE();
 
-    test_surface(&g, grid, samples, 9000, 0);
-    test_surface(&g, grid, samples, 15000.5, 1);
-    test_surface(&g, grid, samples, 9000, 0);
+    test_surface(&g, grid, samples, 9000, 0, TC_METHOD_TETRA);
+    test_surface(&g, grid, samples, 15000.5, 1, TC_METHOD_TETRA);
+    test_surface(&g, grid, samples, 9000, 0, TC_METHOD_HYBRID);
+    test_surface(&g, grid, samples, 9000, 0, TC_METHOD_TETRA);
     test_refusals(&g, grid);
     test_grids_refused(context, samples);
 

@@ -1,7 +1,8 @@
 /*
  * warm_cache.c - builds the kernels once, so that tests find them in the cache of the OpenCL implementation
  *
- * Those that test_random, test_device and test_api need; a kernel that is not among them is built by the test itself.
+ * Those that test_random, test_device, test_api, test_curvilinear and test_hybrid need; a kernel that is not among them
+ * is built by the test itself.
  *
  * Usage: warm_cache PART PARTS: every PARTS-th program, so that processes with a cache each can share the work.
  */
@@ -14,25 +15,35 @@ static const struct {
     tc_type type;
     uint32_t work_items;
     int division;
-    unsigned variants;
+    unsigned variants[2]; /* of each method */
+    int grid;             /* 1: rectilinear, 2: curvilinear */
 } programs[] = {
-    {TC_U8, 0, 0, PLAIN | WITH_NORMALS | WITH_BOTH},
-    {TC_I8, 0, 0, PLAIN | WITH_BOTH},
-    {TC_U16, 0, 0, PLAIN | WITH_BOTH},
-    {TC_I16, 0, 0, PLAIN | WITH_BOTH},
-    {TC_U32, 0, 0, PLAIN | WITH_BOTH},
-    {TC_I32, 0, 0, PLAIN | WITH_BOTH},
-    {TC_F32, 0, 0, 15},
-    {TC_F64, 0, 0, 15},
-    {TC_F32, 32, 0, WITH_NORMALS | WITH_BOTH},
-    {TC_U8, 64, 0, PLAIN},
-    {TC_F32, 256, 0, WITH_NORMALS | WITH_BOTH},
-    {TC_F32, 0, 2, WITH_NORMALS},
-    {TC_F32, 0, 3, WITH_NORMALS},
+    {TC_U8, 0, 0, {PLAIN | WITH_NORMALS | WITH_BOTH, PLAIN | WITH_MISSING | WITH_NORMALS}, 0},
+    {TC_I8, 0, 0, {PLAIN | WITH_BOTH, PLAIN}, 0},
+    {TC_U16, 0, 0, {PLAIN | WITH_BOTH, PLAIN}, 0},
+    {TC_I16, 0, 0, {PLAIN | WITH_BOTH, PLAIN}, 0},
+    {TC_U32, 0, 0, {PLAIN | WITH_BOTH, PLAIN}, 0},
+    {TC_I32, 0, 0, {PLAIN | WITH_BOTH, PLAIN}, 0},
+    {TC_F32, 0, 0, {15, 15}, 0},
+    {TC_F64, 0, 0, {15, PLAIN | WITH_BOTH}, 0},
+    {TC_F32, 32, 0, {WITH_NORMALS | WITH_BOTH, WITH_BOTH}, 0},
+    {TC_U8, 64, 0, {PLAIN, 0}, 0},
+    {TC_F32, 256, 0, {WITH_NORMALS | WITH_BOTH, 0}, 0},
+    {TC_F32, 0, 2, {WITH_NORMALS, 0}, 0},
+    {TC_F32, 0, 3, {WITH_NORMALS, 0}, 0},
+    {TC_F32, 0, 0, {WITH_NORMALS | WITH_BOTH, 0}, 2},
+    {TC_U8, 0, 0, {WITH_NORMALS | WITH_BOTH, 0}, 2},
+    {TC_U32, 0, 0, {WITH_BOTH, 0}, 2},
+    {TC_F64, 0, 0, {WITH_NORMALS | WITH_BOTH, 0}, 2},
+    {TC_F32, 0, 0, {WITH_NORMALS | WITH_BOTH, 0}, 1},
+    {TC_F32, 32, 0, {WITH_NORMALS | WITH_BOTH, 0}, 2},
+    {TC_F32, 32, 0, {WITH_BOTH, 0}, 1},
+    {TC_U32, 32, 0, {WITH_BOTH, 0}, 2},
 };
 
-static void program_build(size_t n, int variant) {
+static void program_build(size_t n, int variant, tc_method method) {
     static double memory[27]; /* aligned for every type */
+    static float points[3 * 27];
     tc_context_options options;
     tc_grid_options grid;
     tc_extract_options how;
@@ -49,8 +60,11 @@ static void program_build(size_t n, int variant) {
     grid.samples = memory;
     grid.has_nodata = variant & 1;
     grid.nodata = 100;
+    for (int axis = 0; axis < 3 && programs[n].grid == 1; axis++) grid.axes[axis] = points;
+    if (programs[n].grid == 2) grid.points = points;
     how.isovalue = 1;
     how.normals = variant >> 1;
+    how.method = method;
     for (int m = 0; m < 27; m++) sample_set(memory, grid.type, m, m == 13 ? 2 : 0);
     extract(context, &grid, &how, &mesh, &data);
     tc_mesh_destroy(mesh);
@@ -62,7 +76,8 @@ int main(int argc, char **argv) {
     size_t number = 0;
     if (!device_exists()) return SKIPPED;
     for (size_t n = 0; n < sizeof programs / sizeof *programs; n++)
-        for (int variant = 0; variant < 4; variant++)
-            if ((programs[n].variants >> variant & 1) && number++ % parts == part) program_build(n, variant);
+        for (int m = 0; m < 8; m++)
+            if ((programs[n].variants[m / 4] >> m % 4 & 1) && number++ % parts == part)
+                program_build(n, m % 4, (tc_method)(m / 4));
     return EXPECT_DONE();
 }

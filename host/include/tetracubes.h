@@ -193,7 +193,11 @@ typedef struct tc_grid_options {
                                    complete. Not for the reference engine */
     uint64_t cl_samples_offset; /* in samples, of the first one in that buffer */
 
-    /* Rectilinear and curvilinear grids; finite, borrowed as the samples are. With neither the grid is uniform. */
+    /* Rectilinear and curvilinear grids; borrowed as the samples are. With neither the grid is uniform. Coordinates are
+     * finite and below 2^127 (TC_ERROR_DATA otherwise), those of samples that are missing, points only, may be
+     * anything. Vertices lie at p0 + t (p1 - p0), and at p1 itself when t = 1. Triangles keep their outward side where
+     * the sum of the Jacobians of all cubes, blanked ones left out, is negative; single cubes may be collapsed or
+     * folded. */
     const float
         *axes[3];        /* rectilinear: dims[a] positions along each axis, rising or falling; in place of the matrix */
     const float *points; /* curvilinear: x, y, z of every sample, in place of the matrix */
@@ -225,7 +229,8 @@ typedef enum tc_method {
 typedef struct tc_extract_options {
     size_t struct_size;
     double isovalue; /* finite; inside means sample >= isovalue, exactly */
-    int normals;     /* nonzero: a unit normal per vertex, the negated gradient (zero where that vanishes) */
+    int normals;     /* nonzero: a unit normal per vertex, the negated gradient: zero where that vanishes, or where
+                            points do not span space */
     tc_method method;
 } tc_extract_options;
 

@@ -4,6 +4,7 @@
 #ifndef CONTEXT_H
 #define CONTEXT_H
 
+#include "complex_job.h"
 #include "host_block.h"
 #include "opencl.h"
 #include "tetracubes.h"
@@ -24,6 +25,7 @@ typedef struct program {
     bool cached; /* it came from the cache of built programs */
     cl_program program;
     cl_kernel kernel, cells;
+    cl_kernel complex[COMPLEX_KERNELS];
     struct program *next;
 } program;
 
@@ -40,14 +42,25 @@ typedef struct mesh_buffers {
     device_buffer positions, normals, triangles;
 } mesh_buffers;
 
-/* All that kernels need besides samples that fit whole. A second window is in use where copies overlap kernels. */
+/* What a grid is given by, a value or more per sample or cube. */
+enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, ARRAY_COUNT };
+
+/* What the kernels of complexes leave for each other. */
+typedef struct complex_buffers {
+    device_buffer clusters, active_clusters, state, cases;
+    device_buffer active, entries, table, tiles;
+} complex_buffers;
+
+/* All that kernels need besides arrays of the grid that fit whole. A second window is in use where copies overlap
+ * kernels. */
 typedef struct workspace {
     word_buffers words[2];
-    device_buffer samples[2];
+    device_buffer arrays[2][ARRAY_COUNT];
     mesh_buffers mesh[2];
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
-    device_buffer cases[2]; /* cube table; [1] for mirrored grids */
+    complex_buffers complex;
+    device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {
@@ -69,8 +82,10 @@ struct tc_context {
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
 /* The kernels for a grid, built when first asked for, owned by the context (program.c). */
-tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out);
-tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out);
+tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out);
+tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, tc_method method, bool missing, bool normals,
+                          kernels *out);
+tc_status complex_kernels_get(tc_context *context, const struct tc_grid *grid, cl_kernel const **out);
 void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */

@@ -1,6 +1,7 @@
 /*
  * The public calls on grids and meshes: arguments checked, then one engine or the other.
  */
+#include "complex.h"
 #include "context.h"
 #include "failure.h"
 #include "reference.h"
@@ -38,6 +39,7 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
 
 void tc_grid_destroy(tc_grid *grid) {
     if (!grid) return;
+    complex_grid_destroy(grid);
     structured_grid_destroy(grid);
     free(grid);
 }
@@ -47,6 +49,8 @@ static tc_status extract_options_take(tc_extract_options *o, const tc_extract_op
     tc_status status = options_take(o, sizeof *o, options, "extract options");
     if (!status && !isfinite(o->isovalue))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
+    if (!status && o->method != TC_METHOD_TETRA && o->method != TC_METHOD_HYBRID)
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
     return status;
 }
 
@@ -57,7 +61,10 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     *counts = (tc_counts){.struct_size = counts->struct_size};
     tc_status status = extract_options_take(&o, options);
     if (status) return status;
-    status = grid->device ? structured_count(grid, &o, counts) : reference_count(grid, &o, counts);
+    if (grid->complex)
+        status = complex_count(grid, &o, counts);
+    else
+        status = grid->device ? structured_count(grid, &o, counts) : reference_count(grid, &o, counts);
     if (status) *counts = (tc_counts){.struct_size = counts->struct_size};
     counts->mesh_bytes = counts->vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                          counts->triangle_count * MESH_BYTES_PER_TRIANGLE;
@@ -72,6 +79,7 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid, and a mesh with its struct_size set");
     tc_status status = extract_options_take(&o, options);
     if (status) return status;
+    if (grid->complex) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take complexes: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
     return structured_emit(grid, &o, mesh, done);
 }
@@ -84,7 +92,10 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
-    if (!status) status = grid->device ? structured_extract(grid, &o, mesh) : reference_extract(grid, &o, mesh);
+    if (!status && grid->complex)
+        status = complex_extract(grid, &o, mesh);
+    else if (!status)
+        status = grid->device ? structured_extract(grid, &o, mesh) : reference_extract(grid, &o, mesh);
     if (status) mesh_clear(mesh);
     if (status && !*out) {
         tc_mesh_destroy(mesh);

@@ -1,5 +1,7 @@
 #include "grid.h"
 
+#include "context.h"
+#include "coordinates.h"
 #include "failure.h"
 
 #include <float.h>
@@ -20,6 +22,22 @@ void tc_grid_options_init(tc_grid_options *options) {
 }
 
 int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }
+
+const void *grid_array_data(const tc_grid *grid, int array) {
+    const void *const data[ARRAY_COUNT] = {grid->samples, grid->points, grid->blanked_samples, grid->blanked_cells};
+    return data[array];
+}
+
+size_t grid_array_item_bytes(const tc_grid *grid, int array) {
+    const size_t bytes[ARRAY_COUNT] = {tc_type_bytes(grid->type), sizeof(float), 1, 1};
+    return bytes[array];
+}
+
+uint64_t grid_array_plane_bytes(const tc_grid *grid, int array) {
+    uint64_t plane = (uint64_t)(grid->dims[0] * grid->dims[1]);
+    if (array == ARRAY_BLANKED_CELLS) return (uint64_t)((grid->dims[0] - 1) * (grid->dims[1] - 1));
+    return plane * (array == ARRAY_POINTS ? 3 : 1) * grid_array_item_bytes(grid, array);
+}
 
 unsigned grid_parity(const tc_grid *grid) { return (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1; }
 
@@ -91,6 +109,21 @@ static tc_status matrix_take(const double matrix[3][4], tc_grid *grid) {
     return TC_OK;
 }
 
+static tc_status coordinates_check(const tc_grid_options *o) {
+    const float *const arrays[4] = {o->axes[0], o->axes[1], o->axes[2], o->points};
+    int axis_count = 0;
+    for (int axis = 0; axis < 3; axis++) axis_count += o->axes[axis] != NULL;
+    if (axis_count % 3)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "a rectilinear grid needs positions along all three axes, not %d",
+                               axis_count);
+    if (axis_count && o->points)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has axes and points; give one of them");
+    for (int n = 0; n < 4; n++)
+        if ((uintptr_t)arrays[n] % sizeof(float))
+            return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid's coordinates are not aligned to float");
+    return TC_OK;
+}
+
 tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     *grid = (tc_grid){0};
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
@@ -112,5 +145,12 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->cl_samples_offset = o->cl_samples_offset;
     grid->has_nodata = o->has_nodata != 0;
     grid->nodata = o->nodata;
-    return matrix_take(o->matrix, grid);
+    grid->blanked_samples = o->blanked_samples;
+    grid->blanked_cells = o->blanked_cells;
+    status = coordinates_check(o);
+    if (status) return status;
+    grid->kind = o->points ? GRID_CURVILINEAR : o->axes[0] ? GRID_RECTILINEAR : GRID_UNIFORM;
+    grid->points = o->points;
+    for (int axis = 0; axis < 3; axis++) grid->axes[axis] = o->axes[axis];
+    return grid->kind == GRID_UNIFORM ? matrix_take(o->matrix, grid) : coordinates_take(grid);
 }

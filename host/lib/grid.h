@@ -1,5 +1,5 @@
 /*
- * grid.h - a uniform grid as both engines see it: checked sizes, parity, float32 map to world space
+ * grid.h - a structured grid as both engines see it: checked sizes, parity, where its samples are in world space
  */
 #ifndef GRID_H
 #define GRID_H
@@ -9,6 +9,10 @@
 #include <stdbool.h>
 
 struct device_grid;
+struct complex_grid;
+
+/* Where positions come from; the kernels know it as GRID. */
+typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEAR = 2 } grid_kind;
 
 struct tc_grid {
     tc_context *context;
@@ -20,10 +24,15 @@ struct tc_grid {
     uint64_t cl_samples_offset;
     bool has_nodata;
     double nodata;
-    float matrix[12];       /* rows of the index-to-world map: m0 m1 m2 o */
+    grid_kind kind;
+    float matrix[12];       /* uniform: rows of the index-to-world map: m0 m1 m2 o */
     float normal_matrix[9]; /* inverse transposed, scaled by a positive number: index gradients to world directions */
-    bool mirrored;          /* negative determinant */
-    struct device_grid *device; /* NULL under the reference engine */
+    const float *axes[3];   /* rectilinear */
+    const float *points;    /* curvilinear */
+    const uint8_t *blanked_samples, *blanked_cells; /* or NULL */
+    bool mirrored;                                  /* negative determinant, or sum of the Jacobians */
+    struct device_grid *device;                     /* NULL under the reference engine */
+    struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
 /* Checks the options and fills *grid but for context and device. */
@@ -31,7 +40,36 @@ tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 
 int64_t grid_sample_count(const tc_grid *grid);
 
+/* An array of a grid (context.h: ARRAY_...) in the host's memory, or NULL; bytes of one item, and of a plane. */
+const void *grid_array_data(const tc_grid *grid, int array);
+size_t grid_array_item_bytes(const tc_grid *grid, int array);
+uint64_t grid_array_plane_bytes(const tc_grid *grid, int array);
+
 /* 0 where the first sample's cube is even. */
 unsigned grid_parity(const tc_grid *grid);
+
+static inline double value_at(tc_type type, const void *values, int64_t n) {
+    switch (type) {
+    case TC_U8:
+        return ((const uint8_t *)values)[n];
+    case TC_I8:
+        return ((const int8_t *)values)[n];
+    case TC_U16:
+        return ((const uint16_t *)values)[n];
+    case TC_I16:
+        return ((const int16_t *)values)[n];
+    case TC_U32:
+        return ((const uint32_t *)values)[n];
+    case TC_I32:
+        return ((const int32_t *)values)[n];
+    case TC_F32:
+        return (double)((const float *)values)[n];
+    default:
+        return ((const double *)values)[n];
+    }
+}
+
+/* A sample in the host's memory. */
+static inline double grid_value_at(const tc_grid *grid, int64_t n) { return value_at(grid->type, grid->samples, n); }
 
 #endif

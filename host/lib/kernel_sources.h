@@ -6,14 +6,22 @@ extern const char kernel_source_slab[];
 extern const char kernel_source_words[];
 extern const char kernel_source_tetrahedra[];
 extern const char kernel_source_cells[];
+extern const char kernel_source_ranges[];
 extern const char kernel_source_sign[];
 extern const char kernel_source_count[];
 extern const char kernel_source_scan[];
 extern const char kernel_source_classify[];
+extern const char kernel_source_crossing[];
 extern const char kernel_source_vertex[];
 extern const char kernel_source_mesh[];
 extern const char kernel_source_emit_brick[];
 extern const char kernel_source_emit_rows[];
 extern const char kernel_source_emit[];
+extern const char kernel_source_complex_job[];
+extern const char kernel_source_complex_cluster[];
+extern const char kernel_source_complex_tile[];
+extern const char kernel_source_complex_classify[];
+extern const char kernel_source_complex_join[];
+extern const char kernel_source_complex_emit[];
 
 #endif

@@ -6,6 +6,7 @@
 #include "context.h"
 
 #include "failure.h"
+#include "grid.h"
 #include "kernel_sources.h"
 #include "program_cache.h"
 
@@ -28,23 +29,27 @@ static const type_text type_texts[] = {
 };
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
-static void classify_options_write(const tc_context *context, tc_type type, bool missing, char *out, size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u", type_texts[type].bits,
-             type_texts[type].floating, missing, context->options.work_items);
+static void classify_options_write(const tc_context *context, tc_type type, tc_method method, bool missing, char *out,
+                                   size_t bytes) {
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d",
+             type_texts[type].bits, type_texts[type].floating, missing, context->options.work_items,
+             method == TC_METHOD_HYBRID);
 }
 
-static void emit_options_write(const tc_context *context, tc_type type, bool missing, bool normals, char *out,
-                               size_t bytes) {
+static void emit_options_write(const tc_context *context, const tc_grid *grid, tc_method method, bool missing,
+                               bool normals, char *out, size_t bytes) {
     char common[128];
+    const tc_type type = grid->type;
     bool wide = type_is_wide(type), vertices = device_makes_vertices(context, type);
-    classify_options_write(context, type, missing, common, sizeof common);
-    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d%s", common,
+    classify_options_write(context, type, method, missing, common, sizeof common);
+    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%d%s", common,
              context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
              vertices ? "-DREAL=" : "",
              !vertices ? ""
              : wide    ? "double"
                        : "float",
-             type_texts[type].value, normals, context->options.division, context->info.has_fp64 ? " -DFP64=1" : "");
+             type_texts[type].value, normals, context->options.division, (int)grid->kind,
+             context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
 static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
@@ -60,15 +65,41 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-enum { SOURCE_COUNT = 9 };
+enum { SOURCE_COUNT = 11 };
 
-static const char *const classify_sources[SOURCE_COUNT] = {
-    kernel_source_slab,  kernel_source_words,    kernel_source_tetrahedra,
-    kernel_source_cells, kernel_source_sign,     kernel_source_count,
-    kernel_source_scan,  kernel_source_classify, ""};
-static const char *const emit_sources[SOURCE_COUNT] = {
-    kernel_source_slab, kernel_source_words,      kernel_source_tetrahedra, kernel_source_cells, kernel_source_vertex,
-    kernel_source_mesh, kernel_source_emit_brick, kernel_source_emit_rows,  kernel_source_emit};
+static const char *const classify_sources[SOURCE_COUNT] = {kernel_source_slab,
+                                                           kernel_source_words,
+                                                           kernel_source_tetrahedra,
+                                                           kernel_source_cells,
+                                                           kernel_source_ranges,
+                                                           kernel_source_sign,
+                                                           kernel_source_count,
+                                                           kernel_source_scan,
+                                                           kernel_source_classify,
+                                                           "",
+                                                           ""};
+static const char *const emit_sources[SOURCE_COUNT] = {kernel_source_slab,
+                                                       kernel_source_words,
+                                                       kernel_source_tetrahedra,
+                                                       kernel_source_cells,
+                                                       kernel_source_crossing,
+                                                       kernel_source_vertex,
+                                                       kernel_source_mesh,
+                                                       kernel_source_emit_brick,
+                                                       kernel_source_emit_rows,
+                                                       kernel_source_emit,
+                                                       ""};
+static const char *const complex_sources[SOURCE_COUNT] = {kernel_source_slab,
+                                                          kernel_source_words,
+                                                          kernel_source_ranges,
+                                                          kernel_source_scan,
+                                                          kernel_source_crossing,
+                                                          kernel_source_complex_job,
+                                                          kernel_source_complex_cluster,
+                                                          kernel_source_complex_tile,
+                                                          kernel_source_complex_classify,
+                                                          kernel_source_complex_join,
+                                                          kernel_source_complex_emit};
 
 static program_recipe recipe_of(const program *p) { return (program_recipe){p->sources, SOURCE_COUNT, p->options}; }
 
@@ -105,13 +136,15 @@ static tc_status kernel_create(const tc_context *context, const program *p, cons
 static void program_release(program *p) {
     if (p->kernel) cl->ReleaseKernel(p->kernel);
     if (p->cells) cl->ReleaseKernel(p->cells);
+    for (int n = 0; n < COMPLEX_KERNELS; n++)
+        if (p->complex[n]) cl->ReleaseKernel(p->complex[n]);
     if (p->program) cl->ReleaseProgram(p->program);
     free(p);
 }
 
-/* The program with these options, built when first asked for. name: of its main kernel. */
+/* The program with these options, built when first asked for. name: of its main kernel; NULL: none is made. */
 static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCE_COUNT],
-                             const char *name, bool cells, const program **out) {
+                             const char *name, bool cells, program **out) {
     for (program *p = context->programs; p; p = p->next)
         if (!strcmp(p->options, options)) {
             *out = p;
@@ -122,7 +155,7 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     snprintf(p->options, sizeof p->options, "%s", options);
     p->sources = sources;
     tc_status status = program_build(context, p);
-    if (!status) status = kernel_create(context, p, name, &p->kernel);
+    if (!status && name) status = kernel_create(context, p, name, &p->kernel);
     if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells);
     if (status) {
         program_release(p);
@@ -133,21 +166,42 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     return TC_OK;
 }
 
-tc_status classify_kernels_get(tc_context *context, tc_type type, bool missing, kernels *out) {
+tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out) {
     char options[sizeof context->programs->options];
-    const program *p;
-    classify_options_write(context, type, missing, options, sizeof options);
+    program *p;
+    classify_options_write(context, type, method, missing, options, sizeof options);
     tc_status status = program_get(context, options, classify_sources, "classify", missing, &p);
     if (!status) out->classify = p->kernel, out->cells = p->cells;
     return status;
 }
 
-tc_status emit_kernel_get(tc_context *context, tc_type type, bool missing, bool normals, kernels *out) {
+tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method method, bool missing, bool normals,
+                          kernels *out) {
     char options[sizeof context->programs->options];
-    const program *p;
-    emit_options_write(context, type, missing, normals, options, sizeof options);
+    program *p;
+    emit_options_write(context, grid, method, missing, normals, options, sizeof options);
     tc_status status = program_get(context, options, emit_sources, "emit", false, &p);
     if (!status) out->emit = p->kernel;
+    return status;
+}
+
+static tc_status complex_kernels_create(const tc_context *context, program *p) {
+    static const char *const names[COMPLEX_KERNELS] = {"complex_classify", "complex_list", "complex_join",
+                                                       "complex_number", "complex_emit"};
+    tc_status status = TC_OK;
+    for (int n = 0; n < COMPLEX_KERNELS && !status; n++)
+        if (!p->complex[n]) status = kernel_create(context, p, names[n], &p->complex[n]);
+    return status;
+}
+
+tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, cl_kernel const **out) {
+    char options[sizeof context->programs->options];
+    program *p;
+    emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
+    strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
+    tc_status status = program_get(context, options, complex_sources, NULL, false, &p);
+    if (!status) status = complex_kernels_create(context, p);
+    if (!status) *out = p->complex;
     return status;
 }
 

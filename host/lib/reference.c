@@ -3,7 +3,8 @@
  * triangles of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
- * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order.
+ * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
+ * are those of cubes, and triangles come from the table of a cube.
  */
 #include "reference.h"
 
@@ -25,7 +26,10 @@ typedef struct reference {
     bool complete;    /* no sample is missing */
     uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
     tc_mesh *mesh;    /* NULL: count only */
-    bool normals;
+    const carry *carried;
+    bool normals, hybrid;
+    int edge_types; /* with vertices: of each sample the first so many */
+    cube_case hybrid_cases[2][256];
     uint64_t vertex_count, triangle_count, active_cell_count;
 } reference;
 
@@ -35,28 +39,9 @@ static int64_t sample_index(const reference *r, const int64_t p[3]) {
     return (p[2] * r->dims[1] + p[1]) * r->dims[0] + p[0];
 }
 
-static double value_at(const tc_grid *grid, int64_t n) {
-    switch (grid->type) {
-    case TC_U8:
-        return ((const uint8_t *)grid->samples)[n];
-    case TC_I8:
-        return ((const int8_t *)grid->samples)[n];
-    case TC_U16:
-        return ((const uint16_t *)grid->samples)[n];
-    case TC_I16:
-        return ((const int16_t *)grid->samples)[n];
-    case TC_U32:
-        return ((const uint32_t *)grid->samples)[n];
-    case TC_I32:
-        return ((const int32_t *)grid->samples)[n];
-    case TC_F32:
-        return (double)((const float *)grid->samples)[n];
-    default:
-        return ((const double *)grid->samples)[n];
-    }
+static double sample_value(const reference *r, const int64_t p[3]) {
+    return grid_value_at(r->grid, sample_index(r, p));
 }
-
-static double sample_value(const reference *r, const int64_t p[3]) { return value_at(r->grid, sample_index(r, p)); }
 
 static bool sample_present(const reference *r, const int64_t p[3]) { return r->signs[sample_index(r, p)] & PRESENT; }
 
@@ -65,10 +50,11 @@ static bool sample_inside(const reference *r, const int64_t p[3]) { return r->si
 static void signs_make(reference *r) {
     const tc_grid *grid = r->grid;
     int64_t count = grid_sample_count(grid);
-    r->complete = true;
+    r->complete = !grid->blanked_cells;
     for (int64_t n = 0; n < count; n++) {
-        double value = value_at(grid, n);
+        double value = grid_value_at(grid, n);
         bool present = isfinite(value) && !(grid->has_nodata && value == grid->nodata);
+        present = present && !(grid->blanked_samples && grid->blanked_samples[n]);
         r->signs[n] = (uint8_t)((value >= r->isovalue ? INSIDE : 0) | (present ? PRESENT : 0));
         r->complete = r->complete && present;
     }
@@ -83,6 +69,8 @@ static unsigned cube_parity(const reference *r, const int64_t p[3]) {
 static bool cube_present(const reference *r, const int64_t p[3]) {
     for (int axis = 0; axis < 3; axis++)
         if (p[axis] < 0 || p[axis] + 1 >= r->dims[axis]) return false;
+    int64_t number = (p[2] * (r->dims[1] - 1) + p[1]) * (r->dims[0] - 1) + p[0];
+    if (r->grid->blanked_cells && r->grid->blanked_cells[number]) return false;
     for (int c = 0; c < 8 && !r->complete; c++)
         if (!sample_present(r, (int64_t[3]){p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)})) return false;
     return true;
@@ -130,9 +118,34 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
+/* The samples that a difference along one axis is taken between: central, one-sided at borders and beside missing
+ * samples, the same one twice between two. */
+typedef struct neighbours {
+    int64_t before[3], after[3];
+    float weight; /* 1/16 of the usual one, so that nothing that is made of differences overflows */
+} neighbours;
+
+static neighbours neighbours_of(const reference *r, const int64_t p[3], int axis) {
+    neighbours n = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, 0.0625f};
+    n.before[axis]--, n.after[axis]++;
+    bool has_before = n.before[axis] >= 0 && sample_present(r, n.before);
+    bool has_after = n.after[axis] < r->dims[axis] && sample_present(r, n.after);
+    if (!has_before) n.before[axis]++;
+    if (!has_after) n.after[axis]--;
+    if (has_before && has_after) n.weight = 0.03125f;
+    return n;
+}
+
+/* World coordinate `row` of a sample of a grid that is not uniform. */
+static float coordinate_at(const reference *r, const int64_t p[3], int row) {
+    if (r->grid->kind == GRID_RECTILINEAR) return r->grid->axes[row][p[row]];
+    return r->grid->points[3 * sample_index(r, p) + row];
+}
+
 #define REAL    float
 #define NAME(x) x##_f32
 #define SQRT    sqrtf
+#include "reference_crossing.inc"
 #include "reference_vertex.inc"
 #undef REAL
 #undef NAME
@@ -140,7 +153,15 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
 #define REAL    double
 #define NAME(x) x##_f64
 #define SQRT    sqrt
+#include "reference_crossing.inc"
 #include "reference_vertex.inc"
+
+static void position_between(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+    for (int row = 0; row < 3; row++) {
+        float p0 = coordinate_at(r, a, row), p1 = coordinate_at(r, b, row);
+        out[row] = t == 1 ? p1 : p0 + t * (p1 - p0);
+    }
+}
 
 static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     const float *m = r->grid->matrix;
@@ -152,14 +173,22 @@ static void position_make(const reference *r, const int64_t a[3], const int64_t 
     for (int row = 0; row < 3; row++, m += 4) out[row] = ((m[0] * p[0] + m[1] * p[1]) + m[2] * p[2]) + m[3];
 }
 
-static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
-    bool wide = type_is_wide(r->grid->type);
+static float edge_crossing(const reference *r, const int64_t a[3], const int64_t b[3]) {
     double value_a = sample_value(r, a), value_b = sample_value(r, b);
-    float t = wide ? crossing_f64(value_a, value_b, r->isovalue) : crossing_f32(value_a, value_b, r->isovalue);
-    position_make(r, a, b, t, (float *)r->mesh->positions.memory + 3 * r->vertex_count);
+    return type_is_wide(r->grid->type) ? crossing_f64(value_a, value_b, r->isovalue)
+                                       : crossing_f32(value_a, value_b, r->isovalue);
+}
+
+static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
+    const float t = edge_crossing(r, a, b);
+    float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
+    if (r->grid->kind == GRID_UNIFORM)
+        position_make(r, a, b, t, position);
+    else
+        position_between(r, a, b, t, position);
     if (!r->normals) return;
     float *normal = (float *)r->mesh->normals.memory + 3 * r->vertex_count;
-    if (wide)
+    if (type_is_wide(r->grid->type))
         normal_f64(r, a, b, t, normal);
     else
         normal_f32(r, a, b, t, normal);
@@ -173,7 +202,7 @@ static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
 
 static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
-    for (int type = 0; type < EDGES_PER_SAMPLE; type++)
+    for (int type = 0; type < r->edge_types; type++)
         for (int64_t x = x0; x < x1; x++) {
             int64_t owner[3] = {x, y, z}, a[3], b[3];
             if (!edge_exists(r, owner, type)) continue;
@@ -183,6 +212,9 @@ static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t 
                 *edge_id(r, owner, type) = (uint32_t)r->vertex_count;
                 vertex_emit(r, a, b);
             }
+            if (r->carried)
+                carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b),
+                             edge_crossing(r, a, b));
             r->vertex_count++;
         }
 }
@@ -204,6 +236,17 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
     }
 }
 
+static void cube_emit(reference *r, const int64_t cube[3], const cube_case *c) {
+    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
+        if (!r->mesh) continue;
+        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
+        for (unsigned m = 0; m < 3; m++) {
+            const owned_edge e = cube_edges[c->edges[n][m]];
+            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
+        }
+    }
+}
+
 static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
     for (int64_t x = x0; x < x1; x++) {
@@ -214,7 +257,8 @@ static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int
             pattern |= (unsigned)sample_inside(r, (int64_t[3]){x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)}) << c;
         if (pattern == 0 || pattern == 255) continue;
         r->active_cell_count++;
-        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++)
+        if (r->hybrid) cube_emit(r, cube, &r->hybrid_cases[cube_parity(r, cube)][pattern]);
+        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE && !r->hybrid; t++)
             tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
     }
 }
@@ -250,6 +294,9 @@ static tc_status layers_run(reference *r, const char *stage, double before, doub
 static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
     *r = (reference){.grid = grid, .isovalue = options->isovalue, .normals = options->normals != 0};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
+    r->hybrid = options->method == TC_METHOD_HYBRID;
+    r->edge_types = r->hybrid ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    if (r->hybrid) hybrid_cases_derive(r->hybrid_cases, grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
@@ -311,6 +358,21 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
         r.mesh = mesh;
         for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
     }
+    reference_end(&r);
+    return status;
+}
+
+tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                          uint64_t *vertex_count) {
+    reference r;
+    const double layer_count = (double)((grid->dims[2] + BRICK_Z - 1) / BRICK_Z);
+    tc_status status = reference_begin(&r, grid, options);
+    r.carried = c;
+    for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
+        layer_run(&r, layer, row_number);
+        status = context_progress(grid->context, "carry", (double)(layer + 1) / layer_count);
+    }
+    *vertex_count = r.vertex_count;
     reference_end(&r);
     return status;
 }

@@ -6,6 +6,7 @@
 #ifndef REFERENCE_H
 #define REFERENCE_H
 
+#include "carry.h"
 #include "grid.h"
 #include "mesh.h"
 
@@ -18,5 +19,9 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
 /* Makes the positions and normals alone of a mesh that is already allocated, for devices that cannot (u32, i32 and f64
  * samples without fp64). */
 tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+/* Carries a field to the vertices that there is room for; *vertex_count: how many there are. */
+tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                          uint64_t *vertex_count);
 
 #endif

@@ -57,32 +57,41 @@ static void tiles_shape(const tc_context *context, slab_plan *plan) {
     plan->scratch_words = (BRICK_ROWS * (plan->tile_rows + 1) + BRICK_PLANES * plan->tile_layers) * plan->words_x;
 }
 
-uint64_t plan_sample_bytes(const slab_plan *plan, const tc_grid *grid) {
-    if (grid->cl_samples) return 0;
+uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array) {
     uint64_t planes = plan->samples_whole
                           ? (uint64_t)grid->dims[2]
                           : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
-    return planes * (uint64_t)(grid->dims[0] * grid->dims[1]) * tc_type_bytes(grid->type);
+    return grid_array_data(grid, array) ? planes * grid_array_plane_bytes(grid, array) : 0;
+}
+
+static uint64_t axes_bytes(const tc_grid *grid) {
+    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) : 0;
 }
 
 static bool can_miss_samples(const tc_grid *grid) {
-    return grid->has_nodata || grid->type == TC_F32 || grid->type == TC_F64;
+    return grid->has_nodata || grid->blanked_samples || grid->blanked_cells || grid->type == TC_F32 ||
+           grid->type == TC_F64;
 }
 
 /* Bytes of everything but the mesh; *largest: of the largest buffer. */
 static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
     uint64_t layers = plan_window_layers(plan);
     uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
-    uint64_t samples = plan_sample_bytes(plan, grid), windows = plan_window_count(plan);
+    uint64_t arrays = 0, windows = plan_window_count(plan);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
-    uint64_t fixed = 2 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 8 * 4096; /* and buffers from page to page */
-    *largest = samples > words ? samples : words;
+    uint64_t fixed = 4 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
+    *largest = words;
+    for (int array = 0; array < ARRAY_COUNT; array++) {
+        uint64_t bytes = plan_array_bytes(plan, grid, array);
+        arrays += bytes;
+        if (bytes > *largest) *largest = bytes;
+    }
     uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
     uint64_t word_window = words * 2 + words / 4 + (sizeof(brick_state) + 4) * bricks;
-    return samples * windows + word_window * (plan->words_whole ? 1 : windows) + cells + ranges + state + scratch +
-           fixed * windows;
+    return arrays * windows + axes_bytes(grid) + word_window * (plan->words_whole ? 1 : windows) + cells + ranges +
+           state + scratch + fixed * windows;
 }
 
 static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,

@@ -3,9 +3,9 @@
  *
  * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
  * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a
- * slab with one plane before and two after (gradients and missing cells reach that far), sign words with one layer
- * after. Devices with memory of their own hold two such windows, where that fits: one is copied while kernels run over
- * the other.
+ * slab, and the other arrays that a grid may have, with one plane before and two after (gradients and missing cells
+ * reach that far), sign words with one layer after. Devices with memory of their own hold two such windows, where that
+ * fits: one is copied while kernels run over the other.
  */
 #ifndef SLAB_PLAN_H
 #define SLAB_PLAN_H
@@ -16,7 +16,7 @@
 typedef struct slab_plan {
     uint32_t words_x, bricks_y, layer_count;
     uint32_t slab_layers, slab_count;
-    bool samples_whole, words_whole;
+    bool samples_whole, words_whole;             /* samples: with all other arrays of the grid */
     bool overlaps;                               /* copies and kernels run at once: windows are double */
     uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
     uint32_t scratch_words;                      /* per group */
@@ -35,7 +35,9 @@ uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t s
 
 /* How many windows of samples, and of sign words where these are not whole, there are: 1 or 2. */
 uint32_t plan_window_count(const slab_plan *plan);
-uint64_t plan_sample_bytes(const slab_plan *plan, const tc_grid *grid); /* of one window, or of all samples */
+
+/* Bytes of an array of the grid in one window, or of all of it; 0 where there is none, or it is the caller's buffer. */
+uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array);
 uint32_t plan_window_layers(const slab_plan *plan);
 uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid); /* without padding to bricks */
 uint64_t plan_cell_planes(const slab_plan *plan);

@@ -20,6 +20,8 @@ static void base_fill(run *r, inside_range inside, double isovalue) {
     s->key_inside = inside.key_inside;
     s->key_outside = inside.key_outside;
     s->ranges_known = grid->device->ranges_known;
+    s->has_blanked_samples = grid->blanked_samples != NULL;
+    s->has_blanked_cells = grid->blanked_cells != NULL;
     s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
     s->nx = (uint32_t)grid->dims[0];
     s->ny = (uint32_t)grid->dims[1];
@@ -83,7 +85,8 @@ static tc_status word_buffers_reserve(run *r, word_buffers *w) {
 static void windows_trim(run *r) {
     workspace *w = &r->context->work;
     uint32_t windows = plan_window_count(r->plan);
-    for (uint32_t n = r->plan->samples_whole ? 0 : windows; n < 2; n++) buffer_release(r->context, &w->samples[n]);
+    for (uint32_t n = r->plan->samples_whole ? 0 : windows; n < 2; n++)
+        for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[n][array]);
     if (windows == 2 && !r->plan->words_whole) return;
     device_buffer *words = (device_buffer *)&w->words[1];
     for (size_t n = 0; n < sizeof w->words[1] / sizeof *words; n++) buffer_release(r->context, &words[n]);
@@ -110,13 +113,17 @@ static tc_status workspace_reserve(run *r) {
 }
 
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
-    *r = (run){.grid = grid, .context = grid->context, .plan = &grid->device->plan, .normals = options->normals != 0};
+    *r = (run){.grid = grid,
+               .context = grid->context,
+               .plan = &grid->device->plan,
+               .method = options->method,
+               .normals = options->normals != 0};
     r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
     r->classify_share = emits ? 0.5 : 1;
-    tc_status status = classify_kernels_get(r->context, grid->type, grid->device->missing, &r->kernels);
+    tc_status status = classify_kernels_get(r->context, grid->type, r->method, grid->device->missing, &r->kernels);
     if (!status && emits)
-        status = emit_kernel_get(r->context, grid->type, grid->device->missing, r->normals, &r->kernels);
+        status = emit_kernel_get(r->context, grid, r->method, grid->device->missing, r->normals, &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);
@@ -130,8 +137,9 @@ void run_end(run *r) {
     cl->Finish(r->context->queue);
     if (r->context->in_place) { /* windows in memory that is not ours to keep */
         mesh_buffers *mesh = &w->mesh[0];
-        device_buffer *windows[] = {&w->samples[0], &mesh->positions, &mesh->normals, &mesh->triangles};
-        for (int n = 0; n < 4; n++) buffer_release(r->context, windows[n]);
+        device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
+        for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
+        for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[0][array]);
     }
     slab_store_release(&r->store);
     free(r->heads);
@@ -143,7 +151,9 @@ static slab_place classify_place(const run *r, uint32_t slab_index) {
     return (slab_place){slab_index, slab_index % plan_window_count(r->plan)};
 }
 
-static tc_status classify_load(run *r, uint32_t slab_index) { return slab_load(r, classify_place(r, slab_index)); }
+static tc_status classify_load(run *r, uint32_t slab_index) {
+    return slab_load(r, classify_place(r, slab_index), false);
+}
 
 static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_place(r, slab_index)); }
 
@@ -157,7 +167,7 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_samples(r, place)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(r->grid->device->ranges.memory),
                                          ARGUMENT(w->words.memory),

@@ -13,7 +13,7 @@ static tc_status counted_check(const tc_grid *grid, const tc_extract_options *op
     const struct device_grid *device = grid->device;
     const tc_extract_options *counted = &device->counted_options;
     if (grid->context->counted != grid || counted->isovalue != options->isovalue ||
-        !counted->normals != !options->normals)
+        counted->method != options->method || !counted->normals != !options->normals)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "tc_emit emits what tc_count has counted just before: count this grid "
                                "with these options, and make no other call in between");

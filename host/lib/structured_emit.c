@@ -116,13 +116,16 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uin
 static uint16_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->options.work_items > 1) return edge;
-    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES + e.type);
+    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES(r->method == TC_METHOD_HYBRID) + e.type);
 }
 
 /* Per case the number of triangles, then their edges; the rest is never used, but read. */
 static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
     cube_case cases[2][256];
-    cube_cases_derive(cases, r->grid->mirrored);
+    if (r->method == TC_METHOD_HYBRID)
+        hybrid_cases_derive(cases, r->grid->mirrored);
+    else
+        cube_cases_derive(cases, r->grid->mirrored);
     memset(items, 0, CASES_BYTES);
     for (int n = 0; n < 2 * 256; n++) {
         const cube_case *c = &cases[n / 256][n % 256];
@@ -133,9 +136,9 @@ static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
     }
 }
 
-/* The cube table, uploaded once per context and winding. */
+/* The cube table, uploaded once per context, method and winding. */
 static tc_status cases_provide(run *r, device_buffer **out) {
-    device_buffer *buffer = &r->context->work.cases[r->grid->mirrored];
+    device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
     uint16_t items[2][256][CASE_ITEMS];
     *out = buffer;
     if (buffer->memory) return TC_OK;
@@ -151,6 +154,8 @@ static tc_status cases_provide(run *r, device_buffer **out) {
 static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
     workspace *work = &r->context->work;
     const word_buffers *words = place_words(r, place);
+    const device_buffer *coordinates =
+        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : place_array(r, place, ARRAY_POINTS);
     device_buffer *cases;
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
@@ -163,7 +168,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     s.position_offset = w->position_offset;
     s.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_samples(r, place)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(words->words.memory),
                                          ARGUMENT(words->offsets.memory),
@@ -174,7 +179,9 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(cases->memory),
                                          ARGUMENT(w->buffers->positions.memory),
                                          ARGUMENT(w->buffers->normals.memory),
-                                         ARGUMENT(w->buffers->triangles.memory)};
+                                         ARGUMENT(w->buffers->triangles.memory),
+                                         ARGUMENT(coordinates->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
     return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
@@ -329,7 +336,7 @@ static tc_status windows_begin(run *r, emission *e) {
 static tc_status emit_load(run *r, uint32_t n) {
     const emit_step *step = &r->emission->steps[n];
     if (!step->opens_slab) return TC_OK;
-    tc_status status = slab_load(r, step->place);
+    tc_status status = slab_load(r, step->place, true);
     return status ? status : slab_restore(r, step->place);
 }
 

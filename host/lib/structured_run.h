@@ -14,12 +14,13 @@
 /* What an OpenCL context adds to a grid. */
 struct device_grid {
     slab_plan plan;
-    device_buffer samples; /* the whole grid, where plan.samples_whole */
-    device_buffer ranges;  /* of all bricks, made at the first visit */
+    device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plan.samples_whole */
+    device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
+    device_buffer ranges;              /* of all bricks, made at the first visit */
     bool ranges_known;
     tc_extract_options counted_options; /* what tc_count left for tc_emit, where context->counted is this grid: */
     uint32_t *heads;                    /* of all slabs */
-    bool missing; /* some sample is missing: known from the start with nodata, else found by kernel 1 */
+    bool missing; /* some sample is missing: known from the start with nodata or blanks, else found by kernel 1 */
 };
 
 /* Kernel 1's results kept on the host while the device holds only a window of them. */
@@ -32,6 +33,7 @@ typedef struct run {
     tc_context *context;
     const slab_plan *plan;
     kernels kernels;
+    tc_method method;
     bool normals;
     slab base;       /* what all slabs have in common */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
@@ -49,11 +51,11 @@ typedef struct slab_place {
 } slab_place;
 
 /* The buffers of a place, which are those of all slabs where they are whole. */
-device_buffer *place_samples(const run *r, slab_place place);
+device_buffer *place_array(const run *r, slab_place place, int array);
 word_buffers *place_words(const run *r, slab_place place);
 
-/* Brings the slab's samples to the device. */
-tc_status slab_load(run *r, slab_place place);
+/* Brings the slab's samples, and what tells which are missing, to the device; for kernel 2 its points too. */
+tc_status slab_load(run *r, slab_place place, bool emits);
 
 /* The slab's parameters; its samples are loaded. */
 void slab_describe(const run *r, slab_place place, slab *out);

@@ -1,5 +1,6 @@
 /*
- * What a slab needs on the device before a kernel can run over it: samples, present cells, kernel 1's results.
+ * What a slab needs on the device before a kernel can run over it: arrays of the grid, present cells, kernel 1's
+ * results.
  */
 #include "structured_run.h"
 
@@ -21,33 +22,71 @@ tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const 
     return error ? opencl_fail(name, error) : TC_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------- samples */
+/* --------------------------------------------------------------------------------------------------------- arrays */
 
-static char *samples_start(const tc_grid *grid, uint64_t first) {
-    return (char *)(uintptr_t)grid->samples + first * tc_type_bytes(grid->type);
+static const char *const array_names[ARRAY_COUNT] = {"samples", "points", "blanked samples", "blanked cells"};
+
+static uint64_t array_planes(const tc_grid *grid, int array) {
+    return (uint64_t)grid->dims[2] - (array == ARRAY_BLANKED_CELLS);
 }
 
-/* Samples in the buffer before sample `first`: one that is used in place starts at a page's boundary. */
-static uint64_t samples_offset(const tc_grid *grid, uint64_t first) {
-    if (grid->cl_samples) return grid->cl_samples_offset + first;
-    uintptr_t before = (uintptr_t)samples_start(grid, first) & (page_bytes - 1);
-    return grid->context->in_place ? before / tc_type_bytes(grid->type) : 0;
+static char *array_start(const tc_grid *grid, int array, uint64_t z) {
+    return (char *)(uintptr_t)grid_array_data(grid, array) + z * grid_array_plane_bytes(grid, array);
 }
 
-/* Makes samples [first, first + count) available: in place where the device can, else by a copy, only enqueued. */
-static tc_status samples_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, uint64_t first,
-                                 uint64_t count) {
+/* Items in the buffer before plane z, its first: one that is used in place starts at a page's boundary. */
+static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
+    const uint64_t item_bytes = grid_array_item_bytes(grid, array);
+    if (array == ARRAY_SAMPLES && grid->cl_samples)
+        return grid->cl_samples_offset + z * (grid_array_plane_bytes(grid, array) / item_bytes);
+    uintptr_t before = (uintptr_t)array_start(grid, array, z) & (page_bytes - 1);
+    return grid->context->in_place ? before / item_bytes : 0;
+}
+
+/* Makes planes z0 <= z < z1 available: in place where the device can, else by a copy, only enqueued. */
+static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, int array, uint64_t z0,
+                               uint64_t z1) {
     tc_context *context = grid->context;
-    size_t bytes = tc_type_bytes(grid->type);
-    char *start = samples_start(grid, first);
+    if (!grid_array_data(grid, array)) return TC_OK;
+    if (z1 > array_planes(grid, array)) z1 = array_planes(grid, array);
+    uint64_t bytes = (z1 - z0) * grid_array_plane_bytes(grid, array);
+    char *start = array_start(grid, array, z0);
     if (context->in_place) {
         uintptr_t before = (uintptr_t)start & (page_bytes - 1);
-        return buffer_wrap(context, buffer, start - before, before + count * bytes, CL_MEM_READ_ONLY, "samples");
+        return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
     }
-    tc_status status = buffer_reserve(context, buffer, plan_sample_bytes(&grid->device->plan, grid), "samples");
+    uint64_t room = plan_array_bytes(&grid->device->plan, grid, array);
+    tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
     if (status) return status;
-    cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, count * bytes, start, 0, NULL, NULL);
-    return error ? opencl_fail("copying samples to the device", error) : TC_OK;
+    cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
+    return error ? opencl_fail("copying a grid to the device", error) : TC_OK;
+}
+
+/* All arrays whole. */
+static tc_status arrays_provide(tc_grid *grid) {
+    cl_command_queue queue = grid->context->queue;
+    tc_status status = TC_OK;
+    for (int array = 0; array < ARRAY_COUNT && !status; array++)
+        status = array_provide(grid, queue, &grid->device->arrays[array], array, 0, array_planes(grid, array));
+    if (status || grid->context->in_place) return status;
+    cl_int error = cl->Finish(queue);
+    return error ? opencl_fail("copying a grid to the device", error) : TC_OK;
+}
+
+/* Positions along x, y and z, one after the other. */
+static tc_status axes_provide(tc_grid *grid) {
+    device_buffer *buffer = &grid->device->axes;
+    const uint64_t bytes[3] = {sizeof(float) * (uint64_t)grid->dims[0], sizeof(float) * (uint64_t)grid->dims[1],
+                               sizeof(float) * (uint64_t)grid->dims[2]};
+    uint64_t offset = 0;
+    if (grid->kind != GRID_RECTILINEAR) return TC_OK;
+    tc_status status = buffer_reserve(grid->context, buffer, bytes[0] + bytes[1] + bytes[2], "coordinates");
+    for (int axis = 0; axis < 3 && !status; offset += bytes[axis++]) {
+        cl_int error = cl->EnqueueWriteBuffer(grid->context->queue, buffer->memory, CL_TRUE, offset, bytes[axis],
+                                              grid->axes[axis], 0, NULL, NULL);
+        if (error) status = opencl_fail("copying coordinates to the device", error);
+    }
+    return status;
 }
 
 /* The caller's buffer, not counted as ours. */
@@ -75,20 +114,15 @@ tc_status structured_grid_create(tc_grid *grid) {
     struct device_grid *device = calloc(1, sizeof *device);
     if (!device) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
     grid->device = device;
-    device->missing = grid->has_nodata && sample_patterns(grid->type, grid->nodata, ignored);
+    device->missing = grid->blanked_samples || grid->blanked_cells ||
+                      (grid->has_nodata && sample_patterns(grid->type, grid->nodata, ignored));
     tc_status status = slab_plan_make(grid->context, grid, &device->plan);
     uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
-    if (!status && grid->cl_samples) {
-        status = samples_adopt(grid, &device->samples);
-    } else if (!status && device->plan.samples_whole) {
-        status = samples_provide(grid, grid->context->queue, &device->samples, 0, (uint64_t)grid_sample_count(grid));
-        if (!status && !grid->context->in_place) {
-            cl_int error = cl->Finish(grid->context->queue);
-            if (error) status = opencl_fail("copying samples to the device", error);
-        }
-    }
+    if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
+    if (!status) status = axes_provide(grid);
+    if (!status && device->plan.samples_whole) status = arrays_provide(grid);
     return status;
 }
 
@@ -97,14 +131,15 @@ void structured_grid_destroy(tc_grid *grid) {
     if (grid->context->counted == grid) grid->context->counted = NULL;
     if (grid->context->served == grid) grid->context->served = NULL;
     free(grid->device->heads);
-    buffer_release(grid->context, &grid->device->samples);
+    for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &grid->device->arrays[array]);
+    buffer_release(grid->context, &grid->device->axes);
     buffer_release(grid->context, &grid->device->ranges);
     free(grid->device);
     grid->device = NULL;
 }
 
-device_buffer *place_samples(const run *r, slab_place place) {
-    return r->plan->samples_whole ? &r->grid->device->samples : &r->context->work.samples[place.window];
+device_buffer *place_array(const run *r, slab_place place, int array) {
+    return r->plan->samples_whole ? &r->grid->device->arrays[array] : &r->context->work.arrays[place.window][array];
 }
 
 word_buffers *place_words(const run *r, slab_place place) {
@@ -116,24 +151,37 @@ tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
     const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
-    const kernel_argument arguments[] = {ARGUMENT(*s), ARGUMENT(place_samples(r, place)->memory),
-                                         ARGUMENT(work->cells.memory), ARGUMENT(planes)};
-    return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, 4);
+    const kernel_argument arguments[] = {ARGUMENT(*s),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_CELLS)->memory),
+                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(planes)};
+    return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, sizeof arguments / sizeof *arguments);
 }
 
-static uint64_t slab_first_sample(const run *r, uint32_t slab_index) {
-    return (uint64_t)r->base.nx * r->base.ny * slab_samples_begin(r->plan, slab_index);
-}
-
-static uint64_t slab_sample_count(const run *r, uint32_t slab_index) {
-    uint64_t end = (uint64_t)r->base.nx * r->base.ny * slab_samples_end(r->plan, r->grid, slab_index);
-    return end - slab_first_sample(r, slab_index);
-}
-
-tc_status slab_load(run *r, slab_place place) {
+tc_status slab_load(run *r, slab_place place, bool emits) {
+    tc_status status = TC_OK;
     if (r->plan->samples_whole) return TC_OK;
-    return samples_provide(r->grid, r->copies, place_samples(r, place), slab_first_sample(r, place.slab_index),
-                           slab_sample_count(r, place.slab_index));
+    for (int array = 0; array < ARRAY_COUNT && !status; array++)
+        if (emits || array != ARRAY_POINTS)
+            status = array_provide(r->grid, r->copies, place_array(r, place, array), array,
+                                   slab_samples_begin(r->plan, place.slab_index),
+                                   slab_samples_end(r->plan, r->grid, place.slab_index));
+    return status;
+}
+
+/* Where the slab's first planes are in their buffers. */
+static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
+    const tc_grid *grid = r->grid;
+    uint64_t begin = s->sample_z, end = slab_samples_end(r->plan, grid, slab_index);
+    uint64_t cell_end = end < s->nz ? end : s->nz - 1;
+    s->sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
+    s->sample_count = (end - begin) * s->nx * s->ny;
+    s->point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->sample_offset;
+    s->blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->sample_offset;
+    s->blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
+    s->blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
 }
 
 void slab_describe(const run *r, slab_place place, slab *out) {
@@ -151,8 +199,7 @@ void slab_describe(const run *r, slab_place place, slab *out) {
     s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
     s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
-    s->sample_offset = samples_offset(r->grid, slab_first_sample(r, slab_index));
-    s->sample_count = slab_sample_count(r, slab_index);
+    slab_offsets(r, slab_index, s);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- store */

@@ -24,7 +24,13 @@
 
 #include <stdint.h>
 
-enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
+enum {
+    TETRAHEDRA_PER_CUBE = 5,
+    EDGES_PER_SAMPLE = 6,
+    CUBE_EDGES = 18,
+    CUBE_TRIANGLES_MAX = 10,
+    HYBRID_TRIANGLES_MAX = 6
+};
 
 /* Edges that a sample owns, in the order of their vertices in a mesh. */
 enum edge_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ };
@@ -51,6 +57,9 @@ owned_edge edge_between(unsigned corner_a, unsigned corner_b);
  * (y + 1, z), (y, z + 1), (y + 1, z + 1)), then those owned by samples at x + 1. */
 extern const owned_edge cube_edges[CUBE_EDGES];
 
+/* The place there of the edge between two corners. */
+uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b);
+
 /* What all tetrahedra of a cube emit, derived from the tables above: edges are places in cube_edges. */
 typedef struct cube_case {
     uint8_t triangle_count;
@@ -61,5 +70,8 @@ typedef struct cube_case {
 /* Fills cases[parity][pattern], bit c of pattern being corner c. mirrored: the grid's Jacobian is negative, so
  * triangles are turned over. */
 void cube_cases_derive(cube_case cases[2][256], int mirrored);
+
+/* The same for the hybrid method, with edges of types x, y and z only (hybrid_tables.c). */
+void hybrid_cases_derive(cube_case cases[2][256], int mirrored);
 
 #endif

@@ -60,7 +60,7 @@ void dataset_notice(dataset *d, const char *format, ...) {
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     if (used + strlen(text) + 3 > sizeof d->notice) return;
-    snprintf(d->notice + used, sizeof d->notice - used, "%s%s", used ? "; " : "", text);
+    stpcpy(stpcpy(d->notice + used, used ? "; " : ""), text);
 }
 
 void dataset_release(dataset *d) {

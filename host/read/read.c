@@ -1,7 +1,7 @@
 /*
- * read.c - finds the format of a volume file, by its content first, then by its ending, and reads it; see volume.h
+ * read.c - finds the format of a file, by its content first, then by its ending, and reads it; see dataset.h, volume.h
  */
-#include "volume.h"
+#include "dataset.h"
 
 #include "exit_status.h"
 #include "failure.h"
@@ -12,8 +12,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/mman.h>
-
-typedef int (*reader)(const read_request *request, const mapping *file, volume *out);
 
 void read_request_init(read_request *request, const char *path) {
     *request = (read_request){.path = path, .type = -1, .spacing = {1, 1, 1}, .component = -1, .frame = -1};
@@ -38,7 +36,11 @@ const char *volume_formats(void) {
            " (gzip)"
 #endif
 #endif
-        ;
+           ", VTK legacy"
+#ifdef HAVE_EXPAT
+           ", VTK XML (.vti .vtr .vts .vtu)"
+#endif
+           ", Plot3D (grid and solution)";
 }
 
 static int ends_with(const char *path, const char *ending) {
@@ -59,6 +61,18 @@ static int begins_as_nifti(const mapping *file) {
     return 0;
 }
 
+/* The element VTKFile, after a prolog and comments if there are any. */
+static int begins_as_vtk_xml(const mapping *file) {
+    enum { PROLOG = 4096 };
+    size_t size = file->size < PROLOG ? file->size : PROLOG;
+    return size && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
+}
+
+/* Endings of Plot3D's files that are no use alone, or may be anything. */
+static int ends_as_half_of_a_pair(const char *path) {
+    return ends_with(path, ".q") || ends_with(path, ".f") || ends_with(path, ".bin");
+}
+
 #ifndef HAVE_NIFTI
 int nifti_read(const read_request *request, const mapping *file, volume *out) {
     (void)file;
@@ -68,21 +82,73 @@ int nifti_read(const read_request *request, const mapping *file, volume *out) {
 }
 #endif
 
-static reader find_reader(const read_request *request, const mapping *file) {
+/* What takes the file: a reader of images or one of datasets; neither where the format is not known. */
+typedef struct readers {
+    int (*image)(const read_request *request, const mapping *file, volume *out);
+    int (*grid)(const read_request *request, const mapping *file, dataset *out);
+} readers;
+
+static readers readers_of_ending(const char *path) {
     static const struct {
         const char *ending;
-        reader read;
-    } endings[] = {{".nrrd", nrrd_read},    {".nhdr", nrrd_read},    {".mha", metaimage_read}, {".mhd", metaimage_read},
-                   {".nii", nifti_read},    {".nii.gz", nifti_read}, {".hdr", nifti_read},     {".img", nifti_read},
-                   {".hdr.gz", nifti_read}, {".img.gz", nifti_read}, {".raw", raw_read}};
-    const int64_t *d = request->dims;
-    if (d[0] || d[1] || d[2] || request->type >= 0) return raw_read;
-    if (starts_with(file, "NRRD0")) return nrrd_read;
-    if (starts_with(file, "ObjectType") || starts_with(file, "NDims")) return metaimage_read;
-    if (begins_as_nifti(file)) return nifti_read;
+        readers read;
+    } endings[] = {
+        {".nrrd", {nrrd_read, NULL}},     {".nhdr", {nrrd_read, NULL}},   {".mha", {metaimage_read, NULL}},
+        {".mhd", {metaimage_read, NULL}}, {".nii", {nifti_read, NULL}},   {".nii.gz", {nifti_read, NULL}},
+        {".hdr", {nifti_read, NULL}},     {".img", {nifti_read, NULL}},   {".hdr.gz", {nifti_read, NULL}},
+        {".img.gz", {nifti_read, NULL}},  {".raw", {raw_read, NULL}},     {".vtk", {NULL, vtk_legacy_read}},
+        {".vti", {NULL, vtk_xml_read}},   {".vtr", {NULL, vtk_xml_read}}, {".vts", {NULL, vtk_xml_read}},
+        {".vtu", {NULL, vtk_xml_read}},   {".xyz", {NULL, plot3d_read}},  {".x", {NULL, plot3d_read}},
+        {".g", {NULL, plot3d_read}},      {".p3d", {NULL, plot3d_read}},
+    };
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (ends_with(request->path, endings[i].ending)) return endings[i].read;
+        if (ends_with(path, endings[i].ending)) return endings[i].read;
+    return (readers){NULL, NULL};
+}
+
+static readers find_readers(const read_request *request, const mapping *file) {
+    const int64_t *d = request->dims;
+    if (d[0] || d[1] || d[2] || request->type >= 0) return (readers){raw_read, NULL};
+    if (starts_with(file, "NRRD0")) return (readers){nrrd_read, NULL};
+    if (starts_with(file, "ObjectType") || starts_with(file, "NDims")) return (readers){metaimage_read, NULL};
+    if (starts_with(file, "# vtk DataFile Version")) return (readers){NULL, vtk_legacy_read};
+    if (begins_as_vtk_xml(file)) return (readers){NULL, vtk_xml_read};
+    if (begins_as_nifti(file)) return (readers){nifti_read, NULL};
+    return readers_of_ending(request->path);
+}
+
+/* What a file that is not read is, where that can be told; NULL where not. */
+static const char *name_of_unread(const char *path, const mapping *file) {
+    static const struct {
+        const char *ending, *name;
+    } endings[] = {{".ex2", "Exodus"},          {".e", "Exodus"},
+                   {".exo", "Exodus"},          {".cgns", "CGNS"},
+                   {".stl", "a surface (STL)"}, {".ply", "a surface (PLY)"},
+                   {".obj", "a surface (OBJ)"}, {".dcm", "DICOM"},
+                   {".xdmf", "XDMF"},           {".msh", "a mesh of Gmsh or Fluent"},
+                   {".case", "EnSight"}};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (ends_with(path, endings[i].ending)) return endings[i].name;
+    if (starts_with(file, "CDF\1") || starts_with(file, "CDF\2") || starts_with(file, "CDF\5"))
+        return "netCDF (Exodus and others)";
+    if (starts_with(file, "\211HDF\r\n\032\n")) return "HDF5 (CGNS, netCDF, VTKHDF and others)";
     return NULL;
+}
+
+static int refuse_unknown(const char *path, const mapping *file) {
+    const char *name = name_of_unread(path, file);
+    if (name)
+        return fail(STATUS_INPUT, "%s: is %s, which this program does not read; it reads %s", path, name,
+                    volume_formats());
+    if (ends_as_half_of_a_pair(path))
+        return fail(STATUS_USAGE,
+                    "%s: Plot3D needs two inputs, the grid, then its solution or function file; samples without a "
+                    "header need --dims and --type",
+                    path);
+    return fail(STATUS_INPUT,
+                "%s: its format is not known; this program reads %s; for samples without a header give --dims and "
+                "--type",
+                path, volume_formats());
 }
 
 int volume_read(const read_request *request, volume *out) {
@@ -90,17 +156,71 @@ int volume_read(const read_request *request, volume *out) {
     mapping file;
     int status = mapping_open(request->path, &file);
     if (status) return status;
-    reader read = find_reader(request, &file);
-    if (read)
-        status = read(request, &file, out);
+    readers read = find_readers(request, &file);
+    if (read.image)
+        status = read.image(request, &file, out);
+    else if (read.grid)
+        status = fail(STATUS_INPUT, "%s: is no image; of images this program reads raw, NRRD, MetaImage and NIfTI",
+                      request->path);
     else
-        status =
-            fail(STATUS_INPUT,
-                 "%s: its format is not known; this program reads %s; for samples without a header give --dims and "
-                 "--type",
-                 request->path, volume_formats());
+        status = refuse_unknown(request->path, &file);
     mapping_close(&file);
     if (status) volume_release(out);
+    return status;
+}
+
+/* The image as a dataset's one block with one field without a name. */
+static int wrap_image(dataset *d) {
+    const volume *v = &d->image;
+    dataset_block *b;
+    dataset_field *f;
+    int status = dataset_block_add(d, &b);
+    if (!status) status = dataset_field_add(b, &f);
+    if (status) return status;
+    b->kind = GRID_UNIFORM;
+    b->point_count = v->dims[0] * v->dims[1] * v->dims[2];
+    b->cell_count = (v->dims[0] - 1) * (v->dims[1] - 1) * (v->dims[2] - 1);
+    memcpy(b->dims, v->dims, sizeof b->dims);
+    memcpy(b->first, v->first, sizeof b->first);
+    memcpy(b->matrix, v->matrix, sizeof b->matrix);
+    *f = (dataset_field){.name = "", .components = 1, .type = v->type, .values = v->samples};
+    memcpy(d->format, v->format, sizeof d->format);
+    memcpy(d->space, v->space, sizeof d->space);
+    memcpy(d->notice, v->notice, sizeof d->notice);
+    return 0;
+}
+
+/* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. What begins as NIfTI may be
+ * a grid of 348 points along x. */
+static int may_be_plot3d(readers r) {
+    return r.image == nifti_read || (!r.image && (!r.grid || r.grid == plot3d_read));
+}
+
+static int refuse_pair(const read_request *request) {
+    return fail(STATUS_USAGE,
+                "%s: holds all it has in one file, '%s' is a second one: two inputs are a Plot3D grid and its solution",
+                request->path, request->path2);
+}
+
+int dataset_read(const read_request *request, dataset *out) {
+    *out = (dataset){0};
+    mapping file;
+    if (request->path2 && !may_be_plot3d(readers_of_ending(request->path))) return refuse_pair(request);
+    int status = mapping_open(request->path, &file);
+    if (status) return status;
+    readers read = find_readers(request, &file);
+    if (request->path2) {
+        status = may_be_plot3d(read) ? plot3d_read(request, &file, out) : refuse_pair(request);
+    } else if (read.image) {
+        status = read.image(request, &file, &out->image);
+        if (!status) status = wrap_image(out);
+    } else if (read.grid) {
+        status = read.grid(request, &file, out);
+    } else {
+        status = refuse_unknown(request->path, &file);
+    }
+    mapping_close(&file);
+    if (status) dataset_release(out);
     return status;
 }
 

@@ -9,10 +9,10 @@
 
 #include "options.h"
 #include "tetracubes.h"
-#include "volume.h"
 
 int extract_run(const options *o);
 int info_run(const options *o);
+int tetrahedralize_run(const options *o);
 int devices_run(const options *o);
 int generate_run(const options *o);
 int selftest_run(const options *o);
@@ -22,9 +22,6 @@ void generate_help(FILE *out);
 
 /* The library's failure as the tool's: records tc_message() and returns the exit status that it means. */
 int library_status(tc_status status);
-
-/* The options of an input as its reader wants them; refuses none or several inputs, and raw options without --dims. */
-int input_request(const options *o, read_request *request);
 
 /* One line on standard error, "tetracubes: ..."; not for failures, which main prints. */
 void message(const char *format, ...) __attribute__((format(printf, 1, 2)));

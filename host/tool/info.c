@@ -1,26 +1,27 @@
-/* info.c - what a volume holds: description, range, histogram, isovalues worth trying */
+/* info.c - what an input holds: blocks and fields; range, histogram and isovalues worth trying of the chosen one */
 #include "commands.h"
+#include "describe.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "input.h"
 #include "progress.h"
 #include "report.h"
 #include "statistics.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 
 #define CHART_ROWS  16
 #define CHART_WIDTH 50
 
-/* Distance of neighbouring samples in world space: the length of the matrix's columns. */
-static void spacing_of(const volume *v, double spacing[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        spacing[axis] = hypot(hypot(v->matrix[0][axis], v->matrix[1][axis]), v->matrix[2][axis]);
-}
-
-static json_t *integers_json(const int64_t values[3]) {
-    return json_pack("[I, I, I]", (json_int_t)values[0], (json_int_t)values[1], (json_int_t)values[2]);
-}
+/* What the input holds, and the field that histogram and isovalues are of. */
+typedef struct facts {
+    const char *path;
+    const dataset *d;
+    const scalar *field; /* NULL where there is a choice that was not made */
+    statistics s;
+} facts;
 
 static json_t *histogram_json(const statistics *s) {
     json_t *counts = json_array();
@@ -48,27 +49,46 @@ static int exact_digits(const statistics *s) {
     return digits;
 }
 
-static int print_json(const char *path, const volume *v, const statistics *s) {
+/* The one structured block that the object's dims, first, spacing and matrix are of; NULL where there is none. */
+static const dataset_block *only_block(const dataset *d) {
+    return d->block_count == 1 && d->blocks->kind != GRID_UNSTRUCTURED ? d->blocks : NULL;
+}
+
+static void add_grid(json_t *object, const dataset_block *b) {
     double spacing[3];
-    spacing_of(v, spacing);
-    json_t *object = json_object();
-    json_object_set_new(object, "input", report_string(path));
-    json_object_set_new(object, "format", json_string(v->format));
-    json_object_set_new(object, "dims", integers_json(v->dims));
-    json_object_set_new(object, "first", integers_json(v->first));
-    json_object_set_new(object, "type", json_string(tc_type_name(v->type)));
-    json_object_set_new(object, "spacing", report_reals(spacing, 3));
+    int is_uniform = b && b->kind == GRID_UNIFORM;
+    for (int axis = 0; axis < 3; axis++) spacing[axis] = is_uniform ? describe_spacing(b, axis) : 0.0;
+    json_object_set_new(object, "dims", b ? report_integers(b->dims) : json_null());
+    json_object_set_new(object, "first", b ? report_integers(b->first) : json_null());
+    json_object_set_new(object, "spacing", is_uniform ? report_reals(spacing, 3) : json_null());
     json_object_set_new(object, "matrix",
-                        json_pack("[o, o, o]", report_reals(v->matrix[0], 4), report_reals(v->matrix[1], 4),
-                                  report_reals(v->matrix[2], 4)));
-    json_object_set_new(object, "space", report_string(v->space));
-    json_object_set_new(object, "notice", report_string(v->notice));
+                        is_uniform ? json_pack("[o, o, o]", report_reals(b->matrix[0], 4),
+                                               report_reals(b->matrix[1], 4), report_reals(b->matrix[2], 4))
+                                   : json_null());
+}
+
+static void add_field(json_t *object, const facts *f) {
+    const statistics *s = &f->s;
+    json_object_set_new(object, "field", f->field ? report_string(f->field->name) : json_null());
+    json_object_set_new(object, "type", f->field ? json_string(tc_type_name(f->field->blocks->type)) : json_null());
     json_object_set_new(object, "range",
                         s->finite_count ? report_reals((double[]){s->minimum, s->maximum}, 2) : json_null());
     json_object_set_new(object, "nonfinite", json_integer((json_int_t)s->nonfinite_count));
     json_object_set_new(object, "histogram", histogram_json(s));
     json_object_set_new(object, "isovalues", suggestions_json(s));
-    return report_print(object, exact_digits(s));
+}
+
+static int print_json(const facts *f) {
+    int digits = exact_digits(&f->s), of_blocks = describe_digits(f->d);
+    json_t *object = json_object();
+    json_object_set_new(object, "input", report_string(f->path));
+    json_object_set_new(object, "format", json_string(f->d->format));
+    add_grid(object, only_block(f->d));
+    json_object_set_new(object, "space", report_string(f->d->space));
+    json_object_set_new(object, "notice", report_string(f->d->notice));
+    add_field(object, f);
+    json_object_set_new(object, "blocks", describe_blocks_json(f->d));
+    return report_print(object, of_blocks > digits ? of_blocks : digits);
 }
 
 /* Neighbouring bins are merged into rows; bars show square roots, since most volumes are mostly air. */
@@ -94,41 +114,75 @@ static void print_suggestions(const statistics *s) {
     for (int n = 0; n < count; n++) printf("  %11.7g %s\n", good[n].isovalue, good[n].reason);
 }
 
-static void print_text(const char *path, const volume *v, const statistics *s) {
-    double spacing[3];
-    spacing_of(v, spacing);
-    printf("%s\n", path);
-    printf("format        %s\n", v->format);
-    printf("dimensions    %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", v->dims[0], v->dims[1], v->dims[2],
-           tc_type_name(v->type));
-    if (v->first[0] || v->first[1] || v->first[2])
-        printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", v->first[0], v->first[1], v->first[2]);
-    printf("spacing       %.9g %.9g %.9g\n", spacing[0], spacing[1], spacing[2]);
-    printf("world space   %s\n", v->space[0] ? v->space : "not named");
-    for (int r = 0; r < 3; r++)
-        printf("%s%.9g i + %.9g j + %.9g k + %.9g\n", r ? "              " : "index->world  ", v->matrix[r][0],
-               v->matrix[r][1], v->matrix[r][2], v->matrix[r][3]);
+static void print_image(const facts *f) {
+    const dataset_block *b = f->d->blocks;
+    printf("dimensions    %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", b->dims[0], b->dims[1], b->dims[2],
+           tc_type_name(b->fields->type));
+    if (b->first[0] || b->first[1] || b->first[2])
+        printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
+    describe_place_text(f->d, b);
+}
+
+static void print_field(const facts *f) {
+    const statistics *s = &f->s;
+    if (!f->field) {
+        printf("isovalues     %s\n", f->d->block_count && f->d->blocks->field_count
+                                         ? "choose a field by --field NAME, a component by --component C"
+                                         : "none: there is no field");
+        return;
+    }
+    if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
     if (s->finite_count) printf("range         %.9g to %.9g\n", s->minimum, s->maximum);
     if (s->nonfinite_count) printf("not finite    %" PRIu64 " samples, treated as missing\n", s->nonfinite_count);
-    if (v->notice[0]) printf("notice        %s\n", v->notice);
     if (s->bin_count) print_chart(s);
     print_suggestions(s);
 }
 
+static void print_text(const facts *f) {
+    printf("%s\n", f->path);
+    printf("format        %s\n", f->d->format);
+    if (f->d->image.samples)
+        print_image(f);
+    else
+        describe_blocks_text(f->d);
+    if (f->d->notice[0]) printf("notice        %s\n", f->d->notice);
+    print_field(f);
+}
+
+/* Over the points of all blocks. */
+static int find_statistics(facts *f) {
+    int count = f->field ? f->d->block_count : 0;
+    sample_array *arrays = calloc((size_t)count + 1, sizeof *arrays);
+    if (!arrays) return fail(STATUS_FAILED, "out of memory for %d blocks", count);
+    for (int n = 0; n < count; n++) {
+        const scalar_block *b = &f->field->blocks[n];
+        arrays[n] = (sample_array){b->type, b->samples, (uint64_t)f->d->blocks[n].point_count};
+    }
+    statistics_of(arrays, count, &f->s);
+    free(arrays);
+    return 0;
+}
+
 int info_run(const options *o) {
     read_request request;
-    volume v = {0};
-    statistics s;
+    dataset d = {0};
+    scalar field;
+    facts f = {.d = &d};
     int status = input_request(o, &request);
-    if (!status) status = volume_read(&request, &v);
+    if (!status) status = dataset_read(&request, &d);
     if (!status) status = progress_status();
+    if (!status && input_has_choice(o, &d)) {
+        status = input_select(o, &d, &field);
+        f.field = &field;
+    }
+    if (!status) status = find_statistics(&f);
     if (status) goto cleanup;
-    statistics_of(&v, &s);
+    f.path = request.path;
     if (o->json)
-        status = print_json(request.path, &v, &s);
+        status = print_json(&f);
     else
-        print_text(request.path, &v, &s);
+        print_text(&f);
 cleanup:
-    volume_release(&v);
+    dataset_release(&d);
     return status;
 }

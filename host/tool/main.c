@@ -25,23 +25,37 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
-    {"extract", COMMAND_EXTRACT, extract_run, NULL, "isosurface of a volume, as a triangle mesh",
-     "tetracubes extract INPUT --iso V[,V...] [-o FILE] [options]",
+    {"extract", COMMAND_EXTRACT, extract_run, NULL, "isosurface of a grid, as a triangle mesh",
+     "tetracubes extract INPUT... --iso V[,V...] [-o FILE] [options]",
      "Extracts the surface that separates samples >= V from samples below it, by marching\n"
-     "tetrahedra. Vertices are shared, triangles face the lower values, and the same input gives\n"
-     "the same bytes on every device.\n"
+     "tetrahedra, from uniform, rectilinear, curvilinear and unstructured grids. Vertices are\n"
+     "shared, triangles face the lower values, and the same input gives the same bytes on every\n"
+     "device. Two INPUTs are a Plot3D grid and its solution or function file.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
-     "  tetracubes extract dem.mha --iso 0 --nodata -9999 --verify --json"},
-    {"info", COMMAND_INFO, info_run, NULL, "what a volume holds, and isovalues worth trying",
-     "tetracubes info INPUT [options]",
-     "Prints dimensions, type, spacing, the matrix from index space to world space, the range and\n"
-     "histogram of the finite samples, and isovalues worth trying.\n"
+     "  tetracubes extract dem.mha --iso 0 --nodata -9999 --verify --json\n"
+     "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"
+     "  tetracubes extract engine.vtu --field temperature --iso 400 -o hot.ply"},
+    {"info", COMMAND_INFO, info_run, NULL, "what a file holds, and isovalues worth trying",
+     "tetracubes info INPUT... [options]",
+     "Prints the kind of grid, its sizes and place, cells by type and fields with their ranges, for\n"
+     "every block; then, of the one field or the one that --field names, the histogram of the finite\n"
+     "samples and isovalues worth trying. Two INPUTs are a Plot3D grid and its solution.\n"
      "\n"
      "  tetracubes info head.nii.gz\n"
+     "  tetracubes info engine.vtu --field temperature\n"
      "  tetracubes info ct.raw --dims 512,512,300 --type i16 --json"},
+    {"tetrahedralize", COMMAND_TETRAHEDRALIZE, tetrahedralize_run, NULL, "a grid cut into tetrahedra that fit together",
+     "tetracubes tetrahedralize INPUT... -o FILE.vtu [options]",
+     "Cuts the cells of a grid, structured or not, into a conforming complex of tetrahedra: the one\n"
+     "that surfaces are extracted from. All fields at points are written, those of cells averaged;\n"
+     "several blocks follow each other in one grid. Cells with a corner where the only field, or the\n"
+     "one that --field names, has no value are left out.\n"
+     "\n"
+     "  tetracubes tetrahedralize engine.vtk -o engine-tetrahedra.vtu\n"
+     "  tetracubes tetrahedralize grid.xyz flow.q -o flow.vtu"},
     {"devices", COMMAND_DEVICES, devices_run, NULL, "every OpenCL device, with the limits that matter",
      "tetracubes devices [--json]",
      "Lists the devices of all OpenCL platforms. --device takes the index in front, the\n"
@@ -67,7 +81,7 @@ static void print_overview(FILE *out) {
     fprintf(out, "tetracubes %s: isosurfaces of sampled volumes by marching tetrahedra, on OpenCL devices\n\n",
             tc_version());
     for (size_t n = 0; n < COMMAND_COUNT; n++)
-        fprintf(out, "  tetracubes %-9s %s\n", commands[n].name, commands[n].summary);
+        fprintf(out, "  tetracubes %-14s %s\n", commands[n].name, commands[n].summary);
     fprintf(out, "\n"
                  "  tetracubes COMMAND --help   options and examples\n"
                  "  tetracubes --version        version and file formats\n"
@@ -81,15 +95,31 @@ static void print_overview(FILE *out) {
                  "check failed; 4 bad input file.\n");
 }
 
+/* The formats, in lines that fit a terminal. */
+static void print_formats(const char *before, FILE *out) {
+    enum { COLUMNS = 92 };
+    const char *word = volume_formats();
+    int column = fprintf(out, "%s", before);
+    while (*word) {
+        int length = (int)strcspn(word, " ");
+        if (column + 1 + length > COLUMNS) column = fprintf(out, "\n ") - 1;
+        column += fprintf(out, " %.*s", length, word);
+        word += length + (word[length] == ' ');
+    }
+    fputc('\n', out);
+}
+
 static void print_command_help(const command *c, FILE *out) {
     fprintf(out, "%s\n\n%s\n\nOptions:\n", c->usage, c->text);
     options_print(c->bit, out);
-    if (c->bit & (COMMAND_EXTRACT | COMMAND_INFO)) fprintf(out, "\nInput formats: %s\n", volume_formats());
+    if (c->bit & (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)) print_formats("\nInput formats:", out);
     if (c->help) c->help(out);
 }
 
 static void print_version(FILE *out) {
-    fprintf(out, "tetracubes %s\nreads: %s\nwrites: PLY, STL, OBJ, VTP\n", tc_version(), volume_formats());
+    fprintf(out, "tetracubes %s\n", tc_version());
+    print_formats("reads:", out);
+    fprintf(out, "writes: PLY, VTP, STL, OBJ; VTU (tetrahedra)\n");
 }
 
 void message(const char *format, ...) {
@@ -115,32 +145,6 @@ int library_status(tc_status status) {
     default:
         return fail(STATUS_FAILED, "%s", tc_message());
     }
-}
-
-int input_request(const options *o, read_request *request) {
-    static const char *const raw[] = {"--type", "--endian", "--skip", "--spacing", "--origin"};
-    if (o->operand_count != 1)
-        return fail(STATUS_USAGE,
-                    o->operand_count ? "%s: one input at a time; '%s' is a second one"
-                                     : "%s needs an input file; see 'tetracubes %s --help'",
-                    o->command, o->operand_count ? o->operands[1] : o->command);
-    int is_raw = options_given(o, "--dims");
-    for (size_t n = 0; n < sizeof raw / sizeof *raw; n++)
-        if (!is_raw && options_given(o, raw[n]))
-            return fail(STATUS_USAGE, "%s describes raw input: give --dims NX,NY,NZ too, or leave it out", raw[n]);
-    if (is_raw && o->type < 0) return fail(STATUS_USAGE, "raw input needs --type beside --dims, as in --type u8");
-    read_request_init(request, o->operands[0]);
-    for (int axis = 0; axis < 3; axis++) {
-        request->dims[axis] = o->dims[axis];
-        request->spacing[axis] = o->spacing[axis];
-        request->origin[axis] = o->origin[axis];
-    }
-    request->type = o->type;
-    request->big_endian = o->big_endian;
-    request->skip = o->skip;
-    request->component = o->component;
-    request->frame = o->frame;
-    return 0;
 }
 
 static const command *find_command(const char *name) {

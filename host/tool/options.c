@@ -46,32 +46,46 @@ typedef struct option {
 static const char *const type_choices[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64", NULL};
 static const char *const endian_choices[] = {"little", "big", NULL};
 static const char *const engine_choices[] = {"opencl", "reference", NULL};
-static const char *const method_choices[] = {"tetra", NULL};
+static const char *const method_choices[] = {"tetra", "hybrid", NULL};
 static const char *const format_choices[] = {"ply", "stl", "obj", "vtp", NULL};
+static const char *const blocks_choices[] = {"joined", "separate", NULL};
 
-#define READS (COMMAND_EXTRACT | COMMAND_INFO)
-#define ALL   (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_DEVICES | COMMAND_GENERATE | COMMAND_SELFTEST)
-#define IN(m) offsetof(options, m)
+#define READS   (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)
+#define REPORTS (READS | COMMAND_DEVICES | COMMAND_SELFTEST)
+#define ALL     (REPORTS | COMMAND_GENERATE)
+#define IN(m)   offsetof(options, m)
 
 /* clang-format off */
 static const option table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
      "isovalue, or several with commas between: samples >= V are inside"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .stl, .obj or .vtp (left out: only the report); with\n"
+     "mesh to write: .ply, .vtp, .stl or .obj (left out: only the report); with\n"
      "several isovalues, % in FILE stands for the isovalue as typed"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header"},
+    {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
+     "unstructured grid to write: .vtu"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, stl, obj or vtp, whatever FILE ends in"},
+     "ply, vtp, stl or obj, whatever FILE ends in"},
+    {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
+     "field to contour, of data with several, see 'tetracubes info'; values of\n"
+     "cells are averaged to the points between them"},
+    {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
+     "other fields, interpolated onto the vertices (PLY, VTP)"},
+    {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
+     "of data in several blocks: joined (default): one mesh; separate: one\n"
+     "file per block, FILE with _b0, _b1, ... before its ending"},
     {"--normals", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(normals), NULL,
-     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ, VTP)"},
+     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ,\n"
+     "VTP); structured grids only"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
      "classify only: count vertices, triangles and active cells, make no mesh"},
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,
-     "tetra: five tetrahedra per cell (the default, and the only one)"},
+     "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
+     "ambiguous cases the tetrahedra decide: fewer triangles, structured grids"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), or reference: scalar C, needs no OpenCL, same bytes"},
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
@@ -85,7 +99,7 @@ static const option table[] = {
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
      "check the mesh itself: manifold, oriented; Euler characteristic, area,\n"
      "volume (boundary edges are reported, they are no fault)"},
-    {"--nodata", NULL, "V", COMMAND_EXTRACT, VALUE_NODATA, IN(nodata), NULL,
+    {"--nodata", NULL, "V", COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
      "a missing corner is left out"},
     {"--component", NULL, "C", READS, VALUE_INDEX, IN(component), NULL,
@@ -110,9 +124,9 @@ static const option table[] = {
      "raw input: position of the first sample, default 0,0,0"},
     {"--seed", NULL, "S", COMMAND_GENERATE, VALUE_NUMBER, IN(seed), NULL,
      "of noise, a whole number, default 0"},
-    {"--json", NULL, NULL, COMMAND_EXTRACT | COMMAND_INFO | COMMAND_DEVICES | COMMAND_SELFTEST, VALUE_NONE, IN(json), NULL,
+    {"--json", NULL, NULL, REPORTS, VALUE_NONE, IN(json), NULL,
      "print the results as one JSON object"},
-    {"--quiet", NULL, NULL, COMMAND_EXTRACT | COMMAND_GENERATE, VALUE_NONE, IN(quiet), NULL,
+    {"--quiet", NULL, NULL, COMMAND_EXTRACT | COMMAND_GENERATE | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(quiet), NULL,
      "no progress, no notices, no report but that of --json"},
     {"--help", "-h", NULL, ALL, VALUE_NONE, IN(help), NULL,
      "print this"},
@@ -222,8 +236,6 @@ static int parse_choice(const option *spec, const char *text, int *out) {
         size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s%s", count ? ", " : "", spec->choices[count]);
     }
-    if (spec->choices == method_choices && strcmp(text, "hybrid") == 0)
-        return fail(STATUS_USAGE, "--method: hybrid is not in this version; use tetra");
     const char *meant = nearest_name(text, spec->choices, count);
     return fail(STATUS_USAGE, "%s: '%s' is none of %s%s%s%s", spec->name, text, all, meant ? "; did you mean " : "",
                 meant ? meant : "", meant ? "?" : "");

@@ -17,6 +17,7 @@ enum command_bit {
     COMMAND_DEVICES = 4,
     COMMAND_GENERATE = 8,
     COMMAND_SELFTEST = 16,
+    COMMAND_TETRAHEDRALIZE = 32,
 };
 
 typedef struct typed_isovalue {
@@ -35,7 +36,10 @@ typedef struct options {
     const char *format;
     const char *device;
     int engine; /* a tc_engine */
-    int method; /* 0: tetra */
+    int method; /* a tc_method */
+    const char *field;
+    const char *carry;   /* names with commas between */
+    int separate_blocks; /* a file for each */
     int has_nodata;
     double nodata;
     int component, frame; /* -1 where not given */

@@ -19,6 +19,10 @@ json_t *report_reals(const double *values, int count) {
     return array;
 }
 
+json_t *report_integers(const int64_t values[3]) {
+    return json_pack("[I, I, I]", (json_int_t)values[0], (json_int_t)values[1], (json_int_t)values[2]);
+}
+
 int report_digits(double value) {
     char text[40];
     for (int digits = 15; digits < 17; digits++) {
@@ -80,10 +84,6 @@ static json_t *surface_json(const surface_report *s) {
     return object;
 }
 
-static uint64_t cell_count(const volume *v) {
-    return (uint64_t)(v->dims[0] - 1) * (uint64_t)(v->dims[1] - 1) * (uint64_t)(v->dims[2] - 1);
-}
-
 static json_t *timings_json(const extract_report *r) {
     return json_pack("{s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "device_start",
                      ms_json(r->device_start_ms), "upload", ms_json(r->upload_ms), "write", ms_json(r->write_ms),
@@ -101,7 +101,6 @@ json_t *report_string(const char *text) {
 }
 
 int report_extract_json(const extract_report *r) {
-    const int64_t *dims = r->v->dims;
     int digits = 15;
     json_t *surfaces = json_array(), *object = json_object();
     for (size_t n = 0; n < r->surface_count; n++) {
@@ -112,11 +111,10 @@ int report_extract_json(const extract_report *r) {
     json_object_set_new(object, "input", report_string(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? report_string(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->o->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
-    json_object_set_new(object, "method", json_string("tetra"));
-    json_object_set_new(object, "dims",
-                        json_pack("[I, I, I]", (json_int_t)dims[0], (json_int_t)dims[1], (json_int_t)dims[2]));
-    json_object_set_new(object, "cells", count_json(cell_count(r->v)));
-    json_object_set_new(object, "tetrahedra", count_json(5 * cell_count(r->v)));
+    json_object_set_new(object, "method", json_string(r->o->method == TC_METHOD_HYBRID ? "hybrid" : "tetra"));
+    json_object_set_new(object, "dims", r->dims ? report_integers(r->dims) : json_null());
+    json_object_set_new(object, "cells", count_json(r->cell_count));
+    json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
     json_object_set_new(object, "surfaces", surfaces);
     return report_print(object, digits);
@@ -158,11 +156,19 @@ static void surface_text(const surface_report *s) {
     if (s->path) printf("  written     %s\n", s->path);
 }
 
+static void input_text(const extract_report *r) {
+    printf("%s: ", r->o->operands[0]);
+    if (r->block_count > 1) printf("%d blocks, ", r->block_count);
+    if (r->dims)
+        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->dims[0], r->dims[1], r->dims[2]);
+    else
+        printf("%" PRIu64 " points ", r->point_count);
+    printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
+           tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
+}
+
 void report_extract_text(const extract_report *r) {
-    const int64_t *dims = r->v->dims;
-    printf("%s: %" PRId64 " x %" PRId64 " x %" PRId64 " %s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n",
-           r->o->operands[0], dims[0], dims[1], dims[2], tc_type_name(r->v->type), cell_count(r->v),
-           5 * cell_count(r->v));
+    input_text(r);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n]);
     printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,

@@ -10,7 +10,6 @@
 #include "mesh_check.h"
 #include "options.h"
 #include "tetracubes.h"
-#include "volume.h"
 
 #include <jansson.h>
 
@@ -27,13 +26,17 @@ typedef struct surface_report {
     mesh_topology topology;
     int has_verdict;
     int verified;
-    char *path; /* of the file written, or NULL; from malloc */
+    char *path; /* of the file, or files, written, or NULL; from malloc */
 } surface_report;
 
 typedef struct extract_report {
     const options *o;
-    const volume *v;
-    char device[160]; /* "" for the reference engine */
+    const int64_t *dims; /* of an input that is one structured block, else NULL */
+    int block_count;
+    const char *field; /* "" where it has no name */
+    tc_type type;
+    uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
+    char device[160];                                    /* "" for the reference engine */
     double read_ms, upload_ms, write_ms, total_ms;
     double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
     surface_report *surfaces;
@@ -52,6 +55,9 @@ json_t *report_real(double value);
 
 /* An array of count numbers. */
 json_t *report_reals(const double *values, int count);
+
+/* An array of three integers. */
+json_t *report_integers(const int64_t values[3]);
 
 /* Significant digits, 15 to 17, that read back the same double. */
 int report_digits(double value);

@@ -10,64 +10,90 @@
 #include <math.h>
 #include <string.h>
 
-static size_t sample_count(const volume *v) { return (size_t)(v->dims[0] * v->dims[1] * v->dims[2]); }
+/* Finite values of one array, or of one component: every stride-th value from the first on. */
+typedef struct extent {
+    uint64_t finite_count, nonfinite_count;
+    double least, most; /* infinities where there is no finite value */
+} extent;
 
-#define RANGE_OF_INTEGERS(c_type)                                                                                      \
+#define EXTENT_OF_INTEGERS(c_type)                                                                                     \
     {                                                                                                                  \
-        const c_type *at = v->samples;                                                                                 \
-        c_type least = at[0], most = at[0];                                                                            \
-        for (size_t n = 0; n < count; n++) {                                                                           \
+        const c_type *at = array->samples;                                                                             \
+        c_type least = at[first], most = at[first];                                                                    \
+        for (uint64_t n = first; n < array->count; n += stride) {                                                      \
             least = at[n] < least ? at[n] : least;                                                                     \
             most = at[n] > most ? at[n] : most;                                                                        \
         }                                                                                                              \
-        s->finite_count = count;                                                                                       \
-        s->minimum = (double)least;                                                                                    \
-        s->maximum = (double)most;                                                                                     \
+        e.finite_count = (array->count - first + stride - 1) / stride;                                                 \
+        e.least = (double)least;                                                                                       \
+        e.most = (double)most;                                                                                         \
     }                                                                                                                  \
     break
 
-#define RANGE_OF_REALS(c_type)                                                                                         \
+#define EXTENT_OF_REALS(c_type)                                                                                        \
     {                                                                                                                  \
-        const c_type *at = v->samples;                                                                                 \
-        double least = INFINITY, most = -INFINITY;                                                                     \
-        for (size_t n = 0; n < count; n++) {                                                                           \
+        const c_type *at = array->samples;                                                                             \
+        for (uint64_t n = first; n < array->count; n += stride) {                                                      \
             double value = (double)at[n];                                                                              \
-            if (!isfinite(value)) continue;                                                                            \
-            s->finite_count++;                                                                                         \
-            least = value < least ? value : least;                                                                     \
-            most = value > most ? value : most;                                                                        \
+            int finite = isfinite(value);                                                                              \
+            e.finite_count += (uint64_t)finite;                                                                        \
+            e.nonfinite_count += (uint64_t)!finite;                                                                    \
+            if (!finite) continue;                                                                                     \
+            e.least = value < e.least ? value : e.least;                                                               \
+            e.most = value > e.most ? value : e.most;                                                                  \
         }                                                                                                              \
-        s->minimum = s->finite_count ? least : 0.0;                                                                    \
-        s->maximum = s->finite_count ? most : 0.0;                                                                     \
     }                                                                                                                  \
     break
 
-static void find_range(const volume *v, statistics *s) {
-    size_t count = sample_count(v);
-    switch (v->type) {
+static extent extent_of(const sample_array *array, uint64_t first, uint64_t stride) {
+    extent e = {0, 0, INFINITY, -INFINITY};
+    if (array->count <= first) return e;
+    switch (array->type) {
     case TC_U8:
-        RANGE_OF_INTEGERS(uint8_t);
+        EXTENT_OF_INTEGERS(uint8_t);
     case TC_I8:
-        RANGE_OF_INTEGERS(int8_t);
+        EXTENT_OF_INTEGERS(int8_t);
     case TC_U16:
-        RANGE_OF_INTEGERS(uint16_t);
+        EXTENT_OF_INTEGERS(uint16_t);
     case TC_I16:
-        RANGE_OF_INTEGERS(int16_t);
+        EXTENT_OF_INTEGERS(int16_t);
     case TC_U32:
-        RANGE_OF_INTEGERS(uint32_t);
+        EXTENT_OF_INTEGERS(uint32_t);
     case TC_I32:
-        RANGE_OF_INTEGERS(int32_t);
+        EXTENT_OF_INTEGERS(int32_t);
     case TC_F32:
-        RANGE_OF_REALS(float);
+        EXTENT_OF_REALS(float);
     case TC_F64:
-        RANGE_OF_REALS(double);
+        EXTENT_OF_REALS(double);
     }
-    s->nonfinite_count = count - s->finite_count;
+    return e;
 }
 
-static void choose_bins(const volume *v, statistics *s) {
+int statistics_range(const sample_array *array, int first, int stride, double range[2]) {
+    extent e = extent_of(array, (uint64_t)first, (uint64_t)stride);
+    range[0] = e.least;
+    range[1] = e.most;
+    return e.finite_count != 0;
+}
+
+static void find_range(const sample_array *arrays, int count, statistics *s) {
+    extent all = {0, 0, INFINITY, -INFINITY};
+    for (int n = 0; n < count; n++) {
+        extent e = extent_of(&arrays[n], 0, 1);
+        all.finite_count += e.finite_count;
+        all.nonfinite_count += e.nonfinite_count;
+        all.least = e.least < all.least ? e.least : all.least;
+        all.most = e.most > all.most ? e.most : all.most;
+    }
+    s->finite_count = all.finite_count;
+    s->nonfinite_count = all.nonfinite_count;
+    s->minimum = all.finite_count ? all.least : 0.0;
+    s->maximum = all.finite_count ? all.most : 0.0;
+}
+
+static void choose_bins(int all_integers, statistics *s) {
     if (!s->finite_count) return;
-    if (v->type != TC_F32 && v->type != TC_F64) {
+    if (all_integers) {
         double values = s->maximum - s->minimum + 1.0;
         s->width = ceil(values / STATISTICS_BINS);
         s->bin_count = (int)ceil(values / s->width);
@@ -86,14 +112,13 @@ static void count_sample(statistics *s, double value) {
 }
 
 #define COUNT_SAMPLES(c_type)                                                                                          \
-    for (size_t n = 0; n < count; n++)                                                                                 \
-        if (isfinite((double)((const c_type *)v->samples)[n]))                                                         \
-            count_sample(s, (double)((const c_type *)v->samples)[n]);                                                  \
+    for (uint64_t n = 0; n < array->count; n++)                                                                        \
+        if (isfinite((double)((const c_type *)array->samples)[n]))                                                     \
+            count_sample(s, (double)((const c_type *)array->samples)[n]);                                              \
     break
 
-static void fill_bins(const volume *v, statistics *s) {
-    size_t count = s->finite_count ? sample_count(v) : 0;
-    switch (v->type) {
+static void fill_bins(const sample_array *array, statistics *s) {
+    switch (array->type) {
     case TC_U8:
         COUNT_SAMPLES(uint8_t);
     case TC_I8:
@@ -113,11 +138,13 @@ static void fill_bins(const volume *v, statistics *s) {
     }
 }
 
-void statistics_of(const volume *v, statistics *out) {
+void statistics_of(const sample_array *arrays, int count, statistics *out) {
+    int all_integers = 1;
     memset(out, 0, sizeof *out);
-    find_range(v, out);
-    choose_bins(v, out);
-    fill_bins(v, out);
+    for (int n = 0; n < count; n++) all_integers &= arrays[n].type != TC_F32 && arrays[n].type != TC_F64;
+    find_range(arrays, count, out);
+    choose_bins(all_integers, out);
+    for (int n = 0; n < count && out->finite_count; n++) fill_bins(&arrays[n], out);
 }
 
 /* The bin that starts the upper class when bins [begin, end) are split; begin where they hold less than two values. */

@@ -1,10 +1,17 @@
-/* statistics.h - range, histogram and sensible isovalues of a volume's finite samples */
+/* statistics.h - range, histogram and sensible isovalues of finite samples */
 #ifndef STATISTICS_H
 #define STATISTICS_H
 
-#include "volume.h"
+#include "tetracubes.h"
 
 #define STATISTICS_BINS 256
+
+/* Samples of one block. */
+typedef struct sample_array {
+    tc_type type;
+    const void *samples;
+    uint64_t count;
+} sample_array;
 
 /*
  * Bins have one width: bin n holds low + n width <= v < low + (n + 1) width. Of integer samples the width is a whole
@@ -27,7 +34,11 @@ typedef struct suggestion {
 
 #define SUGGESTIONS_MAX 4
 
-void statistics_of(const volume *v, statistics *out);
+/* Of all arrays together. */
+void statistics_of(const sample_array *arrays, int count, statistics *out);
+
+/* Least and greatest finite value of every stride-th sample from the first on; 0 where there is none. */
+int statistics_range(const sample_array *array, int first, int stride, double range[2]);
 
 /* Isovalues that some sample reaches and some does not, the most useful first. Returns how many. */
 int statistics_suggest(const statistics *s, suggestion out[SUGGESTIONS_MAX]);

@@ -1,0 +1,52 @@
+#include "carry.h"
+
+#include "complex.h"
+#include "context.h"
+#include "failure.h"
+#include "reference.h"
+
+#include <math.h>
+
+void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t) {
+    const int components = c->field->components;
+    if (vertex >= c->room) return;
+    for (int n = 0; n < components; n++) {
+        double from = value_at(c->field->type, c->field->values, a * components + n);
+        double to = value_at(c->field->type, c->field->values, b * components + n);
+        c->out[vertex * (uint64_t)components + (uint64_t)n] = (float)(t == 1 ? to : from + (double)t * (to - from));
+    }
+}
+
+static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
+    if (!grid || !field || field->struct_size < sizeof *field || (!out && value_count))
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "tc_carry needs a grid, a field with its struct_size set, and a place for the values");
+    if (!tc_type_bytes(field->type) || field->components < 1 || !field->values)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the field has no values, or their type or number is not valid");
+    if (!grid->samples)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "fields are carried where samples are in the host's memory: this "
+                                                  "grid has cl_samples");
+    return TC_OK;
+}
+
+tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
+                   uint64_t value_count) {
+    tc_extract_options o;
+    uint64_t vertex_count = 0;
+    tc_status status = field_check(grid, field, out, value_count);
+    if (status) return status;
+    const uint64_t components = (uint64_t)field->components;
+    const carry c = {field, out, value_count / components};
+    tc_extract_options_init(&o);
+    status = options_take(&o, sizeof o, options, "extract options");
+    if (!status && !isfinite(o.isovalue))
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o.isovalue);
+    if (!status)
+        status = grid->complex ? reference_complex_carry(grid, o.isovalue, &c, &vertex_count)
+                               : reference_carry(grid, &o, &c, &vertex_count);
+    if (!status && (vertex_count != c.room || value_count % components))
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "room for %llu values, but %llu vertices of %llu each",
+                                 (unsigned long long)value_count, (unsigned long long)vertex_count,
+                                 (unsigned long long)components);
+    return status;
+}

@@ -1,0 +1,45 @@
+/*
+ * complex.h - tetrahedral complexes as grids: what both engines know of one, and the calls that choose between them
+ */
+#ifndef COMPLEX_H
+#define COMPLEX_H
+
+#include "carry.h"
+#include "context.h"
+#include "grid.h"
+#include "inside.h"
+#include "mesh.h"
+
+/* Type and samples are those of the tc_grid. */
+typedef struct complex_grid {
+    uint32_t point_count;
+    uint32_t tetrahedron_count;
+    const float *points;
+    const uint32_t *tetrahedra;
+
+    /* Under an OpenCL engine: */
+    device_buffer sample_buffer, point_buffer, tetrahedron_buffer;
+    uint64_t sample_offset, point_offset, tetrahedron_offset; /* of the first item in its buffer */
+    device_buffer ranges;                                     /* of all clusters, made at the first visit */
+    bool ranges_known;
+} complex_grid;
+
+/* As tc_count and tc_extract; the struct of options is complete. */
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+void complex_grid_destroy(tc_grid *grid);
+
+/* The sentence for a tetrahedron with a point that is not there. */
+tc_status complex_point_fail(const complex_grid *c);
+
+/* The device path (complex_device.c); samples lie on both sides of the isovalue as far as their type goes. */
+tc_status complex_device_create(tc_grid *grid);
+tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts);
+tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+
+/* The scalar reference (reference_complex.c), likewise. */
+tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);
+tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh);
+tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+
+#endif

@@ -1,0 +1,113 @@
+#include "complex.h"
+
+#include "failure.h"
+
+#include <stdlib.h>
+
+/* Places of crossed edges and sums of the scan take 30 bits. */
+static const uint64_t tetrahedra_most = UINT64_C(1) << 28;
+
+void tc_complex_options_init(tc_complex_options *options) {
+    *options = (tc_complex_options){.struct_size = sizeof *options};
+}
+
+static tc_status options_check(const tc_complex_options *o) {
+    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
+    if (o->point_count > UINT32_MAX || o->tetrahedron_count > tetrahedra_most)
+        return (tc_status)fail(TC_ERROR_LIMIT,
+                               "%llu points and %llu tetrahedra: a complex may have %lu and %llu; cut it into parts",
+                               (unsigned long long)o->point_count, (unsigned long long)o->tetrahedron_count,
+                               (unsigned long)UINT32_MAX, (unsigned long long)tetrahedra_most);
+    if (o->point_count && (!o->points || !o->samples))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no points, or no samples at them");
+    if (o->tetrahedron_count && !o->tetrahedra)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no tetrahedra");
+    if ((uintptr_t)o->samples % tc_type_bytes(o->type))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
+                               tc_type_name(o->type));
+    return TC_OK;
+}
+
+static tc_status complex_describe(tc_grid *grid, const tc_complex_options *o) {
+    complex_grid *c = calloc(1, sizeof *c);
+    if (!c) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a complex");
+    grid->complex = c;
+    grid->type = o->type;
+    grid->samples = o->samples;
+    grid->dims[0] = (int64_t)o->point_count;
+    grid->dims[1] = grid->dims[2] = 1;
+    c->point_count = (uint32_t)o->point_count;
+    c->tetrahedron_count = (uint32_t)o->tetrahedron_count;
+    c->points = o->points;
+    c->tetrahedra = o->tetrahedra;
+    return TC_OK;
+}
+
+tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
+    tc_complex_options o;
+    if (!out || !context)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_complex_create needs a context and a place for the grid");
+    *out = NULL;
+    tc_complex_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "complex options");
+    if (!status) status = options_check(&o);
+    if (status) return status;
+    tc_grid *grid = calloc(1, sizeof *grid);
+    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    grid->context = context;
+    status = complex_describe(grid, &o);
+    if (!status && context->options.engine == TC_ENGINE_OPENCL && o.tetrahedron_count && o.point_count)
+        status = complex_device_create(grid);
+    if (status) {
+        tc_grid_destroy(grid);
+        return status;
+    }
+    *out = grid;
+    return TC_OK;
+}
+
+void complex_grid_destroy(tc_grid *grid) {
+    complex_grid *c = grid->complex;
+    if (!c) return;
+    if (grid->context->served == grid) grid->context->served = NULL;
+    buffer_release(grid->context, &c->sample_buffer);
+    buffer_release(grid->context, &c->point_buffer);
+    buffer_release(grid->context, &c->tetrahedron_buffer);
+    buffer_release(grid->context, &c->ranges);
+    free(c);
+}
+
+tc_status complex_point_fail(const complex_grid *c) {
+    for (uint64_t n = 0; n < 4ull * c->tetrahedron_count; n++)
+        if (c->tetrahedra[n] >= c->point_count)
+            return (tc_status)fail(TC_ERROR_DATA, "tetrahedron %llu has point %lu, and the complex has %lu points",
+                                   (unsigned long long)(n / 4), (unsigned long)c->tetrahedra[n],
+                                   (unsigned long)c->point_count);
+    return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the complex was made");
+}
+
+static tc_status request_check(const tc_extract_options *options) {
+    if (options->normals)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "normals are made on structured grids only, not on complexes");
+    if (options->method != TC_METHOD_TETRA)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "complexes have no cubes: use TC_METHOD_TETRA");
+    return TC_OK;
+}
+
+static bool surface_possible(const tc_grid *grid, double isovalue) {
+    return grid->complex->tetrahedron_count && !inside_range_of(grid->type, isovalue).uniform;
+}
+
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    tc_status status = request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_count(grid, options->isovalue, counts)
+                                                             : reference_complex_count(grid, options->isovalue, counts);
+}
+
+tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    tc_status status = request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_extract(grid, options->isovalue, mesh)
+                                                             : reference_complex_extract(grid, options->isovalue, mesh);
+}

@@ -1,0 +1,137 @@
+/*
+ * Cells of any kind into a tetrahedral complex: each cell is looked up, checked, cut (cell_split.h) and turned so that
+ * its volume is positive.
+ */
+#include "tetrahedralize.h"
+
+#include "cell_split.h"
+#include "failure.h"
+
+#include <string.h>
+
+typedef enum cell_verdict { CELL_GOOD, CELL_SKIPPED, CELL_BAD } cell_verdict;
+
+static bool points_in_range(const tc_cells *cells, const int64_t *points, int64_t count) {
+    for (int64_t n = 0; n < count; n++)
+        if (points[n] < 0 || (uint64_t)points[n] >= cells->point_count) return false;
+    return true;
+}
+
+static bool cell_blanked(const tc_cells *cells, uint64_t c, const int64_t *points, int64_t count) {
+    if (cells->blanked_cells && cells->blanked_cells[c]) return true;
+    for (int64_t n = 0; n < count && cells->blanked_points; n++)
+        if (cells->blanked_points[points[n]]) return true;
+    return false;
+}
+
+/* Looks at one cell; its corners are there where it is good. */
+static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tally, uint32_t corners[]) {
+    const cell_type *type = cell_type_get(cells->types[c]);
+    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c]) return CELL_BAD;
+    int64_t first = cells->offsets[c], count = cells->offsets[c + 1] - first;
+    if (type->shape == CELL_FLAT) {
+        tally->flat++;
+        return CELL_SKIPPED;
+    }
+    if (type->shape == CELL_OTHER || count < type->corner_count) return CELL_BAD;
+    if (type->point_count && count != type->point_count) return CELL_BAD;
+    const int64_t *points = cells->connectivity + first;
+    if (!points_in_range(cells, points, count)) return CELL_BAD;
+    if (cell_blanked(cells, c, points, count)) {
+        tally->blanked++;
+        return CELL_SKIPPED;
+    }
+    tally->curved += type->curved;
+    for (int n = 0; n < type->corner_count; n++) corners[n] = (uint32_t)points[type->corners[n]];
+    return CELL_GOOD;
+}
+
+/* Turns a cell of negative volume over. */
+static void cell_orient(const tc_cells *cells, uint32_t tetrahedra[][4], int count, cell_tally *tally) {
+    double sum = 0;
+    bool positive = false, negative = false;
+    for (int n = 0; n < count; n++) {
+        double volume = tetrahedron_volume(cells->points, tetrahedra[n]);
+        positive = positive || volume > 0;
+        negative = negative || volume < 0;
+        sum += volume;
+    }
+    tally->folded += positive && negative;
+    tally->inverted += sum < 0;
+    for (int n = 0; n < count && sum < 0; n++) {
+        uint32_t point = tetrahedra[n][2];
+        tetrahedra[n][2] = tetrahedra[n][3];
+        tetrahedra[n][3] = point;
+    }
+}
+
+static bool cells_cut(const void *source, uint64_t first, uint64_t end, tetrahedron_writer *writer) {
+    const tc_cells *cells = source;
+    for (uint64_t c = first; c < end; c++) {
+        uint32_t corners[CELL_CORNERS_MAX] = {0}, tetrahedra[CELL_TETRAHEDRA_MAX][4];
+        cell_verdict verdict = cell_look(cells, c, writer->tally, corners);
+        if (verdict == CELL_BAD) return false;
+        if (verdict == CELL_SKIPPED) continue;
+        int count = cell_split(cell_type_get(cells->types[c])->shape, corners, tetrahedra);
+        if (writer->tetrahedra) cell_orient(cells, tetrahedra, count, writer->tally);
+        tetrahedra_put(writer, (const uint32_t(*)[4])tetrahedra, count, c);
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ check */
+
+static tc_status cell_refuse(const tc_cells *cells, uint64_t c) {
+    const cell_type *type = cell_type_get(cells->types[c]);
+    const char *name = type->name ? type->name : "unknown";
+    unsigned long long number = c;
+    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c])
+        return (tc_status)fail(TC_ERROR_DATA, "the offsets of cell %llu, %lld to %lld, do not rise", number,
+                               (long long)cells->offsets[c], (long long)cells->offsets[c + 1]);
+    long long count = (long long)(cells->offsets[c + 1] - cells->offsets[c]);
+    if (type->shape == CELL_OTHER)
+        return (tc_status)fail(TC_ERROR_DATA,
+                               "cell %llu is of type %d (%s): of cells with a volume, tetrahedra, voxels, hexahedra, "
+                               "wedges, pyramids and their curved kin are cut",
+                               number, cells->types[c], name);
+    if (count < type->corner_count || (type->point_count && count != type->point_count))
+        return (tc_status)fail(TC_ERROR_DATA, "cell %llu, a %s, has %lld points, not %d", number, name, count,
+                               type->point_count ? type->point_count : type->corner_count);
+    return (tc_status)fail(TC_ERROR_DATA, "cell %llu, a %s, has a point that is not among the %llu of the grid", number,
+                           name, (unsigned long long)cells->point_count);
+}
+
+/* The first bad cell, from one on that begins its block. */
+static tc_status bad_cell_refuse(const tc_cells *cells, uint64_t c) {
+    uint32_t corners[CELL_CORNERS_MAX];
+    cell_tally tally = {0};
+    while (cell_look(cells, c, &tally, corners) != CELL_BAD) c++;
+    return cell_refuse(cells, c);
+}
+
+static tc_status cells_check(const tc_cells *cells) {
+    if (cells->point_count > UINT32_MAX || cells->cell_count > UINT32_MAX)
+        return (tc_status)fail(TC_ERROR_LIMIT, "%llu points and %llu cells: numbers of 32 bits reach %lu",
+                               (unsigned long long)cells->point_count, (unsigned long long)cells->cell_count,
+                               (unsigned long)UINT32_MAX);
+    if (cells->cell_count && (!cells->types || !cells->offsets))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "cells need their types and offsets");
+    if (cells->cell_count && cells->offsets[0] < 0)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the offsets of the cells begin below 0");
+    if (cells->cell_count && cells->offsets[cells->cell_count] && (!cells->connectivity || !cells->points))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "cells need their connectivity and points");
+    return TC_OK;
+}
+
+tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex) {
+    uint64_t bad_cell;
+    if (!complex || complex->struct_size < sizeof *complex)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize needs a complex with its struct_size set");
+    *complex = (tc_complex){.struct_size = complex->struct_size};
+    if (!cells || cells->struct_size < sizeof *cells)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize needs cells with their struct_size set");
+    tc_status status = cells_check(cells);
+    if (status) return status;
+    status = complex_make(cells_cut, cells, cells->cell_count, complex, &bad_cell);
+    return status == TC_ERROR_DATA ? bad_cell_refuse(cells, bad_cell) : status;
+}

@@ -1,0 +1,13 @@
+/* cell_types.h - VTK's types of cells by their numbers (vtkCellType.h) */
+#ifndef CELL_TYPES_H
+#define CELL_TYPES_H
+
+#include <stdint.h>
+
+/* "tetrahedron", "quadratic wedge", ...; NULL for a number that is no type. */
+const char *cell_type_name(uint8_t type);
+
+/* 0 to 3; of a number that is no type 0. */
+int cell_type_dimension(uint8_t type);
+
+#endif

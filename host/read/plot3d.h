@@ -1,0 +1,82 @@
+/*
+ * plot3d.h - the ways in which the bytes of one Plot3D file can be understood
+ *
+ * Plot3D files do not say how they were written. A file is therefore tried in every way there is: as text, Fortran
+ * records or C binary, in either byte order and precision, as one block or several, as grid, solution or function. Its
+ * header then tells its size, and what is left is a form: mostly one, as sizes and record marks must agree exactly.
+ */
+#ifndef PLOT3D_H
+#define PLOT3D_H
+
+#include "mapping.h"
+
+#include <stdint.h>
+
+enum plot3d_encoding { PLOT3D_TEXT, PLOT3D_RECORDS_4, PLOT3D_RECORDS_8, PLOT3D_BINARY, PLOT3D_ENCODINGS };
+enum plot3d_content {
+    PLOT3D_GRID,
+    PLOT3D_GRID_IBLANK,
+    PLOT3D_SOLUTION, /* density, momentum, energy */
+    PLOT3D_OVERFLOW, /* the same and more, as the OVERFLOW solver writes it */
+    PLOT3D_FUNCTION, /* any variables */
+    PLOT3D_CONTENTS
+};
+
+typedef struct plot3d_block {
+    int64_t dims[3];
+    uint64_t points;
+    uint64_t variables; /* per point: 3 in a grid */
+    uint64_t values;    /* where they begin: all points of one variable, x fastest, then the next variable's */
+    uint64_t iblank;    /* where these begin */
+} plot3d_block;
+
+typedef struct plot3d_form {
+    enum plot3d_encoding encoding;
+    enum plot3d_content content;
+    int big_endian;
+    int value_bytes; /* 4 or 8 */
+    int is_multi;    /* begins with a number of blocks, which may be 1 */
+    uint64_t padding;
+    plot3d_block *blocks;
+    int64_t block_count;
+} plot3d_form;
+
+enum { PLOT3D_FORMS = PLOT3D_ENCODINGS * PLOT3D_CONTENTS * 2 * 2 * 2 };
+
+typedef struct plot3d_file {
+    const char *path;
+    const unsigned char *bytes; /* of text: its numbers, as native doubles */
+    uint64_t size;
+    double *numbers;
+    plot3d_form forms[PLOT3D_FORMS];
+    int form_count;
+} plot3d_file;
+
+/* Finds all forms that explain the file to its last byte, but for zero bytes that fill up a storage
+ * block.
+ * STATUS_INPUT where there is none; release in any case. */
+int plot3d_open(const char *path, const mapping *mapped, plot3d_file *file);
+void plot3d_release(plot3d_file *file);
+
+/* Whether samples of the values are such as a wrong form would hardly give: 0, or of a usual magnitude. */
+int plot3d_is_physical(const plot3d_file *file, const plot3d_form *form);
+
+/* "big-endian C binary, f32, 1 block, grid with IBLANK" */
+const char *plot3d_describe(const plot3d_form *form, char text[128]);
+
+/* `count` values from an offset on. */
+void plot3d_load_f32(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, float *out,
+                     uint64_t stride);
+void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out);
+
+/* Whether the IBLANK value at that index is 0. */
+int plot3d_is_blanked(const plot3d_file *file, const plot3d_form *form, const plot3d_block *block, uint64_t index);
+
+/* Whether the file begins as text; binary ones begin with integers, which hold zero bytes. */
+int plot3d_is_text(const mapping *mapped);
+
+/* All numbers of a text, "3*0.5" being three; freed by the caller. STATUS_INPUT where a word is no number, or repeats
+ * make more numbers than such a text may have. */
+int plot3d_numbers(const char *path, const mapping *mapped, double **numbers, uint64_t *count);
+
+#endif

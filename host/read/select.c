@@ -1,0 +1,193 @@
+#include "select.h"
+
+#include "average.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "layout.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ----------------------------------------------------------------------------------------------------------- names */
+
+const dataset_field *block_field(const dataset_block *b, const char *name) {
+    const dataset_field *found = NULL;
+    for (int n = 0; n < b->field_count; n++) {
+        const dataset_field *f = &b->fields[n];
+        if (strcmp(f->name, name) == 0 && (!found || (found->on_cells && !f->on_cells))) found = f;
+    }
+    return found;
+}
+
+static int is_common(const dataset *d, const char *name) {
+    for (int n = 1; n < d->block_count; n++)
+        if (!block_field(&d->blocks[n], name)) return 0;
+    return 1;
+}
+
+int common_field_names(const dataset *d, const char ***names) {
+    const dataset_block *first = d->blocks;
+    int count = 0;
+    *names = malloc(sizeof **names * (size_t)(d->block_count ? first->field_count + 1 : 1));
+    if (!*names) return fail(STATUS_FAILED, "no memory for the names of fields"), -1;
+    for (int n = 0; d->block_count && n < first->field_count; n++) {
+        const char *name = first->fields[n].name;
+        int is_new = 1;
+        for (int m = 0; m < count; m++) is_new = is_new && strcmp((*names)[m], name) != 0;
+        if (is_new && is_common(d, name)) (*names)[count++] = name;
+    }
+    return count;
+}
+
+/* "density (point), velocity (point, 3 components), ..." as far as there is room. */
+static void list_fields(const dataset *d, const char *const *names, int count, char *text, size_t bytes) {
+    text[0] = '\0';
+    for (int n = 0; n < count; n++) {
+        const dataset_field *f = block_field(d->blocks, names[n]);
+        size_t used = strlen(text);
+        char one[256], components[32] = "";
+        if (f->components > 1) snprintf(components, sizeof components, ", %d components", f->components);
+        snprintf(one, sizeof one, "%s%s (%s%s)", n ? ", " : "", names[n], f->on_cells ? "cell" : "point", components);
+        if (used + strlen(one) + 8 > bytes) {
+            snprintf(text + used, bytes - used, ", ...");
+            return;
+        }
+        snprintf(text + used, bytes - used, "%s", one);
+    }
+}
+
+/* A name that every block has, or why there is none. */
+static int choose_name(const dataset *d, const char *path, const char *option, const char *wanted,
+                       const char **chosen) {
+    const char **names;
+    char list[700];
+    int status = 0, count = common_field_names(d, &names);
+    if (count < 0) return STATUS_FAILED;
+    list_fields(d, names, count, list, sizeof list);
+    *chosen = count ? names[0] : NULL;
+    for (int n = 0; wanted && n < count; n++)
+        if (strcmp(names[n], wanted) == 0) *chosen = names[n];
+    if (!count)
+        status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
+                      d->block_count > 1 ? " that every block has" : "");
+    else if (wanted && strcmp(*chosen, wanted) != 0)
+        status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
+                      d->block_count > 1 ? " of every block" : "", wanted, option, list);
+    else if (!wanted && count > 1)
+        status = fail(STATUS_USAGE, "%s: holds several fields: choose by --field NAME one of: %s", path, list);
+    free(names);
+    return status;
+}
+
+/* --------------------------------------------------------------------------------------------------------- samples */
+
+/* The number of tuples of a field: of its array, not of cells that exist. */
+static uint64_t tuple_count(const dataset_block *b, const dataset_field *f) {
+    return (uint64_t)(f->on_cells ? b->cell_count : b->point_count);
+}
+
+static int check_component(const dataset *d, const char *path, const dataset_field *f, int component) {
+    if (component < 0 && f->components > 1)
+        return fail(STATUS_USAGE, "%s: field '%s' has %d components: choose by --component C one, from 0 to %d", path,
+                    f->name, f->components, f->components - 1);
+    if (component >= f->components && !d->image.samples) /* the readers of images have looked at it themselves */
+        return fail(STATUS_USAGE, "%s: field '%s' has %d component%s, counted from 0: there is no --component %d", path,
+                    f->name, f->components, f->components > 1 ? "s" : "", component);
+    return 0;
+}
+
+/* One component in contiguous memory; the field's own where it has no other. */
+static int take_component(dataset *d, const dataset_block *b, const dataset_field *f, int component,
+                          dataset_field *out) {
+    size_t bytes = element_bytes((int)f->type), stride = bytes * (size_t)f->components;
+    *out = *f;
+    if (f->components == 1) return 0;
+    uint64_t count = tuple_count(b, f);
+    unsigned char *values = dataset_allocate(d, count * bytes);
+    if (!values) return STATUS_FAILED;
+    const unsigned char *from = (const unsigned char *)f->values + bytes * (size_t)component;
+    for (uint64_t n = 0; n < count; n++) memcpy(values + n * bytes, from + n * stride, bytes);
+    out->components = 1;
+    out->values = values;
+    return 0;
+}
+
+static int is_missing(const dataset_field *f, uint64_t n, const field_request *request) {
+    double value = value_at(f->type, f->values, n);
+    return !isfinite(value) || (request->has_nodata && value == request->nodata);
+}
+
+/* Adds to a mask of points or cells, which may be NULL, those whose value is missing; the old one where there is none.
+ */
+static int mask_missing(dataset *d, const dataset_block *b, const dataset_field *f, const field_request *request,
+                        const uint8_t **mask) {
+    uint64_t count = tuple_count(b, f), n = 0;
+    int may_be_missing = request->has_nodata || f->type == TC_F32 || f->type == TC_F64;
+    while (may_be_missing && n < count && !is_missing(f, n, request)) n++;
+    if (!may_be_missing || n == count) return 0;
+    uint8_t *merged = dataset_allocate(d, count);
+    if (!merged) return STATUS_FAILED;
+    for (n = 0; n < count; n++) merged[n] = (*mask && (*mask)[n]) || is_missing(f, n, request);
+    *mask = merged;
+    return 0;
+}
+
+static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_field *f, const field_request *request,
+                           scalar_block *out) {
+    dataset_field one, at_points;
+    *out = (scalar_block){.blanked_points = b->blanked_points, .blanked_cells = b->blanked_cells};
+    int status = take_component(d, b, f, request->component, &one);
+    if (status) return status;
+    if (f->on_cells) {
+        status = mask_missing(d, b, &one, request, &out->blanked_cells);
+        if (!status) status = average_to_points(d, b, out->blanked_cells, &one, &at_points);
+        if (status) return status;
+        one = at_points;
+    } else if (b->kind == GRID_UNSTRUCTURED) {
+        if ((status = mask_missing(d, b, &one, request, &out->blanked_points))) return status;
+    } else {
+        out->has_nodata = request->has_nodata;
+        out->nodata = request->nodata;
+    }
+    out->type = one.type;
+    out->samples = one.values;
+    return 0;
+}
+
+int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out) {
+    *out = (scalar){.component = -1};
+    int status = choose_name(d, path, "--field takes", request->name, &out->name);
+    if (status) return status;
+    out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
+    if (!out->blocks) return STATUS_FAILED;
+    for (int n = 0; n < d->block_count && !status; n++) {
+        const dataset_field *f = block_field(&d->blocks[n], out->name);
+        status = check_component(d, path, f, request->component);
+        if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n]);
+        if (f->components > 1) out->component = request->component;
+        out->is_averaged |= f->on_cells;
+    }
+    return status;
+}
+
+int point_field_select(dataset *d, const char *path, const char *name, point_field *out) {
+    *out = (point_field){0};
+    int status = choose_name(d, path, "--carry takes", name, &out->name);
+    if (status) return status;
+    out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
+    if (!out->blocks) return STATUS_FAILED;
+    for (int n = 0; n < d->block_count && !status; n++) {
+        const dataset_block *b = &d->blocks[n];
+        const dataset_field *f = block_field(b, out->name);
+        if (n && f->components != out->components)
+            return fail(STATUS_INPUT, "%s: field '%s' has %d components in block 0, %d in block %d", path, name,
+                        out->components, f->components, n);
+        out->components = f->components;
+        out->is_averaged |= f->on_cells;
+        out->blocks[n] = *f;
+        if (f->on_cells) status = average_to_points(d, b, b->blanked_cells, f, &out->blocks[n]);
+    }
+    return status;
+}

@@ -1,0 +1,61 @@
+/*
+ * select.h - which field of a dataset is contoured, and its samples: one number per point of every block
+ *
+ * A field is known by its name; values at points come before values of cells of the same name. Values of cells are
+ * averaged (average.h). What is made lies in the dataset's memory, values that need no change are used where they are.
+ */
+#ifndef SELECT_H
+#define SELECT_H
+
+#include "dataset.h"
+
+/* What the command line says about the field. */
+typedef struct field_request {
+    const char *name; /* NULL: the only one there is */
+    int component;    /* of a field with several, from 0; -1 where not given */
+    int has_nodata;   /* values equal to nodata are missing, as are those that are not finite */
+    double nodata;
+} field_request;
+
+/* One block's samples, and what is missing in it: the block's own and what the field's values tell. */
+typedef struct scalar_block {
+    tc_type type;
+    const void *samples;                           /* one per point */
+    const uint8_t *blanked_points, *blanked_cells; /* as in dataset_block */
+    int has_nodata; /* structured blocks: samples that are nodata or not finite are still to be left out; unstructured
+                       ones have them among blanked_points */
+    double nodata;
+} scalar_block;
+
+typedef struct scalar {
+    const char *name;
+    int component;   /* -1 of a field that has one */
+    int is_averaged; /* of cells */
+    scalar_block *blocks;
+} scalar;
+
+/* A field of every block at the points; type and values are each block's own. */
+typedef struct point_field {
+    const char *name;
+    int components;
+    int is_averaged;
+    dataset_field *blocks;
+} point_field;
+
+/* Chooses the field and makes its samples. path is the input's name for messages. Returns 0, STATUS_USAGE where the
+ * request leaves a choice open or names what is not there (the text lists what is), STATUS_INPUT where there is no
+ * field, or STATUS_FAILED. */
+int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out);
+
+/* The field of that name with all its components. Returns as scalar_select; STATUS_INPUT too where blocks differ in
+ * the number of components. */
+int point_field_select(dataset *d, const char *path, const char *name, point_field *out);
+
+/* The names of fields that every block has, as names of the first block's fields, each once; *names from malloc. -1
+ * without memory, with its text set; else how many. */
+int common_field_names(const dataset *d, const char ***names);
+
+/* The block's field of that name; NULL where it has none. */
+const dataset_field *block_field(const dataset_block *b, const char *name);
+
+#endif

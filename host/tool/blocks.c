@@ -1,0 +1,197 @@
+#include "blocks.h"
+
+#include "commands.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "input.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The status, with the text saying which block it is of. */
+static int block_status(const options *o, tc_status status, int n, int block_count) {
+    char text[1000];
+    int failed = input_status(o, status);
+    if (!failed || block_count == 1) return failed;
+    snprintf(text, sizeof text, "%s", failure_text());
+    return fail(failed, "%s (block %d)", text, n);
+}
+
+static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
+    const dataset_block *from = b->source;
+    tc_grid_options_init(grid);
+    memcpy(grid->dims, from->dims, sizeof grid->dims);
+    memcpy(grid->first, from->first, sizeof grid->first);
+    if (from->kind == GRID_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
+    if (from->kind == GRID_RECTILINEAR) memcpy(grid->axes, from->axes, sizeof grid->axes);
+    if (from->kind == GRID_CURVILINEAR) grid->points = from->points;
+    grid->blanked_samples = from->blanked_points;
+    grid->blanked_cells = from->blanked_cells;
+    if (!b->scalar) return;
+    grid->type = b->scalar->type;
+    grid->samples = b->scalar->samples;
+    grid->has_nodata = b->scalar->has_nodata;
+    grid->nodata = b->scalar->nodata;
+    grid->blanked_samples = b->scalar->blanked_points;
+    grid->blanked_cells = b->scalar->blanked_cells;
+}
+
+static tc_status cut_structured(prepared_block *b) {
+    tc_grid_options grid;
+    describe_grid(b, &grid);
+    void *none_missing = NULL; /* the library wants samples, of which only those that are missing matter */
+    if (!b->scalar) {
+        grid.type = TC_U8;
+        grid.samples = none_missing = calloc((size_t)b->source->point_count + 1, 1);
+    }
+    tc_status status = tc_tetrahedralize_grid(&grid, &b->complex);
+    free(none_missing);
+    return status;
+}
+
+static tc_status cut_unstructured(prepared_block *b) {
+    const dataset_block *from = b->source;
+    const tc_cells cells = {.struct_size = sizeof cells,
+                            .point_count = (uint64_t)from->point_count,
+                            .points = from->points,
+                            .cell_count = (uint64_t)from->cell_count,
+                            .types = from->cell_types,
+                            .offsets = from->cell_offsets,
+                            .connectivity = from->cell_points,
+                            .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
+                            .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells};
+    return tc_tetrahedralize(&cells, &b->complex);
+}
+
+/* Cubes of a structured block, none where it is flat; cells of three dimensions of an unstructured one. */
+static uint64_t solid_cells(const prepared_block *b) {
+    const int64_t *d = b->source->dims;
+    if (b->source->kind == GRID_UNSTRUCTURED) return (uint64_t)b->source->cell_count - b->complex.flat_cell_count;
+    return (uint64_t)(d[0] - 1) * (uint64_t)(d[1] - 1) * (uint64_t)(d[2] - 1);
+}
+
+static int is_flat(const dataset_block *b) {
+    return b->kind != GRID_UNSTRUCTURED && (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2);
+}
+
+/* Flat blocks are skipped as flat cells are; an input of nothing else the library refuses, with its reason. */
+static int all_are_flat(const dataset *d) {
+    int flat = 1;
+    for (int n = 0; n < d->block_count; n++) flat = flat && is_flat(&d->blocks[n]);
+    return flat;
+}
+
+static uint64_t count_set(const uint8_t *mask, int64_t count) {
+    uint64_t set = 0;
+    for (int64_t n = 0; mask && n < count; n++) set += mask[n] != 0;
+    return set;
+}
+
+static void tell(uint64_t count, const char *what) {
+    if (count) message("%" PRIu64 " %s", count, what);
+}
+
+static void tell_all(const block_list *list) {
+    uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, blanked_points = 0,
+             blanked_cells = 0;
+    int all_cut = 1;
+    for (int n = 0; n < list->count; n++) {
+        const prepared_block *b = &list->blocks[n];
+        flat_blocks += (uint64_t)b->is_skipped;
+        flat += b->complex.flat_cell_count;
+        curved += b->complex.curved_cell_count;
+        inverted += b->complex.inverted_cell_count;
+        folded += b->complex.folded_cell_count;
+        left_out += b->complex.blanked_cell_count;
+        all_cut = all_cut && b->is_cut;
+        if (b->is_cut) continue;
+        blanked_points += count_set(b->source->blanked_points, b->source->point_count);
+        blanked_cells += count_set(b->source->blanked_cells, b->source->cell_count);
+    }
+    tell(flat_blocks, "blocks of one point along an axis are skipped");
+    tell(flat, "cells of fewer than three dimensions are skipped");
+    tell(curved, "quadratic or higher cells are taken as linear, by their corners");
+    tell(left_out, "cells are left out: blanked, or with a corner that is missing");
+    tell(inverted, "cells of negative volume are turned over");
+    tell(folded, "cells are folded: their tetrahedra overlap");
+    tell(blanked_points, "points are blanked: cells with one of them are left out");
+    tell(blanked_cells, "blanked cells are left out");
+    if (!list->tetrahedron_count && all_cut) message("nothing to contour: no cell of three dimensions is left");
+}
+
+static tc_status cut(prepared_block *b) {
+    if (!b->is_cut || b->is_skipped) return TC_OK;
+    return b->source->kind == GRID_UNSTRUCTURED ? cut_unstructured(b) : cut_structured(b);
+}
+
+int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out) {
+    *out = (block_list){.blocks = calloc((size_t)d->block_count + 1, sizeof *out->blocks)};
+    if (!out->blocks) return fail(STATUS_FAILED, "out of memory for %d blocks", d->block_count);
+    const int flat = all_are_flat(d);
+    for (int n = 0; n < d->block_count; n++) {
+        prepared_block *b = &out->blocks[out->count++];
+        b->source = &d->blocks[n];
+        b->scalar = s ? &s->blocks[n] : NULL;
+        b->is_cut = all || d->blocks[n].kind == GRID_UNSTRUCTURED;
+        b->is_skipped = !flat && is_flat(b->source);
+        b->complex.struct_size = sizeof b->complex;
+        tc_status status = cut(b);
+        if (status) return block_status(o, status, n, d->block_count);
+        uint64_t cells = solid_cells(b);
+        out->cell_count += cells;
+        out->tetrahedron_count += b->is_cut ? b->complex.tetrahedron_count : 5 * cells;
+    }
+    if (!o->quiet) tell_all(out);
+    return 0;
+}
+
+void blocks_release(block_list *list) {
+    for (int n = 0; n < list->count; n++) tc_complex_release(&list->blocks[n].complex);
+    free(list->blocks);
+    *list = (block_list){0};
+}
+
+static tc_status complex_grid(const prepared_block *b, tc_context *context, tc_grid **grid) {
+    tc_complex_options from;
+    if (!b->complex.tetrahedron_count) return TC_OK;
+    tc_complex_options_init(&from);
+    from.point_count = (uint64_t)b->source->point_count;
+    from.points = b->source->points;
+    from.type = b->scalar->type;
+    from.samples = b->scalar->samples;
+    from.tetrahedron_count = b->complex.tetrahedron_count;
+    from.tetrahedra = b->complex.tetrahedra;
+    return tc_complex_create(context, &from, grid);
+}
+
+int block_grid(const options *o, const block_list *list, int n, tc_context *context, tc_grid **grid) {
+    const prepared_block *b = &list->blocks[n];
+    tc_grid_options from;
+    *grid = NULL;
+    if (b->is_skipped) return 0;
+    if (b->is_cut) return block_status(o, complex_grid(b, context, grid), n, list->count);
+    describe_grid(b, &from);
+    return block_status(o, tc_grid_create(context, &from, grid), n, list->count);
+}
+
+static int has_nonfinite(const prepared_block *b) {
+    int64_t count = b->source->point_count;
+    for (int64_t n = 0; b->scalar->type == TC_F32 && n < count; n++)
+        if (!isfinite(((const float *)b->scalar->samples)[n])) return 1;
+    for (int64_t n = 0; b->scalar->type == TC_F64 && n < count; n++)
+        if (!isfinite(((const double *)b->scalar->samples)[n])) return 1;
+    return 0;
+}
+
+int blocks_may_touch(const block_list *list) {
+    for (int n = 0; n < list->count; n++) {
+        const prepared_block *b = &list->blocks[n];
+        if (b->is_cut || b->scalar->blanked_points || b->scalar->blanked_cells || b->scalar->has_nodata ||
+            has_nonfinite(b))
+            return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,87 @@
+#include "carry.h"
+
+#include "commands.h"
+#include "exit_status.h"
+#include "failure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static size_t count_names(const char *text) {
+    size_t count = 1;
+    for (; *text; text++) count += *text == ',';
+    return count;
+}
+
+/* How far the next name goes: as far as the longest name of a field that fits, as names may have commas; else to the
+ * next comma. */
+static size_t name_length(const char *text, const char *const *known, int known_count) {
+    size_t longest = 0;
+    for (int n = 0; n < known_count; n++) {
+        size_t length = strlen(known[n]);
+        int fits = strncmp(text, known[n], length) == 0 && (text[length] == ',' || !text[length]);
+        if (fits && length > longest) longest = length;
+    }
+    return longest ? longest : strcspn(text, ",");
+}
+
+static int select_one(const options *o, dataset *d, carried *out, const char *name) {
+    point_field *from = &out->from[out->count];
+    int status = point_field_select(d, o->operands[0], name, from);
+    if (status) return status;
+    for (int n = 0; n < out->count; n++)
+        if (strcmp(out->from[n].name, from->name) == 0) return fail(STATUS_USAGE, "--carry: '%s' is given twice", name);
+    if (from->is_averaged && !o->quiet) message("field '%s' is of cells: averaged to the points between them", name);
+    out->fields[out->count++] = (mesh_field){from->name, from->components, NULL};
+    return 0;
+}
+
+static int select_all(const options *o, dataset *d, carried *out, char *names) {
+    const char **known;
+    int status = 0, known_count = common_field_names(d, &known);
+    if (known_count < 0) return STATUS_FAILED;
+    for (char *at = names, *end; !status; at = end + 1) {
+        end = at + name_length(at, known, known_count);
+        int is_last = !*end;
+        *end = '\0';
+        status = select_one(o, d, out, at);
+        if (is_last) break;
+    }
+    free(known);
+    return status;
+}
+
+int carry_select(const options *o, dataset *d, carried *out) {
+    *out = (carried){0};
+    if (!o->carry) return 0;
+    size_t count = count_names(o->carry);
+    char *names = strdup(o->carry);
+    out->from = calloc(count, sizeof *out->from);
+    out->fields = calloc(count, sizeof *out->fields);
+    out->values = calloc(count, sizeof *out->values);
+    int is_there = names && out->from && out->fields && out->values;
+    int status = is_there ? select_all(o, d, out, names) : fail(STATUS_FAILED, "out of memory for the fields to carry");
+    free(names);
+    return status;
+}
+
+void carry_release(carried *c) {
+    for (int n = 0; n < c->count; n++) free(c->values[n]);
+    free(c->from);
+    free(c->fields);
+    free(c->values);
+    *c = (carried){0};
+}
+
+int carry_to_mesh(carried *c, engine *e, const tc_extract_options *how, const tc_mesh_data *mesh) {
+    for (int n = 0; n < c->count; n++) {
+        size_t bytes = (size_t)mesh->vertex_count * (size_t)c->from[n].components * sizeof **c->values;
+        free(c->values[n]);
+        c->values[n] = malloc(bytes ? bytes : 1);
+        if (!c->values[n]) return fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
+        int status = engine_carry(e, how, &c->from[n], c->values[n]);
+        if (status) return status;
+        c->fields[n].values = c->values[n];
+    }
+    return 0;
+}

@@ -1,0 +1,24 @@
+/* describe.h - what info says about every block of a dataset: kind, sizes, cells by type, bounds, fields with ranges */
+#ifndef DESCRIBE_H
+#define DESCRIBE_H
+
+#include "dataset.h"
+
+#include <jansson.h>
+
+/* An array with an object per block. */
+json_t *describe_blocks_json(const dataset *d);
+
+/* Lines on standard output. */
+void describe_blocks_text(const dataset *d);
+
+/* Of a uniform block: distance of neighbouring samples in world space, the length of a column of the matrix. */
+double describe_spacing(const dataset_block *b, int axis);
+
+/* Of a uniform block: spacing, world space and matrix, as lines. */
+void describe_place_text(const dataset *d, const dataset_block *b);
+
+/* Significant digits that all numbers of the blocks need to read back exactly. */
+int describe_digits(const dataset *d);
+
+#endif

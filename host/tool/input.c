@@ -1,0 +1,83 @@
+#include "input.h"
+
+#include "commands.h"
+#include "exit_status.h"
+#include "failure.h"
+
+#include <stdlib.h>
+#include <sys/stat.h>
+
+static int check_operands(const options *o) {
+    if (o->operand_count == 0)
+        return fail(STATUS_USAGE, "%s needs an input file; see 'tetracubes %s --help'", o->command, o->command);
+    if (o->operand_count > 2)
+        return fail(STATUS_USAGE, "%s: one input at a time, or the two files of Plot3D; '%s' is a third", o->command,
+                    o->operands[2]);
+    if (o->operand_count == 2 && options_given(o, "--dims"))
+        return fail(STATUS_USAGE, "%s: raw input is one file; '%s' is a second one", o->command, o->operands[1]);
+    return 0;
+}
+
+int input_request(const options *o, read_request *request) {
+    static const char *const raw[] = {"--type", "--endian", "--skip", "--spacing", "--origin"};
+    int status = check_operands(o), is_raw = options_given(o, "--dims");
+    if (status) return status;
+    for (size_t n = 0; n < sizeof raw / sizeof *raw; n++)
+        if (!is_raw && options_given(o, raw[n]))
+            return fail(STATUS_USAGE, "%s describes raw input: give --dims NX,NY,NZ too, or leave it out", raw[n]);
+    if (is_raw && o->type < 0) return fail(STATUS_USAGE, "raw input needs --type beside --dims, as in --type u8");
+    read_request_init(request, o->operands[0]);
+    if (o->operand_count > 1) request->path2 = o->operands[1];
+    for (int axis = 0; axis < 3; axis++) {
+        request->dims[axis] = o->dims[axis];
+        request->spacing[axis] = o->spacing[axis];
+        request->origin[axis] = o->origin[axis];
+    }
+    request->type = o->type;
+    request->big_endian = o->big_endian;
+    request->skip = o->skip;
+    request->component = o->component;
+    request->frame = o->frame;
+    return 0;
+}
+
+int input_read(const options *o, dataset *d) {
+    read_request request;
+    *d = (dataset){0};
+    int status = input_request(o, &request);
+    if (!status) status = dataset_read(&request, d);
+    if (!status && d->notice[0] && !o->quiet) message("%s: %s", request.path, d->notice);
+    return status;
+}
+
+int input_select(const options *o, dataset *d, scalar *out) {
+    const field_request request = {o->field, o->component, o->has_nodata, o->nodata};
+    int status = scalar_select(d, o->operands[0], &request, out);
+    if (!status && out->is_averaged && !o->quiet)
+        message("field '%s' is of cells: averaged to the points between them", out->name);
+    return status;
+}
+
+int input_overwrite_check(const options *o, const char *path) {
+    struct stat input, output;
+    for (int n = 0; n < o->operand_count; n++) {
+        if (stat(o->operands[n], &input) || stat(path, &output)) continue;
+        if (input.st_dev == output.st_dev && input.st_ino == output.st_ino && S_ISREG(input.st_mode))
+            return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
+    }
+    return 0;
+}
+
+int input_has_choice(const options *o, const dataset *d) {
+    const char **names;
+    int count = common_field_names(d, &names);
+    if (count < 0) return 0;
+    int is_plain = count == 1 && (o->component >= 0 || block_field(d->blocks, names[0])->components == 1);
+    free(names);
+    return o->field || is_plain;
+}
+
+int input_status(const options *o, tc_status status) {
+    int of_input = status == TC_ERROR_DATA || (status == TC_ERROR_ARGUMENT && !options_given(o, "--dims"));
+    return of_input ? fail(STATUS_INPUT, "%s: %s", o->operands[0], tc_message()) : library_status(status);
+}

@@ -1,0 +1,28 @@
+/* input.h - a command's inputs: one file, or the two of Plot3D, read as a dataset; the field that the options choose */
+#ifndef INPUT_H
+#define INPUT_H
+
+#include "dataset.h"
+#include "options.h"
+#include "select.h"
+
+/* The options of the inputs as their reader wants them; refuses none or too many, and raw options without --dims. */
+int input_request(const options *o, read_request *request);
+
+/* Reads the inputs; notices of the reader go to standard error. *d is to be released where 0 is returned. */
+int input_read(const options *o, dataset *d);
+
+/* Chooses the field by --field, --component and --nodata, with a notice where it had to be averaged. */
+int input_select(const options *o, dataset *d, scalar *out);
+
+/* STATUS_USAGE where path, the output, is one of the inputs: it must not replace what it is made from. */
+int input_overwrite_check(const options *o, const char *path);
+
+/* Nonzero where a field is named, or there is just one and nothing to choose in it: where input_select can succeed
+ * though the command can do without. */
+int input_has_choice(const options *o, const dataset *d);
+
+/* A failure of the library that grids as a file describes them are to blame for; of raw input the options are. */
+int input_status(const options *o, tc_status status);
+
+#endif

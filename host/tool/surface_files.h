@@ -1,0 +1,19 @@
+/*
+ * surface_files.h - the files of extract: their names, what can be refused before any work, and writing
+ *
+ * One file per isovalue, or with --blocks separate one per isovalue and block, named by "_b0", "_b1", ... before the
+ * ending.
+ */
+#ifndef SURFACE_FILES_H
+#define SURFACE_FILES_H
+
+#include "engine.h"
+
+/* STATUS_USAGE where -o, --format, --blocks and --carry do not fit together, or would overwrite an input. */
+int surface_files_check(const options *o);
+
+/* Writes the mesh of all blocks; fields may be NULL. *written, from malloc, names the files for people. */
+int surface_files_write(const options *o, const typed_isovalue *iso, const tc_mesh_data *mesh, const engine *made_by,
+                        const mesh_field *fields, int field_count, char **written);
+
+#endif

@@ -1,0 +1,205 @@
+/*
+ * tetrahedralize.c - the converter as a command: read, cut all cells, write the complex with the fields at its points
+ *
+ * Blocks follow each other, as do their points; nothing is merged. Fields are those that every block has.
+ */
+#include "blocks.h"
+#include "commands.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "input.h"
+#include "mesh_write.h"
+#include "progress.h"
+#include "report.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct conversion {
+    const options *o;
+    dataset data; /* owns what is joined, too */
+    scalar field;
+    block_list blocks;
+    complex_file file;
+    uint64_t flat, curved, blanked, inverted, folded;
+    double total_ms;
+} conversion;
+
+static int check_usage(const options *o) {
+    if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
+    int status = complex_write_check(o->output);
+    return status ? status : input_overwrite_check(o, o->output);
+}
+
+static int read_input(conversion *c) {
+    int status = input_read(c->o, &c->data);
+    if (!status && input_has_choice(c->o, &c->data)) status = input_select(c->o, &c->data, &c->field);
+    return status ? status : progress_status();
+}
+
+static int cut(conversion *c) {
+    int status = blocks_cut(c->o, &c->data, c->field.blocks ? &c->field : NULL, 1, &c->blocks);
+    for (int n = 0; n < c->blocks.count; n++) {
+        const tc_complex *one = &c->blocks.blocks[n].complex;
+        c->flat += one->flat_cell_count;
+        c->curved += one->curved_cell_count;
+        c->blanked += one->blanked_cell_count;
+        c->inverted += one->inverted_cell_count;
+        c->folded += one->folded_cell_count;
+        c->file.point_count += (uint64_t)c->data.blocks[n].point_count;
+        c->file.tetrahedron_count += one->tetrahedron_count;
+    }
+    if (!status && c->file.point_count > UINT32_MAX)
+        return fail(STATUS_FAILED, "%s: %" PRIu64 " points are more than the 2^32 - 1 that a complex numbers",
+                    c->o->operands[0], c->file.point_count);
+    return status ? status : progress_status();
+}
+
+/* --------------------------------------------------------------------------------------------------------- joining */
+
+/* Positions of a block's points, as the library computes them for vertices. */
+static void place_points(const dataset_block *b, float *to) {
+    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) {
+        memcpy(to, b->points, 3 * sizeof *to * (size_t)b->point_count);
+        return;
+    }
+    for (int64_t k = 0; k < b->dims[2]; k++)
+        for (int64_t j = 0; j < b->dims[1]; j++)
+            for (int64_t i = 0; i < b->dims[0]; i++, to += 3)
+                for (int r = 0; r < 3; r++) {
+                    const double *m = b->matrix[r];
+                    const float x = (float)(b->first[0] + i), y = (float)(b->first[1] + j);
+                    const float z = (float)(b->first[2] + k);
+                    if (b->kind == GRID_RECTILINEAR)
+                        to[r] = b->axes[r][r == 0 ? i : r == 1 ? j : k];
+                    else
+                        to[r] = (((float)m[0] * x + (float)m[1] * y) + (float)m[2] * z) + (float)m[3];
+                }
+}
+
+static int join_points(conversion *c) {
+    float *points = dataset_allocate(&c->data, c->file.point_count * 3 * sizeof *points);
+    if (!points) return STATUS_FAILED;
+    c->file.points = points;
+    for (int n = 0; n < c->data.block_count; n++) {
+        place_points(&c->data.blocks[n], points);
+        points += 3 * c->data.blocks[n].point_count;
+    }
+    return 0;
+}
+
+static int join_tetrahedra(conversion *c) {
+    uint64_t values = 4 * c->file.tetrahedron_count;
+    uint32_t first = 0, *to;
+    c->file.tetrahedra = c->blocks.blocks[0].complex.tetrahedra;
+    if (c->blocks.count == 1) return 0;
+    if (!(to = dataset_allocate(&c->data, values * sizeof *to))) return STATUS_FAILED;
+    c->file.tetrahedra = to;
+    for (int n = 0; n < c->blocks.count; n++) {
+        const tc_complex *one = &c->blocks.blocks[n].complex;
+        for (uint64_t m = 0; m < 4 * one->tetrahedron_count; m++) *to++ = one->tetrahedra[m] + first;
+        first += (uint32_t)c->data.blocks[n].point_count;
+    }
+    return 0;
+}
+
+/* Whether the blocks' values can follow each other in one array. */
+static int fits_together(const conversion *c, const char *name) {
+    const dataset_field *first = block_field(c->data.blocks, name);
+    for (int n = 1; n < c->data.block_count; n++) {
+        const dataset_field *f = block_field(&c->data.blocks[n], name);
+        if (f->components != first->components || f->type != first->type || f->on_cells != first->on_cells) {
+            if (!c->o->quiet) message("field '%s' is left out: it differs in kind from block to block", name);
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int join_field(conversion *c, const char *name, dataset_field *out) {
+    point_field from;
+    int status = point_field_select(&c->data, c->o->operands[0], name, &from);
+    if (status) return status;
+    *out = from.blocks[0];
+    if (!name[0]) out->name = "samples"; /* arrays of the format have names */
+    if (c->data.block_count == 1) return 0;
+    size_t bytes = tc_type_bytes(out->type) * (size_t)out->components;
+    unsigned char *to = dataset_allocate(&c->data, c->file.point_count * bytes);
+    if (!to) return STATUS_FAILED;
+    out->values = to;
+    for (int n = 0; n < c->data.block_count; n++) {
+        size_t size = (size_t)c->data.blocks[n].point_count * bytes;
+        memcpy(to, from.blocks[n].values, size);
+        to += size;
+    }
+    return 0;
+}
+
+static int join_fields(conversion *c) {
+    const char **names;
+    int status = 0, count = common_field_names(&c->data, &names);
+    if (count < 0) return STATUS_FAILED;
+    dataset_field *fields = dataset_allocate(&c->data, (uint64_t)count * sizeof *fields);
+    if (!fields) status = STATUS_FAILED;
+    c->file.fields = fields;
+    for (int n = 0; n < count && !status; n++)
+        if (fits_together(c, names[n])) status = join_field(c, names[n], &fields[c->file.field_count++]);
+    free(names);
+    return status;
+}
+
+static int join(conversion *c) {
+    int status = join_points(c);
+    if (!status) status = join_tetrahedra(c);
+    if (!status) status = join_fields(c);
+    return status ? status : progress_status();
+}
+
+/* ---------------------------------------------------------------------------------------------------------- report */
+
+static json_t *count_json(uint64_t count) { return json_integer((json_int_t)count); }
+
+static int print_json(const conversion *c) {
+    json_t *object = json_object(), *fields = json_array();
+    for (int n = 0; n < c->file.field_count; n++) json_array_append_new(fields, report_string(c->file.fields[n].name));
+    json_object_set_new(object, "input", report_string(c->o->operands[0]));
+    json_object_set_new(object, "output", report_string(c->o->output));
+    json_object_set_new(object, "blocks", json_integer(c->blocks.count));
+    json_object_set_new(object, "points", count_json(c->file.point_count));
+    json_object_set_new(object, "cells", count_json(c->blocks.cell_count));
+    json_object_set_new(object, "tetrahedra", count_json(c->file.tetrahedron_count));
+    json_object_set_new(object, "flat_cells", count_json(c->flat));
+    json_object_set_new(object, "curved_cells", count_json(c->curved));
+    json_object_set_new(object, "blanked_cells", count_json(c->blanked));
+    json_object_set_new(object, "inverted_cells", count_json(c->inverted));
+    json_object_set_new(object, "folded_cells", count_json(c->folded));
+    json_object_set_new(object, "fields", fields);
+    json_object_set_new(object, "total_ms", report_real(c->total_ms));
+    return report_print(object, 15);
+}
+
+static int print_report(const conversion *c) {
+    progress_clear();
+    if (c->o->json) return print_json(c);
+    if (c->o->quiet) return 0;
+    printf("%s: %" PRIu64 " points, %" PRIu64 " cells\n", c->o->operands[0], c->file.point_count, c->blocks.cell_count);
+    printf("%s: %" PRIu64 " tetrahedra, %d fields, total %.2f ms\n", c->o->output, c->file.tetrahedron_count,
+           c->file.field_count, c->total_ms);
+    return 0;
+}
+
+int tetrahedralize_run(const options *o) {
+    double begin = now_ms();
+    conversion c = {.o = o};
+    int status = check_usage(o);
+    if (!status) status = read_input(&c);
+    if (!status) status = cut(&c);
+    if (!status) status = join(&c);
+    if (!status) status = complex_write(o->output, &c.file);
+    c.total_ms = now_ms() - begin;
+    if (!status) status = print_report(&c);
+    blocks_release(&c.blocks);
+    dataset_release(&c.data);
+    return status;
+}

@@ -1,0 +1,55 @@
+/*
+ * complex_emit.cl - kernel 2 of complexes: every active tetrahedron makes the vertices that it owns and its triangles
+ */
+
+/* The number of the vertex that belongs to place `owner`, of a tetrahedron that owns it. */
+inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
+                                 global const uint *tiles) {
+    global const active_tetrahedron *t = active + owner / 4;
+    uint lower = t->owned & ((1u << owner % 4) - 1);
+    return tile_before(tiles, owner / 4 / c->tile_actives, TILE_VERTICES) + t->vertex + (uint)popcount(lower);
+}
+
+/* The vertex on an edge. */
+inline_always void edge_vertex(const slab *s, uint2 edge, global const BITS *samples, global const float *points,
+                               global float *out) {
+    float t = crossing(SAMPLE_VALUE(samples[edge.x]), SAMPLE_VALUE(samples[edge.y]), ISOVALUE(s));
+    float3 p0 = vload3(edge.x, points), p1 = vload3(edge.y, points);
+    out[0] = t == 1 ? p1.x : p0.x + t * (p1.x - p0.x);
+    out[1] = t == 1 ? p1.y : p0.y + t * (p1.y - p0.y);
+    out[2] = t == 1 ? p1.z : p0.z + t * (p1.z - p0.z);
+}
+
+inline_always void tetrahedron_emit(const slab *s, const complex_job *c, uint a, global const BITS *samples,
+                                    global const float *points, global const active_tetrahedron *active,
+                                    global const uchar *cases, global const uint *tiles, global const uint *table,
+                                    global const uint *entries, global float *positions, global uint *triangles) {
+    global const uchar *row = cases + CASE_BYTES * active[a].pattern;
+    uint numbers[4] = {0, 0, 0, 0};
+    for (uint n = 0; n < row[CASE_EDGES]; n++) {
+        uint owner = table[entries[4 * a + n]];
+        numbers[n] = vertex_number(c, owner, active, tiles);
+        if (owner == 4 * a + n)
+            edge_vertex(s, edge_points(active, owner, cases), samples, points, positions + 3ul * numbers[n]);
+    }
+    global uint *out = triangles + 3ul * active[a].triangle;
+    for (uint n = 0; n < 3u * row[CASE_TRIANGLES]; n++) out[n] = numbers[row[CASE_CORNERS + n]];
+}
+
+kernel void complex_emit(slab s, complex_job c, global const BITS *samples, global const float *points,
+                         global const active_tetrahedron *active, global const uchar *cases, global uint *state,
+                         global const uint *tiles, global const uint *table, global const uint *entries,
+                         global float *positions, global uint *triangles) {
+    local uint shared[4];
+    uint number = 0;
+    samples += c.sample_offset, points += c.point_offset;
+    while (number < c.active_tiles) {
+        number = ticket_take(&state[HEAD_TICKETS + KERNEL_EMIT], shared);
+        for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
+            uint a = number * c.tile_actives + start + (uint)get_local_id(0);
+            if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
+                tetrahedron_emit(&s, &c, a, samples, points, active, cases, tiles, table, entries, positions,
+                                 triangles);
+        }
+    }
+}

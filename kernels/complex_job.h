@@ -1,0 +1,64 @@
+/*
+ * complex_job.h - what host and kernels share about a tetrahedral complex, beside slab.h, of which the isovalue's part
+ * is used
+ */
+#ifndef COMPLEX_JOB_H
+#define COMPLEX_JOB_H
+
+#ifndef __OPENCL_VERSION__
+#include "slab.h"
+#endif
+
+/* The unit that a range of samples is kept for: so many tetrahedra after each other. */
+enum { CLUSTER_TETRAHEDRA = 64 };
+
+/* What kernel 1 finds out about a cluster that the surface passes through. */
+typedef struct cluster_state {
+    slab_u64 active;        /* bit n: it passes through tetrahedron n of the cluster */
+    slab_u32 active_before; /* active tetrahedra before it in its tile */
+    slab_u32 triangles_before;
+} cluster_state;
+
+/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have places 0 to 3 in the order of
+ * edges; place n of active tetrahedron a is known as 4 a + n. */
+typedef struct active_tetrahedron {
+    slab_u32 points[4];
+    slab_u32 pattern;  /* bit n: point n is inside */
+    slab_u32 triangle; /* number of its first one */
+    slab_u32 vertex;   /* of its first own one, counted from the first of its tile */
+    slab_u32 owned;    /* bit n: it is the first tetrahedron with the edge of place n, whose vertex it owns */
+} active_tetrahedron;
+
+/* Of each of the 16 cases: how many edges are crossed and triangles made; the two ends of each edge; the triangles'
+ * corners, by place. Derived from the tables of host/lib/tables.h. */
+enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
+
+/* The head of the state buffer, before the tiles of kernel 1. */
+enum {
+    HEAD_TICKETS, /* one for each kernel */
+    HEAD_ACTIVE_CLUSTERS = HEAD_TICKETS + 5,
+    HEAD_CROSSED, /* edges of active tetrahedra, counted once for each */
+    HEAD_INVALID, /* not 0: a tetrahedron has a point that the complex has not */
+    HEAD_FULL,    /* not 0: the table of edges is too small */
+    HEAD_ACTIVE,  /* totals */
+    HEAD_TRIANGLES,
+    HEAD_VERTICES,
+    HEAD_WORDS
+};
+
+enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, COMPLEX_KERNELS };
+
+#define EDGE_NONE 0xffffffffu
+
+typedef struct complex_job {
+    slab_u64 sample_offset;      /* of the first sample in its buffer, in samples */
+    slab_u64 point_offset;       /* in floats */
+    slab_u64 tetrahedron_offset; /* in words of 32 bits */
+    slab_u32 point_count, tetrahedron_count, cluster_count, active_count;
+    slab_u32 tile_clusters, tile_actives; /* per tile of kernel 1 and of the numbering */
+    slab_u32 cluster_tiles, active_tiles;
+    slab_u32 table_mask;  /* entries of the table of edges, a power of two, less 1 */
+    slab_u32 probe_limit; /* entries looked at before the table counts as full */
+} complex_job;
+
+#endif

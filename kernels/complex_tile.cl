@@ -1,0 +1,84 @@
+/*
+ * complex_tile.cl - sums over tiles, of clusters in kernel 1 and of active tetrahedra in the numbering (scan.cl)
+ *
+ * A tile's items are counted by the group's work-items, each taking one at a time; what comes before an item in its
+ * tile is kept with the item, what comes before the tile with the tile.
+ */
+typedef struct tile_tools {
+    const slab *s;
+    const complex_job *c;
+    global uint *tiles;
+    local uint *shared; /* 4 words */
+    local uint2 *sums;  /* one per work-item and one more */
+} tile_tools;
+
+/* The group's next number. Called by all of it. */
+inline_always uint ticket_take(global uint *ticket, local uint *shared) {
+    group_barrier();
+    if (get_local_id(0) == 0) shared[0] = atomic_inc(ticket);
+    group_barrier();
+    uint number = shared[0];
+    group_barrier();
+    return number;
+}
+
+/* What work-items before this one have; *running becomes what all have on top of it. */
+inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums) {
+#if WORK_ITEMS == 1
+    uint2 before = *running;
+    *running += value;
+    return before;
+#else
+    sums[get_local_id(0)] = value;
+    group_barrier();
+    if (get_local_id(0) == 0) {
+        uint2 sum = 0;
+        for (uint n = 0; n <= WORK_ITEMS; n++) {
+            uint2 own = n < WORK_ITEMS ? sums[n] : (uint2)0;
+            sums[n] = sum;
+            sum += own;
+        }
+    }
+    group_barrier();
+    uint2 before = *running + sums[get_local_id(0)];
+    *running += sums[WORK_ITEMS];
+    group_barrier();
+    return before;
+#endif
+}
+
+/* What all tiles before tile `number` have, once that is settled. */
+inline_always uint tile_before(global const uint *tiles, uint number, uint channel) {
+    return number ? tiles[TILE_WORDS * (number - 1) + channel] & SCAN_VALUE : 0;
+}
+
+inline_always void tile_post(tile_tools k, uint number, uint2 sums) {
+    if (get_local_id(0) != 0) return;
+    scan_post_sum(k.tiles, number, TILE_VERTICES, sums.x);
+    scan_post_sum(k.tiles, number, TILE_TRIANGLES, sums.y);
+}
+
+/* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else the tile
+ * *missing is to be recounted first. With spin_limit 1 the tile before always is: so a test gets at that. */
+inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missing) {
+    bool done = false;
+    group_barrier();
+    if (get_local_id(0) == 0) {
+        uint prefix[2] = {0, 0};
+        k.shared[1] = number;
+        done = look || k.s->spin_limit > 1 || number == 0;
+        for (uint channel = 0; channel < 2 && done; channel++) {
+            uint back = number;
+            done = scan_look_back(k.tiles, channel, &back, &prefix[channel], k.s->spin_limit);
+            k.shared[1] = back;
+        }
+        for (uint channel = 0; channel < 2 && done; channel++)
+            scan_post_prefix(k.tiles, number, channel, prefix[channel] + scan_own_sum(k.tiles, number, channel));
+        k.shared[0] = done;
+    }
+    group_barrier();
+    done = k.shared[0];
+    *missing = k.shared[1] - 1;
+    group_barrier();
+    return done;
+}

@@ -1,0 +1,58 @@
+/*
+ * ranges.cl - least and greatest sample of a brick or cluster, as keys: unsigned integers of 32 bits that order like
+ * the samples
+ *
+ * Of 64-bit samples keys are the upper half, so that a key in doubt counts as mixed. From the build: BITS, FLOATING.
+ */
+#if FLOATING == 32
+typedef int signed_bits;
+#define SIGNED16 int16
+#elif FLOATING == 64
+typedef long signed_bits;
+#define SIGNED16 long16
+#endif
+
+#if FLOATING
+#define KEY_SIGN ((BITS)1 << (FLOATING - 1))
+/* From here on keys are infinite or NaN, up to its complement too. */
+#define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
+#endif
+
+inline_always uint key_upper(BITS key) {
+#if FLOATING == 64
+    return (uint)(key >> 32);
+#else
+    return (uint)key;
+#endif
+}
+
+/* Where a sample is missing the range tells nothing. */
+inline_always bool range_finite(brick_range range) {
+#if FLOATING
+    return range.high < KEY_INFINITY && range.low > ~KEY_INFINITY;
+#else
+    return true;
+#endif
+}
+
+inline_always uint range_sign(const slab *s, brick_range range) {
+    if (!range_finite(range)) return SIGN_MIXED;
+    return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
+}
+
+inline_always BITS16 keys16(BITS16 bits, const slab *s) {
+#if FLOATING
+    return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
+#else
+    return bits ^ (BITS)s->key_flip;
+#endif
+}
+
+inline_always uint keys_least(BITS16 keys) {
+    PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
+    PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
+    return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
+}
+
+/* The largest upper half is the complement of the complement's least. */
+inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }

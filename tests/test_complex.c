@@ -1,0 +1,418 @@
+/*
+ * Complexes: the kernels against the reference byte for byte, both against counts made from signs alone and, where the
+ * complex was a structured grid, against the structured path.
+ */
+#include "complex.h"
+#include "engines.h"
+#include "random.h"
+#include "samples.h"
+#include "topology.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Building kernels takes most of the time: work-groups of several sizes for some types only. */
+enum { CONTEXTS = 4, CONTEXTS_FEW = 2 };
+
+static tc_context *reference, *devices[CONTEXTS];
+static int device_count;
+
+/* ---------------------------------------------------------------------------------------------------------- oracle */
+
+/* What a surface counts to: from the tetrahedra and the signs of their points. */
+typedef struct counts {
+    uint64_t vertices, triangles, active;
+} counts;
+
+static int edge_compare(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+static counts count_by_signs(const tc_complex_options *o, double isovalue) {
+    counts c = {0};
+    uint64_t *edges = malloc(6 * 8 * (size_t)o->tetrahedron_count + 1), edge_count = 0;
+    for (uint64_t n = 0; n < o->tetrahedron_count; n++) {
+        const uint32_t *t = o->tetrahedra + 4 * n;
+        int inside = 0, finite = 0;
+        for (int v = 0; v < 4; v++) {
+            double value = sample_get(o->samples, o->type, t[v]);
+            finite += isfinite(value) != 0;
+            inside += value >= isovalue;
+        }
+        if (finite < 4 || inside % 4 == 0) continue;
+        c.active++;
+        c.triangles += inside == 2 ? 2 : 1;
+        for (int a = 0; a < 4; a++)
+            for (int b = 0; b < a; b++) {
+                uint64_t low = t[a] < t[b] ? t[a] : t[b], high = t[a] < t[b] ? t[b] : t[a];
+                if ((sample_get(o->samples, o->type, t[a]) >= isovalue) !=
+                    (sample_get(o->samples, o->type, t[b]) >= isovalue))
+                    edges[edge_count++] = low << 32 | high;
+            }
+    }
+    qsort(edges, edge_count, sizeof *edges, edge_compare);
+    for (uint64_t n = 0; n < edge_count; n++) c.vertices += n == 0 || edges[n] != edges[n - 1];
+    free(edges);
+    return c;
+}
+
+/* ------------------------------------------------------------------------------------------------------- comparison */
+
+static void expect_counts(tc_grid *grid, const tc_extract_options *options, const counts *wanted, const char *what) {
+    tc_counts found = {.struct_size = sizeof found};
+    EXPECT(tc_count(grid, options, &found) == TC_OK, "%s: %s", what, tc_message());
+    EXPECT(found.vertex_count == wanted->vertices && found.triangle_count == wanted->triangles &&
+               found.active_cell_count == wanted->active,
+           "%s: counted %llu %llu %llu, not %llu %llu %llu", what, (unsigned long long)found.vertex_count,
+           (unsigned long long)found.triangle_count, (unsigned long long)found.active_cell_count,
+           (unsigned long long)wanted->vertices, (unsigned long long)wanted->triangles,
+           (unsigned long long)wanted->active);
+}
+
+/* Closed but where the complex ends, oriented, with its fans whole where the complex has all its tetrahedra. */
+static void expect_manifold(const tc_mesh_data *data, bool complete, const char *what) {
+    topology t;
+    topology_of(data->positions, data->vertex_count, data->triangles, data->triangle_count, &t);
+    EXPECT(t.bad_edges + t.bad_triangles + t.orphans == 0, "%s: %llu bad edges, %llu bad triangles, %llu orphans", what,
+           (unsigned long long)t.bad_edges, (unsigned long long)t.bad_triangles, (unsigned long long)t.orphans);
+    if (complete)
+        EXPECT(t.fans == data->vertex_count, "%s: %llu fans around %llu vertices", what, (unsigned long long)t.fans,
+               (unsigned long long)data->vertex_count);
+}
+
+/* Several isovalues, one after the other, on one grid of each engine. */
+static void engines_compare(const tc_complex_options *o, const double *isovalues, int isovalue_count, bool complete,
+                            const char *what) {
+    const bool all = o->type == TC_U8 || o->type >= TC_F32;
+    const int count = device_count && !all ? CONTEXTS_FEW : device_count;
+    tc_grid *grids[CONTEXTS + 1] = {NULL};
+    tc_mesh *meshes[CONTEXTS + 1] = {NULL};
+    for (int n = 0; n <= count; n++)
+        EXPECT(tc_complex_create(n ? devices[n - 1] : reference, o, &grids[n]) == TC_OK, "%s: %s", what, tc_message());
+    for (int i = 0; i < isovalue_count; i++) {
+        tc_extract_options options;
+        tc_mesh_data first = {.struct_size = sizeof first};
+        tc_extract_options_init(&options);
+        options.isovalue = isovalues[i];
+        counts wanted = count_by_signs(o, options.isovalue);
+        for (int n = 0; n <= count && grids[n]; n++) {
+            tc_mesh_data data = {.struct_size = sizeof data};
+            if (random_below(2)) expect_counts(grids[n], &options, &wanted, what);
+            tc_status status = tc_extract(grids[n], &options, &meshes[n]);
+            EXPECT(status == TC_OK, "%s, engine %d: %s", what, n, tc_message());
+            if (status) continue;
+            tc_mesh_get(meshes[n], &data);
+            if (n == 0) {
+                first = data;
+                EXPECT(data.vertex_count == wanted.vertices && data.triangle_count == wanted.triangles &&
+                           data.active_cell_count == wanted.active,
+                       "%s: counts differ from those by signs", what);
+                expect_manifold(&data, complete, what);
+            } else {
+                const char *difference = mesh_difference(&first, &data);
+                EXPECT(!difference, "%s, isovalue %g, context %d: %s", what, options.isovalue, n, difference);
+            }
+        }
+    }
+    for (int n = 0; n <= count; n++) {
+        tc_mesh_destroy(meshes[n]);
+        tc_grid_destroy(grids[n]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- random complexes */
+
+static tc_complex_options options_of(const tc_complex *complex, const cell_list *list, tc_type type,
+                                     const void *values) {
+    tc_complex_options o;
+    tc_complex_options_init(&o);
+    o.point_count = list->point_count, o.points = list->points;
+    o.type = type, o.samples = values;
+    o.tetrahedron_count = complex->tetrahedron_count, o.tetrahedra = complex->tetrahedra;
+    return o;
+}
+
+/* Few values, so that many are ties; or all that the type has. */
+static double random_value(tc_type type, bool few) {
+    if (few) return (double)random_below(5) - (type_least(type) < 0 ? 2 : 0);
+    double share = random_between(0, 1), value = share * type_most(type) + (1 - share) * type_least(type);
+    return type_is_floating(type) ? value : floor(value);
+}
+
+static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool holes) {
+    char what[80];
+    snprintf(what, sizeof what, "mixed block of %u, %s%s%s", size, tc_type_name(type), few ? ", few values" : "",
+             holes ? ", holes" : "");
+    cell_list list = mixed_block_make(size);
+    tc_cells cells = cell_list_view(&list);
+    tc_complex complex = {.struct_size = sizeof complex};
+    EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
+    void *values = malloc(8 * list.point_count);
+    for (uint64_t n = 0; n < list.point_count; n++) {
+        double value = random_value(type, few);
+        static const double odd[3] = {NAN, INFINITY, -INFINITY};
+        if (holes && random_below(20) == 0) value = odd[random_below(3)];
+        sample_set(values, type, (int64_t)n, value);
+    }
+    double isovalues[5] = {1, 0.5, random_value(type, few), 2, 1};
+    if (!few) isovalues[0] = isovalues[4] = random_value(type, few);
+    tc_complex_options o = options_of(&complex, &list, type, values);
+    engines_compare(&o, isovalues, 5, !holes, what);
+    free(values);
+    tc_complex_release(&complex);
+    cell_list_free(&list);
+}
+
+/* No tetrahedron shares an edge with another: the table of edges has to grow. */
+static void scattered_compare(void) {
+    enum { COUNT = 3000 };
+    static float points[12 * COUNT];
+    static uint8_t values[4 * COUNT];
+    static uint32_t tetrahedra[4 * COUNT];
+    for (uint32_t n = 0; n < 4 * COUNT; n++) {
+        for (int axis = 0; axis < 3; axis++) points[3 * n + (unsigned)axis] = (float)random_between(-1, 1);
+        values[n] = (uint8_t)random_below(2);
+        tetrahedra[n] = 4 * COUNT - 1 - n;
+    }
+    tc_complex_options o;
+    tc_complex_options_init(&o);
+    o.point_count = 4 * COUNT, o.points = points, o.samples = values;
+    o.tetrahedron_count = COUNT, o.tetrahedra = tetrahedra;
+    const double isovalue = 1;
+    engines_compare(&o, &isovalue, 1, true, "scattered tetrahedra");
+}
+
+/* -------------------------------------------------------------------------------------------------- structured grids
+ */
+
+static int position_compare(const void *a, const void *b) {
+    const float *p = a, *q = b;
+    for (int axis = 0; axis < 3; axis++)
+        if (p[axis] < q[axis] || p[axis] > q[axis]) return p[axis] < q[axis] ? -1 : 1;
+    return 0;
+}
+
+static float ulp_of(float x) { return nextafterf(fabsf(x), INFINITY) - fabsf(x); }
+
+/* The same vertices but for their order. */
+static void expect_same_vertices(const tc_mesh_data *a, const tc_mesh_data *b, const char *what) {
+    const size_t count = (size_t)a->vertex_count, bytes = 12 * count;
+    float *p = malloc(bytes + 1), *q = malloc(bytes + 1);
+    uint64_t far = 0;
+    memcpy(p, a->positions, bytes), memcpy(q, b->positions, bytes);
+    qsort(p, count, 12, position_compare), qsort(q, count, 12, position_compare);
+    for (size_t n = 0; n < 3 * count; n++) far += fabsf(p[n] - q[n]) > 2 * ulp_of(fmaxf(fabsf(p[n]), 1));
+    EXPECT(far == 0, "%s: %llu coordinates of vertices differ", what, (unsigned long long)far);
+    free(p);
+    free(q);
+}
+
+static void grid_compare(tc_type type, bool holes, bool mirrored) {
+    enum { NX = 19, NY = 12, NZ = 15, COUNT = NX * NY * NZ };
+    static double values[COUNT];
+    static float points[3 * COUNT];
+    tc_grid_options g;
+    tc_complex complex = {.struct_size = sizeof complex};
+    char what[80];
+    snprintf(what, sizeof what, "grid of %s%s%s", tc_type_name(type), holes ? ", holes" : "",
+             mirrored ? ", mirrored" : "");
+    tc_grid_options_init(&g);
+    g.dims[0] = NX, g.dims[1] = NY, g.dims[2] = NZ, g.type = type, g.samples = values;
+    g.first[0] = random_below(2);
+    if (mirrored) g.matrix[0][0] = -1;
+    for (int n = 0; n < COUNT; n++) {
+        double x = n % NX, y = n / NX % NY, z = n / NX / NY;
+        sample_set(values, type, n, 60 + 30 * sin(0.7 * x + 0.1) + 20 * cos(0.9 * y) + 10 * sin(z + 0.5 * x));
+        if (holes && random_below(90) == 0) sample_set(values, type, n, NAN);
+        points[3 * n] = (float)(mirrored ? -(x + (double)g.first[0]) : x + (double)g.first[0]);
+        points[3 * n + 1] = (float)y, points[3 * n + 2] = (float)z;
+    }
+    EXPECT(tc_tetrahedralize_grid(&g, &complex) == TC_OK, "%s: %s", what, tc_message());
+    tc_complex_options o;
+    tc_complex_options_init(&o);
+    o.point_count = COUNT, o.points = points, o.type = type, o.samples = values;
+    o.tetrahedron_count = complex.tetrahedron_count, o.tetrahedra = complex.tetrahedra;
+    const double isovalues[] = {60.3, 80, 45.7};
+    engines_compare(&o, isovalues, 3, !holes, what);
+    for (int i = 0; i < 3; i++) {
+        tc_grid *grid = NULL;
+        tc_mesh *meshes[2] = {NULL, NULL};
+        tc_mesh_data data[2] = {{.struct_size = sizeof *data}, {.struct_size = sizeof *data}};
+        tc_extract_options options;
+        topology t[2];
+        tc_extract_options_init(&options);
+        options.isovalue = isovalues[i];
+        EXPECT(extract(reference, &g, &options, &meshes[0], &data[0]), "%s: structured", what);
+        EXPECT(!tc_complex_create(reference, &o, &grid) && !tc_extract(grid, &options, &meshes[1]), "%s: %s", what,
+               tc_message());
+        tc_mesh_get(meshes[1], &data[1]);
+        EXPECT(data[0].vertex_count == data[1].vertex_count && data[0].triangle_count == data[1].triangle_count,
+               "%s: %llu vertices and %llu triangles, structured %llu and %llu", what,
+               (unsigned long long)data[1].vertex_count, (unsigned long long)data[1].triangle_count,
+               (unsigned long long)data[0].vertex_count, (unsigned long long)data[0].triangle_count);
+        if (data[0].vertex_count == data[1].vertex_count) expect_same_vertices(&data[0], &data[1], what);
+        for (int n = 0; n < 2; n++)
+            topology_of(data[n].positions, data[n].vertex_count, data[n].triangles, data[n].triangle_count, &t[n]);
+        EXPECT(t[0].euler_characteristic == t[1].euler_characteristic && t[0].boundary_edges == t[1].boundary_edges,
+               "%s: topology differs from that of the structured path", what);
+        EXPECT(fabs(t[0].volume - t[1].volume) <= 1e-4 * fabs(t[0].volume) + 1e-3, "%s: volumes %g and %g", what,
+               t[0].volume, t[1].volume);
+        tc_mesh_destroy(meshes[0]);
+        tc_mesh_destroy(meshes[1]);
+        tc_grid_destroy(grid);
+    }
+    tc_complex_release(&complex);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- refusal */
+
+static void refusals(tc_context *context) {
+    static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const double values[4] = {0, 1, 2, 3};
+    static const uint32_t good[4] = {0, 1, 2, 3}, bad[8] = {0, 1, 2, 3, 0, 1, 2, 4};
+    tc_complex_options o;
+    tc_extract_options options;
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_extract_options_init(&options);
+    tc_complex_options_init(&o);
+    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "nothing: %s", tc_message());
+    EXPECT(tc_extract(grid, &options, &mesh) == TC_OK && !tc_mesh_get(mesh, &data) && !data.vertex_count,
+           "a surface of nothing");
+    tc_grid_destroy(grid);
+    o.point_count = 4, o.type = TC_F64, o.tetrahedron_count = 1;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no points");
+    o.points = points, o.samples = values;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no tetrahedra");
+    o.tetrahedra = good;
+    o.samples = (const char *)values + 1;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "samples not aligned");
+    o.samples = values;
+    o.tetrahedron_count = UINT64_C(1) << 32;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_LIMIT, "too many tetrahedra");
+    o.tetrahedron_count = 1;
+    o.type = (tc_type)77;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no type");
+    o.type = TC_F64;
+    EXPECT_REFUSED(tc_complex_create(NULL, &o, &grid), TC_ERROR_ARGUMENT, "no context");
+    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "one tetrahedron: %s", tc_message());
+    options.isovalue = 1.5;
+    options.normals = 1;
+    EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_ARGUMENT, "normals");
+    options.normals = 0;
+    options.method = TC_METHOD_HYBRID;
+    EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_ARGUMENT, "hybrid");
+    options.method = TC_METHOD_TETRA;
+    tc_device_mesh target = {.struct_size = sizeof target};
+    EXPECT_REFUSED(tc_emit(grid, &options, &target, NULL), TC_ERROR_ARGUMENT, "emit");
+    EXPECT(tc_extract(grid, &options, &mesh) == TC_OK && !tc_mesh_get(mesh, &data) && data.triangle_count == 2,
+           "one tetrahedron: %s", tc_message());
+    tc_grid_destroy(grid);
+    o.tetrahedra = bad, o.tetrahedron_count = 2;
+    if (tc_complex_create(context, &o, &grid) == TC_OK) {
+        EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_DATA, "a point that is not there");
+        EXPECT(strstr(tc_message(), "tetrahedron 1 has point 4"), "not told which: %s", tc_message());
+        tc_grid_destroy(grid);
+    }
+    tc_mesh_destroy(mesh);
+}
+
+/* As in the middle of an extraction, every time later. */
+static int cancel_after, cancel_calls;
+
+static int cancel(void *user, const char *stage, double fraction) {
+    (void)user, (void)stage, (void)fraction;
+    return cancel_calls++ == cancel_after;
+}
+
+static void cancelled(tc_engine engine) {
+    static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint8_t values[4] = {0, 1, 2, 3};
+    static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
+    tc_context_options how;
+    tc_complex_options o;
+    tc_extract_options options;
+    tc_mesh *mesh = NULL;
+    tc_grid *grid = NULL;
+    tc_context_options_init(&how);
+    how.engine = engine, how.progress = cancel;
+    tc_context *context = context_open(&how);
+    tc_complex_options_init(&o);
+    o.point_count = 4, o.points = points, o.samples = values, o.tetrahedron_count = 1, o.tetrahedra = tetrahedron;
+    tc_extract_options_init(&options);
+    options.isovalue = 2;
+    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "%s", tc_message());
+    for (cancel_after = 0;; cancel_after++) {
+        cancel_calls = 0;
+        tc_status status = tc_extract(grid, &options, &mesh);
+        if (cancel_calls <= cancel_after) {
+            EXPECT(status == TC_OK, "after cancelling: %s", tc_message());
+            break;
+        }
+        EXPECT(status == TC_ERROR_CANCELLED, "not cancelled");
+    }
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    tc_context_destroy(context);
+}
+
+static void memory_bounded(void) {
+    static uint32_t tetrahedra[4 * 1000];
+    static float points[12];
+    static const uint8_t values[4] = {0, 1, 2, 3};
+    tc_context_options how;
+    tc_complex_options o;
+    tc_grid *grid = NULL;
+    tc_context_options_init(&how);
+    how.max_memory_bytes = 8000;
+    tc_context *context = context_open(&how);
+    tc_complex_options_init(&o);
+    for (uint32_t n = 0; n < 4000; n++) tetrahedra[n] = n % 4;
+    o.point_count = 4, o.points = points, o.samples = values, o.tetrahedron_count = 1000, o.tetrahedra = tetrahedra;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_MEMORY, "a complex beyond the budget");
+    tc_context_destroy(context);
+}
+
+static void devices_open(bool own_buffers) {
+    static const uint32_t work_items[CONTEXTS] = {0, 1, 32, 64}, work_groups[CONTEXTS] = {0, 5, 3, 7};
+    static const uint32_t tile_bricks[CONTEXTS] = {0, 1, 0, 3}, spin_limit[CONTEXTS] = {0, 1, 0, 1};
+    for (int n = 0; n < CONTEXTS; n++) {
+        tc_context_options how;
+        tc_context_options_init(&how);
+        how.work_items = work_items[n], how.work_groups = work_groups[n];
+        how.tile_bricks = tile_bricks[n], how.spin_limit = spin_limit[n];
+        how.own_buffers = own_buffers;
+        devices[device_count++] = context_open(&how);
+    }
+}
+
+int main(int argc, char **argv) {
+    const bool own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    random_state = 4;
+    reference = reference_open();
+    const bool has_device = device_exists();
+    if (has_device) devices_open(own_buffers);
+    refusals(reference);
+    cancelled(TC_ENGINE_REFERENCE);
+    if (has_device) {
+        refusals(devices[0]);
+        cancelled(TC_ENGINE_OPENCL);
+        if (own_buffers) memory_bounded();
+    }
+    for (tc_type type = TC_U8; type <= TC_F64; type++) {
+        mixed_block_compare(type, 1 + random_below(4), true, false);
+        mixed_block_compare(type, 9, false, false);
+        if (type_is_floating(type)) mixed_block_compare(type, 7, true, true);
+    }
+    mixed_block_compare(TC_F32, 21, true, false);
+    scattered_compare();
+    grid_compare(TC_U8, false, false);
+    grid_compare(TC_F32, false, true);
+    grid_compare(TC_F32, true, false);
+    grid_compare(TC_F64, false, false);
+    for (int n = 0; n < device_count; n++) tc_context_destroy(devices[n]);
+    tc_context_destroy(reference);
+    return EXPECT_DONE();
+}
