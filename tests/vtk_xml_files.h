@@ -7,6 +7,7 @@
 #define VTK_XML_FILES_H
 
 #include "read_files.h"
+#include "readers.h"
 
 enum { AS_TEXT, AS_INLINE, AS_APPENDED_RAW, AS_APPENDED_BASE64 };
 
@@ -127,6 +128,27 @@ static inline bytes vtk_xml_finish(vtk_writer *w) {
     bytes_free(&w->appended);
     *w = (vtk_writer){.shape = w->shape};
     return file;
+}
+
+static inline int read_path(const char *path, dataset *out) {
+    read_request request;
+    mapping file;
+    *out = (dataset){0};
+    read_request_init(&request, path);
+    fail(0, "(no text)");
+    int status = mapping_open(path, &file);
+    if (!status) status = vtk_xml_read(&request, &file, out);
+    mapping_close(&file);
+    return status;
+}
+
+static inline int read_bytes(const char *name, const bytes *file, dataset *out) {
+    return read_path(file_write(name, file->data, file->size), out);
+}
+
+static inline double field_value(const dataset_field *f, uint64_t i) {
+    volume v = {.type = f->type, .samples = f->values};
+    return volume_value(&v, i);
 }
 
 #endif

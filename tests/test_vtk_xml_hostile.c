@@ -1,0 +1,289 @@
+/* test_vtk_xml_hostile.c - VTK XML files that are wrong, or odd: what is said of each */
+#include "exit_status.h"
+#include "expect.h"
+#include "failure.h"
+#include "vtk_xml_files.h"
+
+/* ------------------------------------------------------------------------------------------------------- small files
+ */
+
+static void expect_refused(const char *words, const char *text) {
+    dataset d;
+    int status = read_path(file_text("bad.vtk", text), &d);
+    EXPECT(status == STATUS_INPUT && strstr(failure_text(), words) && strstr(failure_text(), "bad.vtk"),
+           "status %d, text lacks '%s': %s\n%.300s", status, words, failure_text(), text);
+    dataset_release(&d);
+}
+
+#define FILE_OF(type, attributes, content) "<VTKFile type=\"" type "\"" attributes ">" content "</VTKFile>"
+#define IMAGE(extent, content)                                                                                         \
+    FILE_OF("ImageData", "", "<ImageData><Piece Extent=\"" extent "\">" content "</Piece></ImageData>")
+#define POINTS(attributes, content)                                                                                    \
+    "<PointData><DataArray Name=\"a\" " attributes ">" content "</DataArray></PointData>"
+#define CELLS(points, cells, connectivity, offsets, types)                                                             \
+    FILE_OF("UnstructuredGrid", "",                                                                                    \
+            "<UnstructuredGrid><Piece NumberOfPoints=\"" points "\" NumberOfCells=\"" cells "\"><Points><DataArray "   \
+            "type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>"  \
+            "<Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" connectivity                    \
+            "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" offsets                         \
+            "</DataArray><DataArray type=\"Int16\" Name=\"types\" format=\"ascii\">" types                             \
+            "</DataArray></Cells></Piece></UnstructuredGrid>")
+#define CUBE "0 1 0 1 0 1"
+
+static void test_kinds_refused(void) {
+    expect_refused("PolyData", FILE_OF("PolyData", "", "<PolyData/>"));
+    expect_refused("list of other files", FILE_OF("PImageData", "", ""));
+    expect_refused("list of other files", FILE_OF("PUnstructuredGrid", "", ""));
+    expect_refused("list of other files", FILE_OF("vtkMultiBlockDataSet", "", ""));
+    expect_refused("HyperTreeGrid", FILE_OF("HyperTreeGrid", "", ""));
+    expect_refused(".vtu", "<VTKFile version=\"0.1\"/>");
+    expect_refused("not VTKFile", "<svg/>");
+    expect_refused("is not XML", "# vtk DataFile Version 3.0\n");
+    expect_refused("is not XML", "<VTKFile type=\"ImageData\"><ImageData></VTKFile>");
+    expect_refused("is empty", "");
+    expect_refused("no points", FILE_OF("ImageData", "", "<ImageData/>"));
+    expect_refused("no points", FILE_OF("ImageData", "", ""));
+    expect_refused("no points", IMAGE("0 -1 0 -1 0 -1", ""));
+    expect_refused("byte_order", FILE_OF("ImageData", " byte_order=\"Middle\"", ""));
+    expect_refused("header_type", FILE_OF("ImageData", " header_type=\"UInt16\"", ""));
+}
+
+/* Expat must not even see entities; deep elements and long texts must not matter. */
+static void test_xml(void) {
+    expect_refused("document type", "<!DOCTYPE a [<!ENTITY b \"bbbbbbbb\"><!ENTITY c \"&b;&b;&b;&b;\">]><a>&c;</a>");
+    expect_refused("document type", "<!DOCTYPE VTKFile SYSTEM \"file:///etc/passwd\"><VTKFile type=\"ImageData\"/>");
+    bytes deep = {0};
+    bytes_text(&deep, "<VTKFile type=\"ImageData\"><ImageData>");
+    for (int i = 0; i < 3000; i++) bytes_text(&deep, "<Piece>");
+    bytes_add(&deep, "", 1);
+    expect_refused("Extent", (char *)deep.data);
+    deep.size = 0;
+    bytes_text(&deep, "<VTKFile type=\"ImageData\">");
+    for (int i = 0; i < 3000; i++) bytes_text(&deep, "<a>");
+    bytes_add(&deep, "", 1);
+    expect_refused("nested", (char *)deep.data);
+    bytes_free(&deep);
+}
+
+static void test_extents(void) {
+    expect_refused("Extent", FILE_OF("ImageData", "", "<ImageData><Piece/></ImageData>"));
+    expect_refused("Extent", IMAGE("0 1 0 1", ""));
+    expect_refused("Extent", IMAGE("0 1 0 1 0 1 0", ""));
+    expect_refused("Extent", IMAGE("0 1 0 1 5 0", ""));
+    expect_refused("Extent", IMAGE("0 1 0 1 0 x", ""));
+    expect_refused("Extent", IMAGE("0 1 0 1 0 99999999999999999999", ""));
+    expect_refused("Extent", IMAGE("0 1 0 1 -9223372036854775808 1", ""));
+    expect_refused("too many points", IMAGE("0 2147483646 0 2147483646 0 2147483646", ""));
+    expect_refused("too many points", IMAGE("-2147483648 2147483647 -2147483648 2147483647 0 1", ""));
+    expect_refused("numbers of text",
+                   IMAGE("0 2000000 0 2000000 0 100", POINTS("type=\"UInt8\" format=\"ascii\"", "1 2 3")));
+    expect_refused("Spacing", FILE_OF("ImageData", "", "<ImageData Spacing=\"1 1\"/>"));
+    expect_refused("Direction", FILE_OF("ImageData", "", "<ImageData Direction=\"1 0 0 0 1 0 0 0\"/>"));
+    expect_refused("do not span",
+                   FILE_OF("ImageData", "", "<ImageData Spacing=\"1 0 1\"><Piece Extent=\"" CUBE "\"/></ImageData>"));
+    expect_refused("not finite",
+                   FILE_OF("ImageData", "", "<ImageData Origin=\"1 nan 1\"><Piece Extent=\"" CUBE "\"/></ImageData>"));
+}
+
+static void test_arrays(void) {
+    expect_refused("format", IMAGE(CUBE, POINTS("type=\"UInt8\" format=\"hex\"", "")));
+    expect_refused("NumberOfComponents", IMAGE(CUBE, POINTS("type=\"UInt8\" NumberOfComponents=\"0\"", "")));
+    expect_refused("NumberOfComponents", IMAGE(CUBE, POINTS("type=\"UInt8\" NumberOfComponents=\"9999999999\"", "")));
+    expect_refused("offset", IMAGE(CUBE, POINTS("type=\"UInt8\" format=\"appended\"", "")));
+    expect_refused("offset", IMAGE(CUBE, POINTS("type=\"UInt8\" format=\"appended\" offset=\"-1\"", "")));
+    expect_refused("of which the file has none", IMAGE(CUBE, POINTS("type=\"UInt8\" offset=\"0\"", "")));
+    expect_refused("'300'", IMAGE(CUBE, POINTS("type=\"UInt8\"", "1 2 3 4 5 6 7 300")));
+    expect_refused("'-129'", IMAGE(CUBE, POINTS("type=\"Int8\"", "1 2 3 4 5 6 -128 -129")));
+    expect_refused("'-1'", IMAGE(CUBE, POINTS("type=\"UInt32\"", "1 2 3 4 5 6 7 -1")));
+    expect_refused("'1.5'", IMAGE(CUBE, POINTS("type=\"Int32\"", "1 2 3 4 5 6 7 1.5")));
+    expect_refused("'1.5x'", IMAGE(CUBE, POINTS("type=\"Float32\"", "1 2 3 4 5 6 7 1.5x")));
+    expect_refused("'9223372036854775808'", IMAGE(CUBE, POINTS("type=\"Int64\"", "1 2 3 4 5 6 7 9223372036854775808")));
+    expect_refused("has 7 numbers", IMAGE(CUBE, POINTS("type=\"Int32\"", "10 20 3 4 5 6 7")));
+    expect_refused("has at most", IMAGE(CUBE, POINTS("type=\"Int32\"", "1 2 3 4")));
+    expect_refused("has at most", IMAGE(CUBE, POINTS("type=\"Int32\"", "")));
+    expect_refused("several parts", IMAGE(CUBE, POINTS("type=\"Int32\"", "1 2 3 4 <a/> 5 6 7 8")));
+    expect_refused("'a' ends", IMAGE(CUBE, POINTS("type=\"Int32\" format=\"binary\"", "IAA")));
+    expect_refused("'a' ends", IMAGE(CUBE, POINTS("type=\"Int32\" format=\"binary\"", "*AAA")));
+    expect_refused("has 32 bytes", IMAGE(CUBE, POINTS("type=\"Int64\" format=\"binary\"", "IAAAAAAAAAAA")));
+    expect_refused("vtkLZ4DataCompressor",
+                   FILE_OF("ImageData", " compressor=\"vtkLZ4DataCompressor\"",
+                           "<ImageData><Piece Extent=\"" CUBE
+                           "\">" POINTS("type=\"UInt8\" format=\"binary\"", "AAAA") "</Piece></ImageData>"));
+    expect_refused("begin with '_'",
+                   FILE_OF("ImageData", "",
+                           "<ImageData><Piece Extent=\"" CUBE
+                           "\">" POINTS("type=\"UInt8\" offset=\"0\"",
+                                        "") "</Piece></ImageData><AppendedData encoding=\"raw\">AAAA</AppendedData>"));
+    expect_refused("only", FILE_OF("ImageData", "",
+                                   "<ImageData><Piece Extent=\"" CUBE "\">" POINTS(
+                                       "type=\"UInt8\" offset=\"1000\"",
+                                       "") "</Piece></ImageData><AppendedData encoding=\"raw\">_AAAA</AppendedData>"));
+}
+
+/* Headers of compressed data: blocks, bytes of one, bytes of the last, then packed bytes; 32 bits each. */
+static void expect_blocks_refused(const char *words, const uint32_t *header, size_t count) {
+    bytes raw = {0}, file = {0};
+    for (size_t i = 0; i < count; i++) bytes_put(&raw, header[i], 4, 0);
+    bytes_add(&raw, "some bytes that are nothing that was packed", 43);
+    bytes_text(&file, "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
+                      "<ImageData><Piece Extent=\"0 99 0 99 0 99\">" POINTS("type=\"UInt8\" format=\"binary\"", ""));
+    file.size -= strlen("</DataArray></PointData>");
+    add_base64(&file, &raw, 0);
+    bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
+    bytes_add(&file, "", 1);
+    expect_refused(words, (char *)file.data);
+    bytes_free(&raw);
+    bytes_free(&file);
+}
+
+static void test_blocks(void) {
+    expect_blocks_refused("ends", (uint32_t[]){0xffffffff, 1000000, 0, 10}, 4);
+    expect_blocks_refused("ends", (uint32_t[]){1, 1000000, 0, 0xffffffff}, 4);
+    expect_blocks_refused("ends", (uint32_t[]){2, 500000, 0, 40, 40}, 5);
+    expect_blocks_refused("has 0 bytes", (uint32_t[]){0, 1000000, 0}, 3);
+    expect_blocks_refused("has 0 bytes", (uint32_t[]){1, 0, 0, 10}, 4);
+    expect_blocks_refused("has 999999 bytes", (uint32_t[]){1, 1000000, 999999, 10}, 4);
+    expect_blocks_refused("make no sense", (uint32_t[]){1, 1000000, 1000001, 10}, 4);
+    expect_blocks_refused("cannot hold more", (uint32_t[]){1, 1000000, 0, 40}, 4);
+    expect_blocks_refused("cannot hold more", (uint32_t[]){1, 0xffffffff, 0, 40}, 4);
+}
+
+static void test_cells(void) {
+    dataset d;
+    EXPECT(read_path(file_text("cells.vtk", CELLS("4", "1", "0 1 2 3", "4", "10")), &d) == 0, "%s", failure_text());
+    dataset_release(&d);
+    expect_refused("point 4", CELLS("4", "1", "0 1 2 4", "4", "10"));
+    expect_refused("point -1", CELLS("4", "1", "0 1 2 -1", "4", "10"));
+    expect_refused("ascend", CELLS("4", "2", "0 1 2 3", "4 3", "10 10"));
+    expect_refused("ascend", CELLS("4", "1", "0 1 2 3", "-4", "10"));
+    expect_refused("'connectivity' has at most", CELLS("4", "1", "0 1 2 3", "5", "10"));
+    expect_refused("'connectivity'", CELLS("4", "1", "0 1 2 3", "9223372036854775807", "10"));
+    expect_refused("type 300", CELLS("4", "1", "0 1 2 3", "4", "300"));
+    expect_refused("'types' has at most", CELLS("4", "1", "0 1 2 3", "4", ""));
+    expect_refused("has at most", CELLS("4", "99999999999", "0 1 2 3", "4", "10"));
+    expect_refused("of Points", CELLS("5", "1", "0 1 2 3", "4", "10"));
+    expect_refused("of Points", CELLS("99999999999999999", "1", "0 1 2 3", "4", "10"));
+    expect_refused("NumberOfPoints", CELLS("-1", "1", "0 1 2 3", "4", "10"));
+    expect_refused("NumberOfCells", CELLS("4", "9223372036854775807", "0 1 2 3", "4", "10"));
+    expect_refused("Points", FILE_OF("UnstructuredGrid", "",
+                                     "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"/>"
+                                     "</UnstructuredGrid>"));
+    expect_refused("floating", FILE_OF("UnstructuredGrid", "",
+                                       "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points>"
+                                       "<DataArray type=\"UInt8\" NumberOfComponents=\"3\">1 2 3</DataArray></Points>"
+                                       "<Cells><DataArray type=\"UInt8\" Name=\"types\">1</DataArray><DataArray "
+                                       "type=\"Float32\" Name=\"offsets\">1</DataArray><DataArray type=\"UInt8\" "
+                                       "Name=\"connectivity\">0</DataArray></Cells></Piece></UnstructuredGrid>"));
+    expect_refused("no array 'types'",
+                   FILE_OF("UnstructuredGrid", "",
+                           "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points><DataArray "
+                           "type=\"UInt8\" NumberOfComponents=\"3\">1 2 3</DataArray></Points></Piece>"
+                           "</UnstructuredGrid>"));
+    expect_refused("Coordinates", FILE_OF("RectilinearGrid", "",
+                                          "<RectilinearGrid><Piece Extent=\"" CUBE "\"><Coordinates><DataArray "
+                                          "type=\"UInt8\">1 2</DataArray></Coordinates></Piece></RectilinearGrid>"));
+}
+
+/* Many arrays that share one, each of which would be unpacked. */
+static void test_sharing(void) {
+    bytes file = {0};
+    bytes_text(&file,
+               "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData><Piece Extent=\"0 19 0 19 0 49\">"
+               "<PointData>");
+    for (int i = 0; i < 1000; i++) bytes_text(&file, "<DataArray type=\"Int8\" Name=\"%d\" offset=\"0\"/>", i);
+    bytes_text(&file, "</PointData></Piece></ImageData><AppendedData encoding=\"base64\">_");
+    bytes data = {0};
+    unsigned char *values = calloc(20000, 1);
+    bytes_put(&data, 20000, 4, 0);
+    bytes_add(&data, values, 20000);
+    free(values);
+    add_base64(&file, &data, 0);
+    dataset d;
+    EXPECT(read_bytes("shared.vtk", &file, &d) == STATUS_INPUT && strstr(failure_text(), "share"), "%s",
+           failure_text());
+    dataset_release(&d);
+    bytes_free(&data);
+    bytes_free(&file);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- notices
+ */
+
+static void test_notices(void) {
+    dataset d;
+    const char *wide =
+        IMAGE(CUBE, POINTS("type=\"Int64\"", "1 2 3 4 5 6 7 9007199254740993") "<CellData><DataArray type=\"UInt8\" "
+                                                                               "Name=\"c\">7</DataArray></CellData>");
+    EXPECT(read_path(file_text("wide.vtk", wide), &d) == 0 && strstr(d.notice, "'a' is left out"), "%s, notice '%s'",
+           failure_text(), d.notice);
+    EXPECT(d.block_count == 1 && d.blocks[0].field_count == 1 && d.blocks[0].fields[0].on_cells, "fields");
+    dataset_release(&d);
+
+    const char *more = IMAGE(CUBE, POINTS("type=\"Int16\"", "1 2 3 4 5 6 7 8 9"));
+    EXPECT(read_path(file_text("more.vtk", more), &d) == 0 && strstr(d.notice, "more values"), "%s, notice '%s'",
+           failure_text(), d.notice);
+    dataset_release(&d);
+
+    const char *levels = IMAGE("0 2 0 1 0 1", "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostLevels\">0 "
+                                              "1</DataArray></CellData>");
+    EXPECT(read_path(file_text("levels.vtk", levels), &d) == 0 && d.blocks[0].blanked_cells &&
+               !d.blocks[0].blanked_cells[0] && d.blocks[0].blanked_cells[1] && !d.blocks[0].field_count,
+           "%s", failure_text());
+    dataset_release(&d);
+
+    const char *empty = FILE_OF(
+        "ImageData", "", "<ImageData><Piece Extent=\"0 -1 0 -1 0 -1\"/><Piece Extent=\"3 4 0 1 0 1\"/></ImageData>");
+    EXPECT(read_path(file_text("empty.vtk", empty), &d) == 0 && d.block_count == 1 && d.blocks[0].first[0] == 3, "%s",
+           failure_text());
+    dataset_release(&d);
+}
+
+/* Text that strtod reads, and the short decimals that it does not see. */
+static void test_numbers(void) {
+    static const char *const words[] = {"0.1",
+                                        "-1e-3",
+                                        "123456789012345678",
+                                        "1e22",
+                                        "1.7976931348623157e308",
+                                        "4.9e-324",
+                                        "+7.",
+                                        ".5e1",
+                                        "1e23",
+                                        "0.30000000000000004",
+                                        "-0",
+                                        "inf",
+                                        "-1E+05",
+                                        "1e400",
+                                        "9007199254740993",
+                                        "5e-22"};
+    enum { COUNT = sizeof words / sizeof *words };
+    bytes file = {0};
+    bytes_text(&file, "<VTKFile type=\"ImageData\"><ImageData><Piece Extent=\"0 3 0 1 0 1\"><PointData><DataArray "
+                      "type=\"Float64\">");
+    for (int i = 0; i < COUNT; i++) bytes_text(&file, "%s\t\r\n", words[i]);
+    bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
+    dataset d;
+    EXPECT(COUNT == 16 && read_bytes("numbers.vtk", &file, &d) == 0 && d.blocks[0].field_count == 1, "%s",
+           failure_text());
+    for (int i = 0; i < COUNT && d.block_count; i++) {
+        double is = field_value(&d.blocks[0].fields[0], (uint64_t)i), should = strtod(words[i], NULL);
+        EXPECT(memcmp(&is, &should, 8) == 0, "%s is %.17g", words[i], is);
+    }
+    dataset_release(&d);
+    bytes_free(&file);
+}
+
+int main(void) {
+    folder_make();
+    test_kinds_refused();
+    test_xml();
+    test_extents();
+    test_arrays();
+    test_blocks();
+    test_cells();
+    test_sharing();
+    test_notices();
+    test_numbers();
+    folder_remove();
+    return EXPECT_DONE();
+}
