@@ -178,8 +178,8 @@ static const option table[] = {
     {"--turns", NULL, take_turns,
      "of one case: print 'ready' when it is verified, then make one timed\n"
      "extraction with a new mesh for every line on standard input and print\n"
-     "its milliseconds; at the end of input, print the JSON object, whose\n"
-     "extract_ms is of these"},
+     "its milliseconds (line 'second': of --second); at the end of\n"
+     "input, print the JSON object, whose extract_ms is of the others"},
     {"--dump", "FILE", take_dump,
      "of one case: write its samples, raw, in native byte order, print their\n"
      "dims and type as a JSON object, and measure nothing"},

@@ -12,10 +12,14 @@ take turns, in the reverse order on every other repeat, so that all see the same
   vtk_mc  vtkMarchingCubes.Update(), likewise, up to 512^3 samples; it has one thread
   vtk_contour  vtkContourFilter.Update() in place of all others on a curvilinear grid, FIELD:N:TYPE:curvilinear, a
           vtkStructuredGrid of the points that tetracubes-bench --grid curvilinear makes
+  vtk_linear  vtkContour3DLinearGrid.Update() in place of all others on an unstructured grid, FIELD:N:TYPE:tetrahedra or
+          :hexahedra, the same points and tetrahedra or cubes; points merged, all cores. Then both again for a repeated
+          isovalue (second_ms): ours on a grid that an isovalue has been extracted from before, VTK's with a scalar tree
+          that one has built
   skimage skimage.measure.marching_cubes, up to 256^3 samples; it has one thread, and always makes normals and values
 
-A peer whose first turn, which does not count, takes over a second has three turns, over five seconds one. Of a cube of 1024 or more, ours at
-half the size takes turns too (half_ms), so that one run shows how time grows with size.
+A peer whose first turn, which does not count, takes over a second has three turns, over five seconds one. Of a cube of
+1024 or more, ours at half the size takes turns too (half_ms), so that one run shows how time grows with size.
 
 On a device with memory of its own our mesh is complete there, not yet on the host; theirs are always on the host. What
 is released is released outside the timed parts. Medians and their ratios to ours are printed; above 1 Tetracubes is
@@ -39,7 +43,8 @@ from typing import NamedTuple
 HERE = os.path.dirname(os.path.abspath(__file__))
 DEFAULT_CASES = [f"{field}:{size}:{kind}" for field, kind, sizes in
                  (("sphere", "u8", (64, 128, 256, 512, 1024)), ("gyroid", "u8", (64, 128, 256, 512)),
-                  ("sphere", "f32", (64, 128, 256, 512))) for size in sizes] + ["sphere:256:f32:curvilinear"]
+                  ("sphere", "f32", (64, 128, 256, 512))) for size in sizes] + [
+                      "sphere:256:f32:curvilinear", "sphere:127:f32:tetrahedra", "sphere:127:f32:hexahedra"]
 REAL_VOLUME, REAL_ISO = "uniform/embryo.nrrd", 80.0  # of the folder TETRACUBES_DATA
 REST = 0.01  # seconds before every turn: the others' threads have gone to sleep by then
 SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
@@ -51,15 +56,25 @@ try:
     import numpy
     import skimage
     from skimage.measure import marching_cubes
-    from vtkmodules.util.numpy_support import get_vtk_array_type, numpy_to_vtk
+    from vtkmodules.util.numpy_support import get_vtk_array_type, numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools, vtkVersion
-    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkStructuredGrid
-    from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkFlyingEdges3D, vtkMarchingCubes
+    from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkImageData, vtkStructuredGrid,
+                                               vtkUnstructuredGrid)
+    from vtkmodules.vtkFiltersCore import (vtkContour3DLinearGrid, vtkContourFilter, vtkFlyingEdges3D,
+                                              vtkMarchingCubes)
 except ImportError as missing:
     if not {"-h", "--help"} & set(sys.argv):
         sys.exit(f"peers.py: {missing}; run bench/peers-setup, then start this script by /usr/bin/python3")
 
 NUMPY_TYPES = {"u8": "u1", "i8": "i1", "u16": "u2", "i16": "i2", "u32": "u4", "i32": "i4", "f32": "f4", "f64": "f8"}
+
+
+# Corners x + 2 y + 4 z of a cube's tetrahedra, by parity
+TETRAHEDRA = [[[0, 5, 3, 6], [1, 0, 5, 3], [2, 0, 3, 6], [4, 0, 6, 5], [7, 3, 5, 6]],
+              [[1, 2, 4, 7], [0, 4, 1, 2], [3, 2, 1, 7], [5, 7, 1, 4], [6, 4, 2, 7]]]
+UNSTRUCTURED = {"tetrahedra": 10, "hexahedra": 12}  # VTK's types of cells
+CELL_BYTES = {"tetrahedra": 240, "hexahedra": 190}  # per sample, VTK's and ours
+SECOND_RATIO = 1.05  # tetracubes-bench's own default for its second isovalue
 
 
 class Failure(Exception):
@@ -98,6 +113,17 @@ class Samples:
         points[..., 2] = z[:, None, None] + 0.05 * numpy.sin(3.0 * x)[None, None, :]
         return points.reshape(-1, 3)
 
+    def cells(self):
+        """Tetrahedra of an unstructured grid, five of each cube, or its hexahedra, by their corners."""
+        nx, ny, nz = self.dims
+        k, j, i = numpy.meshgrid(*(numpy.arange(n - 1) for n in (nz, ny, nx)), indexing="ij")
+        first = ((k * ny + j) * nx + i).reshape(-1)
+        steps = numpy.array([(c & 1) + nx * (c >> 1 & 1) + nx * ny * (c >> 2) for c in range(8)])
+        if self.grid == "hexahedra":
+            return first[:, None] + steps[[0, 1, 3, 2, 4, 5, 7, 6]]
+        odd = ((i + j + k) & 1).reshape(-1)
+        return (first[:, None, None] + steps[numpy.array(TETRAHEDRA)][odd]).reshape(-1, 4)
+
     def count(self):
         return self.dims[0] * self.dims[1] * self.dims[2]
 
@@ -118,10 +144,10 @@ class Ours:
         self.process.stdin.close()
         raise Failure(f"tetracubes-bench ended with status {self.process.wait()}")
 
-    def turn(self):
-        """Milliseconds of one extraction into a new mesh."""
+    def turn(self, second=False):
+        """Milliseconds of one extraction into a new mesh, of the second isovalue after the first on the same grid."""
         try:
-            self.process.stdin.write("\n")
+            self.process.stdin.write("second\n" if second else "\n")
             self.process.stdin.flush()
         except BrokenPipeError:
             pass
@@ -174,6 +200,49 @@ class VtkFilter:
         return ms
 
 
+class VtkLinear:
+    """vtkContour3DLinearGrid on an unstructured grid."""
+
+    def __init__(self, samples, iso):
+        self.values, self.points, self.cells = samples.array().reshape(-1), samples.points(), samples.cells()
+        points, cells, self.mesh = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
+        points.SetData(numpy_to_vtk(self.points, deep=0))
+        cells.SetData(self.cells.shape[1], numpy_to_vtkIdTypeArray(self.cells.reshape(-1), deep=0))
+        self.mesh.SetPoints(points)
+        self.mesh.SetCells(UNSTRUCTURED[samples.grid], cells)
+        self.mesh.GetPointData().SetScalars(numpy_to_vtk(self.values, deep=0))
+        self.iso, self.triangles = iso, 0
+
+    def turn(self, second=False):
+        """Milliseconds of Update() of a new filter; second: of a second isovalue, the first has built a scalar tree."""
+        surface = vtkContour3DLinearGrid()
+        surface.SetInputData(self.mesh)
+        surface.MergePointsOn()
+        surface.InterpolateAttributesOff()
+        surface.ComputeNormalsOff()
+        surface.SetUseScalarTree(second)
+        if second:
+            surface.SetValue(0, self.iso)
+            surface.Update()
+        surface.SetValue(0, self.iso * SECOND_RATIO if second else self.iso)
+        begin = time.perf_counter()
+        surface.Update()
+        ms = 1e3 * (time.perf_counter() - begin)
+        if not second:
+            self.triangles = surface.GetOutput().GetNumberOfPolys()
+        return ms
+
+
+class Second:
+    """A side's turns with the second isovalue."""
+
+    def __init__(self, side):
+        self.side = side
+
+    def turn(self):
+        return self.side.turn(second=True)
+
+
 class ScikitImage:
     """skimage.measure.marching_cubes on the samples."""
 
@@ -192,6 +261,8 @@ class ScikitImage:
 
 def peers_of(samples, iso):
     """Those that can do it in seconds, by the key of their results."""
+    if samples.grid in UNSTRUCTURED:
+        return {"vtk_linear": VtkLinear(samples, iso)}
     if samples.grid == "curvilinear":
         return {"vtk_contour": VtkFilter(vtkContourFilter, samples, iso)}
     peers = {"vtk": VtkFilter(vtkFlyingEdges3D, samples, iso)}
@@ -251,6 +322,9 @@ def result_of(case, samples, reports, times, peers):
     }
     for key, peer in peers.items():
         result.update({f"{key}_ms": spread(times[key]), f"{key}_triangles": peer.triangles})
+    if "ours_second" in times:
+        result.update({"second_ms": spread(times["ours_second"]),
+                       "vtk_linear_second_ms": spread(times["vtk_linear_second"])})
     if "half" in times:
         result["half_ms"] = spread(times["half"])
     if "hybrid" in times:
@@ -272,11 +346,14 @@ def run_case(arguments, case, folder):
         for key, its in opened.items():
             progress(f"{case.name}: verifying")
             ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
-        if samples.count() <= HYBRID_MOST:
+        if samples.count() <= HYBRID_MOST and case.grid == "uniform":
             progress(f"{case.name}: verifying the hybrid")
             ours["hybrid"] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, "hybrid")
         peers = peers_of(samples, case.iso)
         times = take_turns(case.name, {**ours, **peers}, arguments.repeat)
+        if case.grid in UNSTRUCTURED:
+            seconds = {f"{key}_second": Second(side) for key, side in {**ours, **peers}.items()}
+            times.update(take_turns(case.name, seconds, arguments.repeat))
         reports = {key: side.report() for key, side in ours.items()}
     finally:
         for side in ours.values():
@@ -300,16 +377,24 @@ def shown_ratio(result, key):
 COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
 
 
+PEER_TRIANGLES = ("vtk_triangles", "vtk_contour_triangles", "vtk_linear_triangles")
+
+
 def print_head():
-    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "vtkContourFilter", "triangles",
-                         "of VTK", "limit ratio"))
+    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "of this grid",
+                         "triangles", "of VTK", "limit ratio"))
 
 
 def print_row(result):
     print(COLUMNS.format(result["case"], shown(result["extract_ms"]), shown_ratio(result, "vtk"),
                          shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"),
-                         shown_ratio(result, "vtk_contour"), result["triangles"],
-                         result.get("vtk_triangles", result.get("vtk_contour_triangles")), f"{result['limit_ratio']:.2f}"), flush=True)
+                         shown_ratio(result, "vtk_linear" if result["grid"] in UNSTRUCTURED else "vtk_contour"),
+                         result["triangles"], next(result[key] for key in PEER_TRIANGLES if key in result),
+                         f"{result['limit_ratio']:.2f}"), flush=True)
+    if "second_ms" in result:
+        second, vtk_second = result["second_ms"], result["vtk_linear_second_ms"]
+        print(f"    another isovalue: {shown(second)}, with a scalar tree {shown(vtk_second)}, "
+              f"ratio {vtk_second['median'] / second['median']:.2f}", flush=True)
     if "half_ms" in result:
         growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
         print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
@@ -338,18 +423,19 @@ class Case(NamedTuple):
 
 
 def parse_case(text):
-    """sphere:512:u8, or sphere:512:u8:curvilinear"""
+    """sphere:512:u8, or sphere:512:u8:curvilinear and its like"""
     parts = text.split(":")
-    grid = parts.pop() if len(parts) == 4 and parts[3] in ("uniform", "curvilinear") else "uniform"
+    grid = parts.pop() if len(parts) == 4 and parts[3] in ("uniform", "curvilinear", *UNSTRUCTURED) else "uniform"
     if len(parts) != 3 or parts[2] not in NUMPY_TYPES or not re.fullmatch(r"\d+(,\d+,\d+)?", parts[1]):
-        raise Failure(f"--cases: '{text}' is not FIELD:N:TYPE or FIELD:N:TYPE:curvilinear, as in sphere:512:u8")
+        raise Failure(f"--cases: '{text}' is not FIELD:N:TYPE or FIELD:N:TYPE:GRID, GRID curvilinear, tetrahedra or "
+                      "hexahedra, as in sphere:512:u8")
     field, dims, kind = parts
     options = ["--field", field, "--type", kind, "--dims"]
     half = [*options, str(int(dims) // 2)] if "," not in dims and int(dims) >= HALVED_FROM else []
     sizes = [int(size) for size in dims.split(",")]
     count = sizes[0] ** 3 if len(sizes) == 1 else math.prod(sizes)
     name = f"{field} {dims if ',' in dims else f'{dims}^3'} {kind}{'' if grid == 'uniform' else ' ' + grid}"
-    item_bytes = numpy.dtype(NUMPY_TYPES[kind]).itemsize + (0 if grid == "uniform" else 12)
+    item_bytes = numpy.dtype(NUMPY_TYPES[kind]).itemsize + (0 if grid == "uniform" else 12) + CELL_BYTES.get(grid, 0)
     return Case(name, [*options, dims], 127.5, half, count * item_bytes, grid)
 
 

@@ -109,6 +109,10 @@ def test_grids(made):
         expect(result["grid"] == grid and result["triangles"] == made["triangles"], f"--grid {grid}: {result}")
     expect(grids["uniform"]["hash"] == made["hash"], "--grid uniform is not the default")
     expect(len({result["hash"] for result in grids.values()}) == 3, "grids do not differ in their vertices")
+    tetrahedra, hexahedra = (cases_of(*case, "--grid", grid)["cases"][0] for grid in ("tetrahedra", "hexahedra"))
+    for key in ("vertices", "triangles"):
+        expect(tetrahedra[key] == made[key], f"--grid tetrahedra: {key} {tetrahedra[key]}, not {made[key]}")
+    expect(hexahedra["triangles"] > made["triangles"], "--grid hexahedra: not six tetrahedra to a cube")
 
 
 def test_second(made):

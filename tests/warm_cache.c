@@ -1,8 +1,8 @@
 /*
  * warm_cache.c - builds the kernels once, so that tests find them in the cache of the OpenCL implementation
  *
- * Those that test_random, test_device, test_api, test_curvilinear and test_hybrid need; a kernel that is not among them
- * is built by the test itself.
+ * Those that test_random, test_device, test_api, test_curvilinear, test_hybrid and test_complex need; a kernel that is not
+ * among them is built by the test itself.
  *
  * Usage: warm_cache PART PARTS: every PARTS-th program, so that processes with a cache each can share the work.
  */
@@ -71,6 +71,38 @@ static void program_build(size_t n, int variant, tc_method method) {
     tc_context_destroy(context);
 }
 
+/* Complexes: of every type for the default work-group, of some for others. */
+enum { COMPLEX_PROGRAMS = 14 };
+
+static void complex_build(size_t n) {
+    static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
+    static const struct {
+        tc_type type;
+        uint32_t work_items;
+    } others[] = {{TC_U8, 32}, {TC_F32, 32}, {TC_F64, 32}, {TC_U8, 64}, {TC_F32, 64}, {TC_F64, 64}};
+    double memory[4];
+    tc_context_options options;
+    tc_complex_options complex;
+    tc_extract_options how;
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    tc_context_options_init(&options);
+    tc_complex_options_init(&complex);
+    tc_extract_options_init(&how);
+    complex.type = n <= TC_F64 ? (tc_type)n : others[n - 1 - TC_F64].type;
+    options.work_items = n <= TC_F64 ? 0 : others[n - 1 - TC_F64].work_items;
+    tc_context *context = context_open(&options);
+    for (int m = 0; m < 4; m++) sample_set(memory, complex.type, m, m);
+    complex.point_count = 4, complex.points = points, complex.samples = memory;
+    complex.tetrahedron_count = 1, complex.tetrahedra = tetrahedron;
+    how.isovalue = 2;
+    EXPECT(!tc_complex_create(context, &complex, &grid) && !tc_extract(grid, &how, &mesh), "%s", tc_message());
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    tc_context_destroy(context);
+}
+
 int main(int argc, char **argv) {
     size_t part = argc > 2 ? strtoul(argv[1], NULL, 10) : 0, parts = argc > 2 ? strtoul(argv[2], NULL, 10) : 1;
     size_t number = 0;
@@ -79,5 +111,7 @@ int main(int argc, char **argv) {
         for (int m = 0; m < 8; m++)
             if ((programs[n].variants[m / 4] >> m % 4 & 1) && number++ % parts == part)
                 program_build(n, m % 4, (tc_method)(m / 4));
+    for (size_t n = 0; n < COMPLEX_PROGRAMS; n++)
+        if (number++ % parts == part) complex_build(n);
     return EXPECT_DONE();
 }

@@ -352,9 +352,12 @@ typedef struct tc_complex_options {
 
 TC_API void tc_complex_options_init(tc_complex_options *options);
 
-/* A grid that tc_count and tc_extract take like a structured one, without normals, and by TC_METHOD_TETRA only.
- * Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03 12 13 23); triangles
- * follow their tetrahedra. Crossings go from the lower to the higher point number. */
+/* A grid that tc_count and tc_extract take like a structured one, without normals, and by TC_METHOD_TETRA only; active
+ * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
+ * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. Complexes are
+ * not cut into slabs: TC_ERROR_MEMORY where the device cannot hold one, TC_ERROR_LIMIT for more than 2^28 tetrahedra;
+ * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there is
+ * TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
 TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */
