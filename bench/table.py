@@ -14,8 +14,8 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 README = os.path.join(os.path.dirname(HERE), "README.md")
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
-PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms"),
-         ("vtk_contour", "vtkContourFilter, ms")]
+PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms")]
+GRID_PEERS = [("vtk_contour", "vtkContourFilter"), ("vtk_linear", "vtkContour3DLinearGrid")]  # of grids not uniform
 HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the README's table
 HEADLINE_SIZE = 512
 SAMPLE_BYTES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
@@ -57,15 +57,41 @@ def peer_name(peer):
     return f"{peer['case'].split()[0]} {size(peer['dims'])} {peer['type']}{'' if grid == 'uniform' else ', ' + grid}"
 
 
+def hybrid_cell(peer):
+    """The hybrid's median, and how many times that Flying Edges takes."""
+    if "hybrid_ms" not in peer:
+        return ""
+    median = peer["hybrid_ms"]["median"]
+    return f"{number(median)} (**{peer['vtk_ms']['median'] / median:.2f}**)"
+
+
 def peers_table(peers):
     """With a column for each peer that any of them has."""
     present = [(key, title) for key, title in PEERS if any(f"{key}_ms" in peer for peer in peers)]
-    head = ["samples", "Tetracubes, ms", *(title for _, title in present), "triangles", "VTK's triangles",
-            "× memory limit"]
-    rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present),
-             f"{peer['triangles']:,}", f"{peer.get('vtk_triangles', peer.get('vtk_contour_triangles')):,}",
-             f"{peer['limit_ratio']:.1f}"] for peer in peers]
+    head = ["samples", "Tetracubes, ms", *(title for _, title in present), "hybrid, ms", "triangles",
+            "VTK's triangles", "hybrid's triangles", "× memory limit"]
+    rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present), hybrid_cell(peer),
+             f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
+             f"{peer['hybrid_triangles']:,}" if "hybrid_triangles" in peer else "", f"{peer['limit_ratio']:.1f}"]
+            for peer in peers]
     return table(head, rows)
+
+
+def grid_peer_row(peer):
+    key, title = next((key, title) for key, title in GRID_PEERS if f"{key}_ms" in peer)
+    second = ["", ""]
+    if "second_ms" in peer:
+        median = peer["second_ms"]["median"]
+        theirs = peer[f"{key}_second_ms"]["median"]
+        second = [number(median), f"{number(theirs)} (**{theirs / median:.2f}**)"]
+    return [peer_name(peer), ms(peer["extract_ms"]), title, peer_cell(peer, key), *second, f"{peer['triangles']:,}",
+            f"{peer[f'{key}_triangles']:,}"]
+
+
+def grid_peers_table(peers):
+    head = ["samples", "Tetracubes, ms", "other", "its, ms", "second isovalue, ms", "other's, ms", "triangles",
+            "other's triangles"]
+    return table(head, [grid_peer_row(peer) for peer in peers])
 
 
 def growth_text(peers):
@@ -83,9 +109,15 @@ def peers_text(result, peers):
     if not peers:
         return []
     vtk = result["vtk"]
-    return [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
+    uniform = [peer for peer in peers if peer.get("grid", "uniform") == "uniform"]
+    others = [peer for peer in peers if peer not in uniform]
+    text = [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
             "others one), a new mesh on every repeat on all sides, in turns; medians (min-max), of the others medians "
-            "(times ours)." + growth_text(peers), peers_table(peers)]
+            "(times ours; of the hybrid, Flying Edges' times the hybrid's)." + growth_text(peers), peers_table(uniform)]
+    if others:
+        text += ["Grids that are not uniform, likewise; the other's filter has all threads where it has any, merged "
+                 "points, and for the second isovalue its scalar tree:", grid_peers_table(others)]
+    return text
 
 
 # --------------------------------------------------------------------------------------------------------------- cases
