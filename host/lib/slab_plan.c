@@ -65,7 +65,7 @@ uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array)
 }
 
 static uint64_t axes_bytes(const tc_grid *grid) {
-    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) : 0;
+    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) + 4096 : 0;
 }
 
 static bool can_miss_samples(const tc_grid *grid) {
@@ -81,11 +81,11 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
-    uint64_t fixed = 2 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
+    uint64_t fixed = 2 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 8 * 4096; /* and buffers from page to page */
     *largest = words;
     for (int array = 0; array < ARRAY_COUNT; array++) {
         uint64_t bytes = plan_array_bytes(plan, grid, array);
-        arrays += bytes;
+        arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
         if (bytes > *largest) *largest = bytes;
     }
     uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
