@@ -290,15 +290,16 @@ COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
 
 
 def print_head():
-    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "vtkContourFilter", "triangles",
-                         "of VTK", "limit ratio"))
+    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "vtkContourFilter",
+                         "triangles", "of VTK", "limit ratio"))
 
 
 def print_row(result):
     print(COLUMNS.format(result["case"], shown(result["extract_ms"]), shown_ratio(result, "vtk"),
                          shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"),
                          shown_ratio(result, "vtk_contour"), result["triangles"],
-                         result.get("vtk_triangles", result.get("vtk_contour_triangles")), f"{result['limit_ratio']:.2f}"), flush=True)
+                         result.get("vtk_triangles", result.get("vtk_contour_triangles")),
+                         f"{result['limit_ratio']:.2f}"), flush=True)
     if "half_ms" in result:
         growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
         print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
