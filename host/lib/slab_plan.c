@@ -65,7 +65,7 @@ uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array)
 }
 
 static uint64_t axes_bytes(const tc_grid *grid) {
-    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) : 0;
+    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) + 4096 : 0;
 }
 
 static bool can_miss_samples(const tc_grid *grid) {
@@ -85,7 +85,7 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     *largest = words;
     for (int array = 0; array < ARRAY_COUNT; array++) {
         uint64_t bytes = plan_array_bytes(plan, grid, array);
-        arrays += bytes;
+        arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
         if (bytes > *largest) *largest = bytes;
     }
     uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
