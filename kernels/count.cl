@@ -314,10 +314,6 @@ inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global co
 #endif
 }
 
-inline_always sample_rows rows_load(const slab *s, uint y, uint z, uint w, global const BITS *samples) {
-    return rows_shifted(rows_inside(s, y, z, w, samples), rows_inside(s, y, z, w + 1, samples));
-}
-
 /* The fallback of the scan: one work-item's share of a tile's sums, straight from the samples. */
 inline_always emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
     tile t = tile_locate(s, number);
@@ -327,8 +323,12 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
         uint n = first + (uint)get_local_id(0);
         if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows * LANES, z = t.z0 + n / s->words_x / rows;
-        cube_rows r = cube_rows_of(s, y, z, w, rows_load(s, y, z, w, samples), rows_load(s, y + 1, z, w, samples),
-                                   rows_load(s, y, z + 1, w, samples), rows_load(s, y + 1, z + 1, w, samples));
+        lanes words[4][2]; /* of the cubes' four rows, at w and w + 1 */
+#pragma unroll 1
+        for (uint m = 0; m < 8; m++) words[m / 2][m % 2] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
+        cube_rows r =
+            cube_rows_of(s, y, z, w, rows_shifted(words[0][0], words[0][1]), rows_shifted(words[1][0], words[1][1]),
+                         rows_shifted(words[2][0], words[2][1]), rows_shifted(words[3][0], words[3][1]));
         row_counts c = rows_count(s, &r, y, z, w, cells);
         sums.vertices += (uint)lanes_sum(c.vertices), sums.triangles += (uint)lanes_sum(c.triangles);
     }

@@ -193,11 +193,12 @@ static bool samples_remove(tc_grid_options *grid) {
 static void run(uint64_t seed, bool large) {
     static const int64_t xs[] = {2, 3, 63, 64, 65, 66, 127, 128, 129, 130}, ys[] = {2, 3, 7, 8, 9, 10, 16, 17};
     static const int64_t zs[] = {2, 3, 4, 5, 8, 9, 13};
+    static const tc_type types[] = {TC_U8, TC_I16, TC_U32, TC_F32, TC_F64}; /* one of each width, and a signed one */
     tc_grid_options grid;
     tc_extract_options how;
     char name[160];
     random_state = seed * 0x2545f4914f6cdd1du + large;
-    tc_type type = (tc_type)random_below(8);
+    tc_type type = types[random_below(5)];
     if (large)
         grid_begin(&grid, &how, xs[random_below(10)], ys[random_below(8)], zs[random_below(7)], type);
     else
