@@ -114,7 +114,8 @@ typedef struct tc_context_options {
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
     uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
-                                  0: what the device allows. Less memory means smaller slabs, never other results */
+                                  0: what the device allows. Less memory means smaller slabs of structured grids,
+                                  never other results; complexes are not cut */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These
@@ -356,8 +357,8 @@ TC_API void tc_complex_options_init(tc_complex_options *options);
  * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
  * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. Complexes are
  * not cut into slabs: TC_ERROR_MEMORY where the device cannot hold one, TC_ERROR_LIMIT for more than 2^28 tetrahedra;
- * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there is
- * TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
+ * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there
+ * is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
 TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */
