@@ -1,7 +1,7 @@
 /*
  * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
  *
- * The samples of four tetrahedra make a vector; 64 bits hold the patterns of 16.
+ * The samples of four tetrahedra make a vector.
  */
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 
@@ -12,8 +12,8 @@ typedef struct complex_arrays {
 } complex_arrays;
 
 typedef struct cluster_report {
-    ulong active;
-    uint triangles, edges;
+    ulong patterns;
+    uint active, triangles, edges;
 } cluster_report;
 
 inline_always uint cluster_size(const complex_job *c, uint n) {
@@ -67,40 +67,24 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
     return range;
 }
 
-/* The lowest bits of 16 nibbles, next to each other. */
-inline_always ulong nibbles_pack(ulong x) {
-    x = (x | x >> 3) & 0x0303030303030303ul;
-    x = (x | x >> 6) & 0x000f000f000f000ful;
-    x = (x | x >> 12) & 0x000000ff000000fful;
-    return (x | x >> 24) & 0xfffful;
-}
-
 /* Any bit of each nibble, in its lowest. */
 inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3) & 0x1111111111111111ul; }
 
 /* Where the surface passes through, and what it makes there. Of points that are valid. */
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
-    cluster_report report = {0, 0, 0};
-    uint size = cluster_size(c, n);
-    for (uint part = 0; part < CLUSTER_TETRAHEDRA / 16; part++) {
-        ulong inside = 0, missing = 0;
-        for (uint m = 0; m < 4; m++) {
-            BITS16 bits = cluster_samples(c, n, 4 * part + m, in);
-            inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
+    ulong inside = 0, missing = 0;
+    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
+        BITS16 bits = cluster_samples(c, n, m, in);
+        inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
 #if FLOATING
-            missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
+        missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
 #endif
-        }
-        ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
-        odd = (odd ^ odd >> 2) & mixed;
-        if (size < 16 * part + 16) {
-            ulong valid = size > 16 * part ? (1ul << (4 * (size - 16 * part))) - 1 : 0;
-            odd &= valid, mixed &= valid;
-        }
-        uint one = (uint)popcount(odd), all = (uint)popcount(mixed);
-        report.active |= nibbles_pack(mixed) << (16 * part);
-        report.triangles += 2 * all - one;
-        report.edges += 4 * all - one;
     }
+    ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
+    uint size = cluster_size(c, n);
+    if (size < CLUSTER_TETRAHEDRA) mixed &= (1ul << 4 * size) - 1;
+    odd = (odd ^ odd >> 2) & mixed;
+    uint one = (uint)popcount(odd), all = (uint)popcount(mixed);
+    cluster_report report = {inside & mixed * 15, all, 2 * all - one, 4 * all - one};
     return report;
 }
