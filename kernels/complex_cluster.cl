@@ -25,12 +25,9 @@ inline_always bool cluster_valid(const complex_job *c, uint n, global const uint
     if (count == CLUSTER_POINTS) {
         uint16 most = 0;
         for (uint m = 0; m < CLUSTER_POINTS / 16; m++) most = max(most, vload16(m, points));
-        uint8 m8 = max(most.lo, most.hi);
-        uint4 m4 = max(m8.lo, m8.hi);
-        largest = max(max(m4.x, m4.y), max(m4.z, m4.w));
-    } else {
-        for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
+        return mask_pack(convert_char16(most >= c->point_count)) == 0;
     }
+    for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
     return largest < c->point_count;
 }
 
@@ -50,6 +47,16 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     return vload16(0, samples);
 }
 
+/* The least key of all and the greatest; side by side, as the least of the complements. */
+inline_always brick_range keys_range(BITS16 low, BITS16 high) {
+    PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);
+    PASTE(BITS, 8) m8 = (PASTE(BITS, 8))(min(low8.lo, low8.hi), min(high8.lo, high8.hi));
+    PASTE(BITS, 4) m4 = min(m8.even, m8.odd);
+    PASTE(BITS, 2) m2 = min(m4.even, m4.odd);
+    brick_range range = {key_upper(m2.x), key_upper((BITS)~m2.y)};
+    return range;
+}
+
 /* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
 inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     brick_range range = {0, 0};
@@ -62,9 +69,7 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
         BITS16 keys = keys16(cluster_samples(c, n, m, in), s);
         low = min(low, keys), high = max(high, keys);
     }
-    range.low = keys_least(low);
-    range.high = keys_most(high);
-    return range;
+    return keys_range(low, high);
 }
 
 /* Any bit of each nibble, in its lowest. */
