@@ -125,6 +125,7 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
                 edges_prefetch(first + n - FETCH_AHEAD / 2, active, table, entries);
             if (n >= FETCH_AHEAD) edges_enter(&c, first + n - FETCH_AHEAD, active, cases, table, entries, &full);
         }
+        if (full) break; /* all begins again with a larger table */
 #else
         for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
             uint a = first + n, edges = edges_of(a, active, cases);
@@ -184,6 +185,9 @@ kernel void complex_number(slab s, complex_job c, global active_tetrahedron *act
     local uint2 sums[WORK_ITEMS + 1];
     tile_tools k = {&s, &c, tiles, shared, sums};
     uint number = 0, first_own = c.active_tiles, last_own = c.active_tiles;
+#if WORK_ITEMS == 1
+    if (state[HEAD_FULL]) return; /* entries are incomplete */
+#endif
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
         if (number < c.active_tiles) {

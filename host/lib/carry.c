@@ -5,8 +5,6 @@
 #include "failure.h"
 #include "reference.h"
 
-#include <math.h>
-
 void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t) {
     const int components = c->field->components;
     if (vertex >= c->room) return;
@@ -37,10 +35,8 @@ tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_fi
     if (status) return status;
     const uint64_t components = (uint64_t)field->components;
     const carry c = {field, out, value_count / components};
-    tc_extract_options_init(&o);
-    status = options_take(&o, sizeof o, options, "extract options");
-    if (!status && !isfinite(o.isovalue))
-        status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o.isovalue);
+    status = extract_options_take(&o, options);
+    if (!status && grid->complex) status = complex_request_check(&o);
     if (!status)
         status = grid->complex ? reference_complex_carry(grid, o.isovalue, &c, &vertex_count)
                                : reference_carry(grid, &o, &c, &vertex_count);

@@ -29,6 +29,9 @@ tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_cou
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 void complex_grid_destroy(tc_grid *grid);
 
+/* TC_ERROR_ARGUMENT for what complexes cannot do. */
+tc_status complex_request_check(const tc_extract_options *options);
+
 /* The sentence for a tetrahedron with a point that is not there. */
 tc_status complex_point_fail(const complex_grid *c);
 

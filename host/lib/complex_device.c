@@ -80,6 +80,7 @@ tc_status complex_device_create(tc_grid *grid) {
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "%s has no fp64, which complexes with %s samples need: use the reference engine",
                                context->info.name, tc_type_name(grid->type));
+    if (context->options.max_memory_bytes) workspace_release(context); /* what another grid has left */
     tc_status status = array_provide(context, &c->tetrahedron_buffer, c->tetrahedra, 16 * tetrahedra, 4,
                                      &c->tetrahedron_offset, "tetrahedra");
     if (!status)
@@ -281,7 +282,7 @@ static tc_status edges_join(complex_run *r) {
 }
 
 /* In most complexes an edge has five tetrahedra: a table half as large as the crossed edges, each counted for every
- * tetrahedron, is then less than half full. Where it does not do, a larger one. */
+ * tetrahedron, is then less than half full. Where it does not do, one that always does. */
 static tc_status edges_number(complex_run *r) {
     complex_buffers *w = r->work;
     uint64_t entries = 64;
@@ -291,10 +292,10 @@ static tc_status edges_number(complex_run *r) {
     if (!status) status = table_reserve(r, entries);
     if (!status) status = active_list(r);
     if (!status) status = edges_join(r);
-    while (!status && r->head[HEAD_FULL]) {
-        status = table_enlarge(r, entries *= 2);
-        if (!status) status = edges_join(r);
-    }
+    if (status || !r->head[HEAD_FULL]) return status;
+    while (entries < 2ull * r->head[HEAD_CROSSED]) entries *= 2;
+    status = table_enlarge(r, entries);
+    if (!status) status = edges_join(r);
     return status;
 }
 

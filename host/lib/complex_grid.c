@@ -22,6 +22,10 @@ static tc_status options_check(const tc_complex_options *o) {
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no points, or no samples at them");
     if (o->tetrahedron_count && !o->tetrahedra)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no tetrahedra");
+    if (o->tetrahedron_count && !o->point_count)
+        return (tc_status)fail(TC_ERROR_DATA, "the complex has tetrahedra and no points");
+    if ((uintptr_t)o->points % sizeof(float) || (uintptr_t)o->tetrahedra % sizeof(uint32_t))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "points or tetrahedra are not aligned to their type");
     if ((uintptr_t)o->samples % tc_type_bytes(o->type))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
                                tc_type_name(o->type));
@@ -86,7 +90,7 @@ tc_status complex_point_fail(const complex_grid *c) {
     return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the complex was made");
 }
 
-static tc_status request_check(const tc_extract_options *options) {
+tc_status complex_request_check(const tc_extract_options *options) {
     if (options->normals)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "normals are made on structured grids only, not on complexes");
     if (options->method != TC_METHOD_TETRA)
@@ -99,14 +103,14 @@ static bool surface_possible(const tc_grid *grid, double isovalue) {
 }
 
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
-    tc_status status = request_check(options);
+    tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
     return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_count(grid, options->isovalue, counts)
                                                              : reference_complex_count(grid, options->isovalue, counts);
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
-    tc_status status = request_check(options);
+    tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
     return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_extract(grid, options->isovalue, mesh)
                                                              : reference_complex_extract(grid, options->isovalue, mesh);

@@ -146,7 +146,9 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
         status = device_adopt(context, o->cl_context, o->cl_queue);
         if (!status) status = device_describe(context->device, &context->info);
     } else if (!status) {
+        opencl_lock();
         status = device_open(context, o->device);
+        opencl_unlock();
     }
     context->in_place = context->info.shares_host_memory && !o->own_buffers;
     return status ? status : tuning_choose(context);
@@ -189,9 +191,11 @@ void tc_context_destroy(tc_context *context) {
         workspace_release(context);
         programs_release(context);
     }
+    opencl_lock();
     if (context->copies) cl->ReleaseCommandQueue(context->copies);
     if (context->queue) cl->ReleaseCommandQueue(context->queue);
     if (context->context) cl->ReleaseContext(context->context);
+    opencl_unlock();
     free(context);
 }
 

@@ -19,10 +19,10 @@ typedef struct point_check {
     int64_t count;
     atomic_llong next;    /* chunk */
     atomic_llong fault;   /* the first point of a present sample that is not usable, or count */
-    atomic_bool excluded; /* some point is not usable */
+    atomic_bool excluded; /* some point is not usable, or some sample missing */
 } point_check;
 
-static bool floats_usable(const float *at, int64_t count) {
+static uint32_t floats_most(const float *at, int64_t count) {
     uint32_t most = 0;
     for (int64_t n = 0; n < count; n++) {
         uint32_t bits;
@@ -30,8 +30,12 @@ static bool floats_usable(const float *at, int64_t count) {
         bits &= 0x7fffffff;
         most = most > bits ? most : bits;
     }
-    return most < 0x7f000000;
+    return most;
 }
+
+static bool floats_usable(const float *at, int64_t count) { return floats_most(at, count) < 0x7f000000; }
+
+static bool floats_finite(const float *at, int64_t count) { return floats_most(at, count) < 0x7f800000; }
 
 static bool point_usable(const tc_grid *grid, int64_t n) { return floats_usable(grid->points + 3 * n, 3); }
 
@@ -42,7 +46,18 @@ static bool sample_missing(const tc_grid *grid, int64_t n) {
     return !isfinite(value) || (grid->has_nodata && value == grid->nodata);
 }
 
+/* Blanked samples are not looked for. */
+static bool chunk_misses(const tc_grid *grid, int64_t first, int64_t end) {
+    bool misses = false;
+    if (!grid->samples || !(grid->has_nodata || grid->type == TC_F32 || grid->type == TC_F64)) return false;
+    if (grid->type == TC_F32 && !grid->has_nodata)
+        return !floats_finite((const float *)grid->samples + first, end - first);
+    for (int64_t n = first; n < end && !misses; n++) misses = sample_missing(grid, n);
+    return misses;
+}
+
 static void chunk_check(point_check *c, int64_t first, int64_t end) {
+    if (!atomic_load(&c->excluded) && chunk_misses(c->grid, first, end)) atomic_store(&c->excluded, true);
     if (floats_usable(c->grid->points + 3 * first, 3 * (end - first))) return;
     atomic_store(&c->excluded, true);
     while (first < end && (point_usable(c->grid, first) || sample_missing(c->grid, first))) first++;
@@ -57,7 +72,7 @@ static void points_check_work(void *shared) {
         chunk_check(c, first, first + CHUNK_POINTS < c->count ? first + CHUNK_POINTS : c->count);
 }
 
-/* *excluded: some points are not usable, all of missing samples. */
+/* *excluded: some samples are missing; only their points may be not usable. */
 static tc_status points_check(const tc_grid *grid, bool *excluded) {
     point_check c = {.grid = grid, .count = grid_sample_count(grid)};
     atomic_init(&c.fault, c.count);
@@ -145,8 +160,7 @@ static void cube_planes_release(cube_planes *planes) {
 
 static void samples_judge(const tc_grid *grid, int64_t z, uint8_t *out) {
     int64_t plane = grid->dims[0] * grid->dims[1], first = z * plane;
-    for (int64_t n = 0; n < plane; n++)
-        out[n] = (grid->blanked_samples && grid->blanked_samples[first + n]) || !point_usable(grid, first + n);
+    for (int64_t n = 0; n < plane; n++) out[n] = sample_missing(grid, first + n) || !point_usable(grid, first + n);
 }
 
 /* The cubes between two planes of samples; none where z is past the last ones. */

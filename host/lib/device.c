@@ -167,7 +167,9 @@ tc_status tc_device_count(int *count) {
     device_list list;
     if (!count) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_count needs a place for the count");
     *count = 0;
+    opencl_lock();
     tc_status status = device_list_make(&list);
+    opencl_unlock();
     if (!status) *count = list.count;
     return status;
 }
@@ -176,12 +178,16 @@ tc_status tc_device_get(int index, tc_device_info *info) {
     device_list list;
     if (!info || info->struct_size < sizeof *info)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_get needs info with its struct_size set");
+    opencl_lock();
     tc_status status = device_list_make(&list);
-    if (status) return status;
-    if (index < 0 || index >= list.count)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "device %d: this machine has devices 0 to %d", index, list.count - 1);
-    status = device_describe(list.devices[index].device, info);
-    info->platform_index = list.devices[index].platform_index;
-    info->device_index = list.devices[index].device_index;
+    if (!status && (index < 0 || index >= list.count))
+        status =
+            (tc_status)fail(TC_ERROR_ARGUMENT, "device %d: this machine has devices 0 to %d", index, list.count - 1);
+    if (!status) {
+        status = device_describe(list.devices[index].device, info);
+        info->platform_index = list.devices[index].platform_index;
+        info->device_index = list.devices[index].device_index;
+    }
+    opencl_unlock();
     return status;
 }

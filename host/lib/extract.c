@@ -44,7 +44,7 @@ void tc_grid_destroy(tc_grid *grid) {
     free(grid);
 }
 
-static tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {
+tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {
     tc_extract_options_init(o);
     tc_status status = options_take(o, sizeof *o, options, "extract options");
     if (!status && !isfinite(o->isovalue))

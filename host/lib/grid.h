@@ -35,6 +35,9 @@ struct tc_grid {
     struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
+/* The caller's options, complete and checked. */
+tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
+
 /* Checks the options and fills *grid but for context and device. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 

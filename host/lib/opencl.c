@@ -39,6 +39,12 @@ tc_status opencl_load(void) {
                            "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
 }
 
+static pthread_mutex_t devices_lock = PTHREAD_MUTEX_INITIALIZER;
+
+void opencl_lock(void) { pthread_mutex_lock(&devices_lock); }
+
+void opencl_unlock(void) { pthread_mutex_unlock(&devices_lock); }
+
 static const char *error_name(cl_int error) {
     switch (error) {
 #define NAME(code)                                                                                                     \

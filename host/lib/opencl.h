@@ -59,6 +59,11 @@ extern const struct opencl_functions *cl;
 /* Loads the ICD loader once per process. TC_ERROR_DEVICE, with what to install, where there is none. */
 tc_status opencl_load(void);
 
+/* Held where drivers are woken, and where a context's last reference may go: PoCL 3.1 puts its devices to sleep with
+ * the last context, and crashes or has no devices where another thread asks for them meanwhile. */
+void opencl_lock(void);
+void opencl_unlock(void);
+
 /* Records "WHAT failed: CL_...": TC_ERROR_MEMORY for allocation failures, else TC_ERROR_DEVICE. */
 tc_status opencl_fail(const char *what, cl_int error);
 
