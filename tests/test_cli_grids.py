@@ -23,7 +23,7 @@ CONVERTED_KEYS = {"input", "output", "blocks", "points", "cells", "tetrahedra", 
                   "blanked_cells", "inverted_cells", "folded_cells", "fields", "total_ms"}
 VTK_TYPES = {"u8": "UInt8", "i16": "Int16", "i32": "Int32", "f32": "Float32", "f64": "Float64"}
 HEXAHEDRON_ORDER = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-HEXAHEDRON, TRIANGLE, WEDGE = 12, 5, 13
+HEXAHEDRON, TETRAHEDRON, TRIANGLE, WEDGE = 12, 10, 5, 13
 
 
 def lattice(dims, first=(0, 0, 0)):
@@ -468,6 +468,19 @@ class Unstructured(GridCase):
         self.assertEqual(surface["hash"], same["hash"])
         self.assertRegex(self.expect(0, "extract", grid, "--field", "bump", "--iso", "0.5", "--nodata", "-99",
                                      "--engine", "reference").stderr, "8 cells are left out")
+
+    def test_points_that_are_nowhere(self):
+        points = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (math.nan, math.inf, 0.0)]
+        fields = [("f", "f32", [0.0, 1.0, 2.0, 3.0, 4.0])]
+        for nowhere in ("nan", "inf", "-inf", "2e38"):
+            points[3] = (0.0, float(nowhere), 1.0)
+            grid = self.write("a.vtu", vtu_text(points, [[0, 1, 2, 3]], [TETRAHEDRON], fields))
+            for command in (["extract", grid, "--iso", "0.5", "--engine", "reference"],
+                            ["tetrahedralize", grid, "-o", self.path("t.vtu")]):
+                self.refuses(4, *command, says="point 3 of cell 0.*finite")
+        points[3] = (0.0, 0.0, 1.0)
+        grid = self.write("a.vtu", vtu_text(points, [[0, 1, 2, 3]], [TETRAHEDRON], fields))
+        self.assertEqual(self.surface(grid, "--iso", "0.5")[1]["triangles"], 1)
 
     def test_nothing_to_contour(self):
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
