@@ -20,10 +20,10 @@ DATA = os.environ.get("TETRACUBES_DATA")
 BLOCK_KEYS = {"kind", "points", "cells", "dims", "first", "cell_types", "bounds", "blanked_points", "blanked_cells",
               "fields"}
 CONVERTED_KEYS = {"input", "output", "blocks", "points", "cells", "tetrahedra", "flat_cells", "curved_cells",
-                  "blanked_cells", "inverted_cells", "folded_cells", "fields", "total_ms"}
+                  "blanked_cells", "inverted_cells", "folded_cells", "folded_faces", "fields", "total_ms"}
 VTK_TYPES = {"u8": "UInt8", "i16": "Int16", "i32": "Int32", "f32": "Float32", "f64": "Float64"}
 HEXAHEDRON_ORDER = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-HEXAHEDRON, TRIANGLE, WEDGE = 12, 5, 13
+HEXAHEDRON, TETRAHEDRON, TRIANGLE, WEDGE = 12, 10, 5, 13
 
 
 def lattice(dims, first=(0, 0, 0)):
@@ -468,6 +468,51 @@ class Unstructured(GridCase):
         self.assertEqual(surface["hash"], same["hash"])
         self.assertRegex(self.expect(0, "extract", grid, "--field", "bump", "--iso", "0.5", "--nodata", "-99",
                                      "--engine", "reference").stderr, "8 cells are left out")
+
+    def test_points_that_are_nowhere(self):
+        points = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (math.nan, math.inf, 0.0)]
+        fields = [("f", "f32", [0.0, 1.0, 2.0, 3.0, 4.0])]
+        for nowhere in ("nan", "inf", "-inf", "2e38"):
+            points[3] = (0.0, float(nowhere), 1.0)
+            grid = self.write("a.vtu", vtu_text(points, [[0, 1, 2, 3]], [TETRAHEDRON], fields))
+            for command in (["extract", grid, "--iso", "0.5", "--engine", "reference"],
+                            ["tetrahedralize", grid, "-o", self.path("t.vtu")]):
+                self.refuses(4, *command, says="point 3 of cell 0.*finite")
+        points[3] = (0.0, 0.0, 1.0)
+        grid = self.write("a.vtu", vtu_text(points, [[0, 1, 2, 3]], [TETRAHEDRON], fields))
+        self.assertEqual(self.surface(grid, "--iso", "0.5")[1]["triangles"], 1)
+
+    def test_folded_faces(self):
+        """Cells that overlap: what they do to the surface is told; misoriented edges they account for are no fault."""
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1), (0.3, 0.3, 2), (0.2, 0.2, -1)]
+        fields = [("f", "f64", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0])]
+        check = ["--iso", "0.5", "--check", "--engine", "reference", "--json", "-o", self.path("a.ply")]
+        for cells, status, faces, edges, says in (
+                ([[0, 1, 2, 3], [0, 1, 2, 5]], 0, 0, (0, 0), None),
+                ([[0, 1, 2, 3], [0, 1, 2, 4]], 0, 1, (1, 0), "crosses 1 faces.*same side; these are"),
+                ([[0, 1, 2, 3], [0, 1, 2, 3]], 0, 4, (3, 0), "crosses 3 faces.*same side; these are"),
+                ([[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 2, 5]], 3, 0, (0, 1), "1 faces of three cells or more")):
+            grid = self.write("a.vtu", vtu_text(points, cells, [TETRAHEDRON] * len(cells), fields))
+            result = self.expect(status, "extract", grid, *check)
+            [surface] = json.loads(result.stdout)["surfaces"]
+            self.assertEqual((surface["misoriented_edges"], surface["nonmanifold_edges"]), edges)
+            self.assertEqual("overlap" in result.stderr, says is not None)
+            if says:
+                self.assertRegex(result.stderr, says)
+            result = self.expect(0, "tetrahedralize", grid, "-o", self.path("t.vtu"), "--json")
+            self.assertEqual(json.loads(result.stdout)["folded_faces"], faces)
+            self.assertEqual("faces are folded" in result.stderr, faces > 0)
+            self.assertEqual("three cells or more" in result.stderr, status == 3)
+            quiet = self.expect(0, "tetrahedralize", grid, "-o", self.path("t.vtu"), "--quiet")
+            self.assertEqual(quiet.stderr, "")
+
+    def test_folded_faces_beside_missing_points(self):
+        """A cell that is left out folds nothing."""
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1), (0.3, 0.3, 2)]
+        grid = self.write("a.vtu", vtu_text(points, [[0, 1, 2, 3], [0, 1, 2, 4]], [TETRAHEDRON] * 2,
+                                            [("f", "f64", [1.0, 0.0, 0.0, 0.0, math.nan])]))
+        _, surface = self.surface(grid, "--iso", "0.5")
+        self.assertEqual((surface["triangles"], surface["misoriented_edges"]), (1, 0))
 
     def test_nothing_to_contour(self):
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]

@@ -6,6 +6,7 @@
 #include "complex.h"
 #include "random.h"
 
+#include <float.h>
 #include <string.h>
 
 static tc_complex cut(const tc_cells *cells, const char *what) {
@@ -305,6 +306,28 @@ static void one_cell_refused(uint8_t type, int64_t count, int64_t odd_point, con
     refused(&cells, TC_ERROR_DATA, word);
 }
 
+/* Corners have to be somewhere; points of cells that are left out, midpoints of curved ones and others need not. */
+static void positions(void) {
+    const float odd[] = {NAN, INFINITY, -INFINITY, 0x1p127f, -FLT_MAX};
+    static const uint8_t quadratic = 24, marks[12] = {[2] = 1};
+    for (size_t n = 0; n < sizeof odd / sizeof *odd; n++) {
+        float points[36] = {0};
+        points[3] = points[7] = points[11] = 1;
+        int64_t connectivity[10] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, offsets[2] = {0, 10};
+        tc_cells cells = {sizeof cells, 12, points, 1, &quadratic, offsets, connectivity, NULL, NULL};
+        points[3 * 11 + n % 3] = points[3 * 9 + n % 3] = odd[n];
+        tc_complex complex = cut(&cells, "odd midpoint");
+        EXPECT(complex.tetrahedron_count == 1, "a midpoint matters");
+        tc_complex_release(&complex);
+        points[6 + n % 3] = odd[n];
+        refused(&cells, TC_ERROR_DATA, "point 2 of cell 0, a quadratic tetrahedron");
+        cells.blanked_points = marks;
+        complex = cut(&cells, "odd corner that is blanked");
+        EXPECT(complex.blanked_cell_count == 1, "a blanked corner matters");
+        tc_complex_release(&complex);
+    }
+}
+
 static void refusals(void) {
     one_cell_refused(42, 8, 3, "polyhedron");
     one_cell_refused(41, 8, 3, "convex point set");
@@ -364,6 +387,7 @@ int main(void) {
     curved_and_flat();
     blanked();
     for (int n = 0; n < 8; n++) grid_check(n & 1, n & 2, n & 4);
+    positions();
     refusals();
     return EXPECT_DONE();
 }

@@ -305,7 +305,7 @@ TC_API tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, cons
 typedef struct tc_cells {
     size_t struct_size; /* set by the caller: sizeof(tc_cells) */
     uint64_t point_count;
-    const float *points; /* x, y, z each */
+    const float *points; /* x, y, z each; at the corners of cells that are not left out finite and below 2^127 */
     uint64_t cell_count;
     const uint8_t *types;
     const int64_t *offsets; /* cell_count + 1: where in `connectivity` the points of a cell begin */
@@ -331,8 +331,9 @@ typedef struct tc_complex {
 
 /* Cuts cells into tetrahedra: the diagonal of every quadrilateral face goes through its smallest point number, so that
  * neighbours agree whatever their types (Dompierre, Labbe, Vallet, Camarero 1999). Tetrahedra, hexahedra, voxels,
- * wedges, pyramids, and their quadratic kin by their corners. TC_ERROR_DATA for points out of range, cells with a wrong
- * number of points and 3D types that are none of these; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The
+ * wedges, pyramids, and their quadratic kin by their corners. TC_ERROR_DATA for points out of range, coordinates of
+ * a corner that are not finite or 2^127 and beyond, cells with a wrong number of points and 3D types that are none of
+ * these; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The
  * complex, zeroed on failure, is freed by tc_complex_release. */
 TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex);
 

@@ -10,8 +10,6 @@
 
 enum { CHUNK_POINTS = 1 << 16 };
 
-static bool coordinate_usable(float value) { return fabsf(value) < 0x1p127f; }
-
 /* ---------------------------------------------------------------------------------------------------------- checks */
 
 typedef struct point_check {

@@ -13,6 +13,11 @@
 
 #include "grid.h"
 
+#include <math.h>
+
+/* Finite, and so are differences. */
+static inline bool coordinate_usable(float value) { return fabsf(value) < 0x1p127f; }
+
 /* Sets grid->mirrored. TC_ERROR_DATA for coordinates of a present sample that are not finite, or so large that their
  * difference may not be: 2^127 and beyond. Everything but the device is described already. */
 tc_status coordinates_take(tc_grid *grid);

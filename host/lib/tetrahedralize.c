@@ -5,6 +5,7 @@
 #include "tetrahedralize.h"
 
 #include "cell_split.h"
+#include "coordinates.h"
 #include "failure.h"
 
 #include <string.h>
@@ -24,6 +25,15 @@ static bool cell_blanked(const tc_cells *cells, uint64_t c, const int64_t *point
     return false;
 }
 
+/* The first of the cell's corners whose coordinates are not usable, or count. */
+static int unusable_corner(const tc_cells *cells, const uint32_t corners[], int count) {
+    for (int n = 0; n < count; n++) {
+        const float *p = cells->points + 3 * (uint64_t)corners[n];
+        if (!coordinate_usable(p[0]) || !coordinate_usable(p[1]) || !coordinate_usable(p[2])) return n;
+    }
+    return count;
+}
+
 /* Looks at one cell; its corners are there where it is good. */
 static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tally, uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
@@ -41,8 +51,9 @@ static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tal
         tally->blanked++;
         return CELL_SKIPPED;
     }
-    tally->curved += type->curved;
     for (int n = 0; n < type->corner_count; n++) corners[n] = (uint32_t)points[type->corners[n]];
+    if (unusable_corner(cells, corners, type->corner_count) < type->corner_count) return CELL_BAD;
+    tally->curved += type->curved;
     return CELL_GOOD;
 }
 
@@ -81,7 +92,21 @@ static bool cells_cut(const void *source, uint64_t first, uint64_t end, tetrahed
 
 /* ------------------------------------------------------------------------------------------------------------ check */
 
-static tc_status cell_refuse(const tc_cells *cells, uint64_t c) {
+/* A cell whose points are all there. */
+static tc_status position_refuse(const tc_cells *cells, uint64_t c, const uint32_t corners[]) {
+    const cell_type *type = cell_type_get(cells->types[c]);
+    uint32_t point = corners[unusable_corner(cells, corners, type->corner_count)];
+    const float *p = cells->points + 3 * (uint64_t)point;
+    return (tc_status)fail(TC_ERROR_DATA,
+                           "point %lu of cell %llu, a %s, is at %g, %g, %g: coordinates have to be finite and below "
+                           "1.7e38 but for points that no cell uses; blank the point or the cell, if there is nothing "
+                           "there",
+                           (unsigned long)point, (unsigned long long)c, type->name, (double)p[0], (double)p[1],
+                           (double)p[2]);
+}
+
+/* corners: as cell_look left them. */
+static tc_status cell_refuse(const tc_cells *cells, uint64_t c, const uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
     const char *name = type->name ? type->name : "unknown";
     unsigned long long number = c;
@@ -97,6 +122,8 @@ static tc_status cell_refuse(const tc_cells *cells, uint64_t c) {
     if (count < type->corner_count || (type->point_count && count != type->point_count))
         return (tc_status)fail(TC_ERROR_DATA, "cell %llu, a %s, has %lld points, not %d", number, name, count,
                                type->point_count ? type->point_count : type->corner_count);
+    if (points_in_range(cells, cells->connectivity + cells->offsets[c], count))
+        return position_refuse(cells, c, corners);
     return (tc_status)fail(TC_ERROR_DATA, "cell %llu, a %s, has a point that is not among the %llu of the grid", number,
                            name, (unsigned long long)cells->point_count);
 }
@@ -106,7 +133,7 @@ static tc_status bad_cell_refuse(const tc_cells *cells, uint64_t c) {
     uint32_t corners[CELL_CORNERS_MAX];
     cell_tally tally = {0};
     while (cell_look(cells, c, &tally, corners) != CELL_BAD) c++;
-    return cell_refuse(cells, c);
+    return cell_refuse(cells, c, corners);
 }
 
 static tc_status cells_check(const tc_cells *cells) {

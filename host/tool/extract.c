@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "faces.h"
 #include "input.h"
 #include "mesh_check.h"
 #include "progress.h"
@@ -175,6 +176,27 @@ static int verify_surface(job *j, const tc_extract_options *how, const tc_mesh_d
     return 0;
 }
 
+/* A surface can be no better than its input. Where each misoriented edge lies in a face whose two cells are on one side
+ * of it, and nothing else is wrong, *good is set. */
+static int explain_faults(const job *j, const surface_report *s, int *good) {
+    const mesh_topology *t = &s->topology;
+    complex_faces crossed;
+    int status = blocks_check_faces(&j->blocks, &s->iso->value, &crossed);
+    if (status) return status;
+    int is_explained = crossed.folded_faces && crossed.folded_faces == t->misoriented_edges;
+    *good = is_explained && !t->nonmanifold_edges && !t->orphan_vertices && !t->invalid_triangles;
+    if (*good && j->o->quiet) return 0;
+    if (crossed.folded_faces)
+        message("isovalue %s: cells of the input overlap or have no volume: the surface crosses %llu faces that have "
+                "both cells on the same side%s",
+                s->iso->text, (unsigned long long)crossed.folded_faces,
+                is_explained ? "; these are its misoriented edges" : "");
+    if (crossed.crowded_faces)
+        message("isovalue %s: cells of the input overlap: the surface crosses %llu faces of three cells or more",
+                s->iso->text, (unsigned long long)crossed.crowded_faces);
+    return 0;
+}
+
 /* Sets *good. */
 static int check_surface(const job *j, const tc_mesh_data *m, surface_report *s, int *good) {
     const mesh_topology *t = &s->topology;
@@ -183,6 +205,7 @@ static int check_surface(const job *j, const tc_mesh_data *m, surface_report *s,
     s->has_topology = 1;
     *good = !t->nonmanifold_edges && !t->misoriented_edges && !t->orphan_vertices && !t->invalid_triangles &&
             (!t->nonmanifold_vertices || blocks_may_touch(&j->blocks));
+    if ((t->misoriented_edges || t->nonmanifold_edges) && (status = explain_faults(j, s, good))) return status;
     if (!*good)
         message("isovalue %s: check failed: %llu non-manifold edges, %llu non-manifold vertices, %llu misoriented "
                 "edges, %llu unused vertices, %llu invalid triangles",

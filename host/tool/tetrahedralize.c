@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "faces.h"
 #include "input.h"
 #include "mesh_write.h"
 #include "progress.h"
@@ -21,6 +22,7 @@ typedef struct conversion {
     dataset data; /* owns what is joined, too */
     scalar field;
     block_list blocks;
+    complex_faces faces;
     complex_file file;
     uint64_t flat, curved, blanked, inverted, folded;
     double total_ms;
@@ -53,6 +55,8 @@ static int cut(conversion *c) {
     if (!status && c->file.point_count > UINT32_MAX)
         return fail(STATUS_FAILED, "%s: %" PRIu64 " points are more than the 2^32 - 1 that a complex numbers",
                     c->o->operands[0], c->file.point_count);
+    if (!status) status = blocks_check_faces(&c->blocks, NULL, &c->faces);
+    if (!status && !c->o->quiet) faces_tell(&c->faces);
     return status ? status : progress_status();
 }
 
@@ -174,6 +178,7 @@ static int print_json(const conversion *c) {
     json_object_set_new(object, "blanked_cells", count_json(c->blanked));
     json_object_set_new(object, "inverted_cells", count_json(c->inverted));
     json_object_set_new(object, "folded_cells", count_json(c->folded));
+    json_object_set_new(object, "folded_faces", count_json(c->faces.folded_faces));
     json_object_set_new(object, "fields", fields);
     json_object_set_new(object, "total_ms", report_real(c->total_ms));
     return report_print(object, 15);

@@ -1,0 +1,19 @@
+/*
+ * faces.h - how the cells of unstructured blocks meet: checked on the tetrahedra that they are cut into
+ *
+ * Cells are turned each by its own volume, so that neighbours which overlap run against each other. Structured blocks
+ * are turned whole: their tetrahedra fit, folded or not.
+ */
+#ifndef FACES_H
+#define FACES_H
+
+#include "blocks.h"
+#include "complex_check.h"
+
+/* Sums over the blocks. isovalue NULL: of all faces; else of those that the surface crosses. */
+int blocks_check_faces(const block_list *list, const double *isovalue, complex_faces *sum);
+
+/* Tells on standard error what is wrong with the faces of all blocks. */
+void faces_tell(const complex_faces *faces);
+
+#endif
