@@ -206,6 +206,13 @@ class Choice(GridCase):
                      self.path("a.ply"), says="twice")
         self.refuses(2, "info", *self.inputs, "--field", "no", says="density")
 
+    def test_frames(self):
+        self.needs_xml()
+        image = self.write("f.vti", vti_text((2, 2, 2), [("f", "f32", [float(n) for n in range(8)])]))
+        for inputs in (self.inputs, self.inputs[:1], [image]):
+            self.refuses(4, "info", *inputs, "--frame", "1", says="has one frame; leave out --frame")
+            self.expect(0, "info", *inputs, "--frame", "0")
+
     def test_output_is_an_input(self):
         os.rename(self.inputs[1], self.path("q.ply"))
         self.refuses(2, "extract", self.inputs[0], self.path("q.ply"), "--iso", "1", "--field", "density", "-o",
@@ -421,6 +428,18 @@ class Blocks(GridCase):
             self.assertAlmostEqual(vertex["momentum_x"], vertex["x"], places=4)
             self.assertEqual(vertex["energy"], 2.5)
 
+    def test_carry_where_the_surface_meets_samples(self):
+        """Where a vertex lies on a sample, what is missing at the other end of the edge plays no part."""
+        self.needs_xml()
+        points = lattice((3, 2, 2))
+        volume = self.write("a.vti", vti_text((3, 2, 2), [
+            ("f", "f32", [float(p[0] == 1) for p in points]),
+            ("k", "f32", [5.0 if p[0] == 1 else math.nan for p in points])]))
+        self.surface(volume, "--field", "f", "--iso", "1", "--carry", "k", "-o", self.path("a.ply"))
+        vertices, _ = read_ply(self.path("a.ply"))
+        self.assertGreater(len(vertices), 7)
+        self.assertEqual({vertex["k"] for vertex in vertices}, {5.0})
+
     def test_carry_to_separate_files(self):
         self.expect(0, "extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine", "reference",
                     "--carry", "momentum-x", "--blocks", "separate", "-o", self.path("a.ply"))
@@ -446,6 +465,13 @@ class Unstructured(GridCase):
         self.assertEqual(surface["euler_characteristic"], 2 if not surface["boundary_edges"] else 1)
         self.assertAlmostEqual(surface["volume"], 4 / 3 * math.pi * 9.87 ** 1.5, delta=12)
         self.assertGreater(surface["volume"], 0)
+
+    def test_text_counts_tetrahedra(self):
+        how = ["--iso", "0.5", "--engine", "reference"]
+        text = self.expect(0, "extract", self.write_hexahedra("a.vtu"), "--field", "bump", *how).stdout
+        self.assertRegex(text, r"triangles \(.*\), through \d+ tetrahedra\n")
+        image = self.write("a.vti", vti_text((2, 2, 2), [("f", "f32", [0.0] + 7 * [1.0])]))
+        self.assertRegex(self.expect(0, "extract", image, *how).stdout, "through 1 cells\n")
 
     def test_options_that_need_a_structured_grid(self):
         grid = self.write_hexahedra("a.vtu")

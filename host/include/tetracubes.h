@@ -239,7 +239,7 @@ typedef struct tc_counts {
     size_t struct_size;
     uint64_t vertex_count;
     uint64_t triangle_count;
-    uint64_t active_cell_count; /* cubes that the surface passes through */
+    uint64_t active_cell_count; /* cubes, of complexes tetrahedra, that the surface passes through */
     uint64_t mesh_bytes;        /* of positions and triangles */
     double classify_ms;
 } tc_counts;
@@ -292,8 +292,9 @@ typedef struct tc_field {
 } tc_field;
 
 /* Carries a field onto the surface: out[vertex][component], a + t (b - a) in double with the t that placed the vertex,
- * in the order in which tc_extract makes vertices. out has room for value_count floats, which must be what that takes
- * (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread, whatever the engine; not for grids with cl_samples. */
+ * a or b itself where t is 0 or 1, whatever the other is, in the order in which tc_extract makes vertices. out has room
+ * for value_count floats, which must be what that takes (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread,
+ * whatever the engine; not for grids with cl_samples. */
 TC_API tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
                           uint64_t value_count);
 
@@ -356,8 +357,8 @@ TC_API void tc_complex_options_init(tc_complex_options *options);
  * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
  * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. Complexes are
  * not cut into slabs: TC_ERROR_MEMORY where the device cannot hold one, TC_ERROR_LIMIT for more than 2^28 tetrahedra;
- * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there is
- * TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
+ * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there
+ * is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
 TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */
