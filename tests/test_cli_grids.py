@@ -23,7 +23,7 @@ CONVERTED_KEYS = {"input", "output", "blocks", "points", "cells", "tetrahedra", 
                   "blanked_cells", "inverted_cells", "folded_cells", "fields", "total_ms"}
 VTK_TYPES = {"u8": "UInt8", "i16": "Int16", "i32": "Int32", "f32": "Float32", "f64": "Float64"}
 HEXAHEDRON_ORDER = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-HEXAHEDRON, TRIANGLE, WEDGE = 12, 5, 13
+HEXAHEDRON, TRIANGLE, WEDGE, TETRAHEDRON = 12, 5, 13, 10
 
 
 def lattice(dims, first=(0, 0, 0)):
@@ -249,6 +249,64 @@ class Choice(GridCase):
         self.assertGreater(of_cells["triangles"], 10)
         quiet = self.expect(0, "extract", volume, "--iso", "4.1", "--engine", "reference", "--quiet")
         self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+
+
+    def test_points_and_cells_of_one_name(self):
+        self.needs_xml()
+        of_points = [float(p[0]) for p in lattice((4, 3, 3))]
+        of_cells = [float(p[1]) for p in lattice((3, 2, 2))]
+        both = self.write("b.vti", vti_text((4, 3, 3), [("t", "f32", of_points), ("u", "f32", of_points)],
+                                            [("t", "f32", of_cells)]))
+        how = ["--iso", "0.3"]
+        for name, axis in (("t", 0), ("point:t", 0), ("cell:t", 1)):
+            _, surface = self.surface(both, "--field", name, *how)
+            low, high = surface["bounds"]
+            self.assertEqual([a == b for a, b in zip(low, high)], [n == axis for n in range(3)], name)
+        result = self.refuses(2, "extract", both, "--field", "cell:u", *how, says="'cell:u'")
+        self.assertIn("t (point), cell:t (cell), u (point)", result.stderr)
+        self.surface(both, "--field", "u", *how, "--carry", "cell:t,t", "-o", self.path("a.ply"))
+        vertices, _ = read_ply(self.path("a.ply"))
+        for vertex in vertices:
+            self.assertAlmostEqual(vertex["t"], 0.3, places=6)
+            self.assertAlmostEqual(vertex["cell_t"], vertex["y"] / 2, places=6)
+        named = self.write("n.vti", vti_text((4, 3, 3), [("cell:t", "f32", of_points)], [("t", "f32", of_cells)]))
+        _, surface = self.surface(named, "--field", "cell:t", *how)
+        self.assertEqual(surface["bounds"][0][0], surface["bounds"][1][0])
+
+
+class Pieces(GridCase):
+    """Pieces of one file know nothing of each other, and that is said once."""
+    pattern = "pieces may not meet"
+
+    def setUp(self):
+        super().setUp()
+        self.needs_xml()
+
+    def notices(self, path, *fields):
+        result = self.expect(0, "extract", path, "--iso", "1.5", "--engine", "reference", *fields)
+        return result.stderr.count(self.pattern)
+
+    def pieces(self, text):
+        """The file with its piece twice."""
+        begin, end = text.index("<Piece"), text.index("</Piece>") + len("</Piece>")
+        return text[:end] + text[begin:end] + text[end:]
+
+    def test_cells_averaged(self):
+        text = vti_text((3, 3, 3), [("p", "f32", [float(p[0]) for p in lattice((3, 3, 3))])],
+                        [("c", "f32", [float(n) for n in range(8)])])
+        one, two = self.write("1.vti", text), self.write("2.vti", self.pieces(text))
+        self.assertEqual([self.notices(one, "--field", "c"), self.notices(two, "--field", "p")], [0, 0])
+        self.assertEqual(self.notices(two, "--field", "c"), 1)
+
+    def test_cells_cut(self):
+        points = lattice((3, 3, 3))
+        fields = [("x", "f32", [float(p[0]) for p in points])]
+        cells = hexahedra((3, 3, 3))
+        text = vtu_text(points, cells, [HEXAHEDRON] * len(cells), fields)
+        one, two = self.write("1.vtu", text), self.write("2.vtu", self.pieces(text))
+        self.assertEqual([self.notices(one), self.notices(two)], [0, 1])
+        tetrahedron = vtu_text(points, [[0, 2, 6, 18]], [TETRAHEDRON], fields)
+        self.assertEqual(self.notices(self.write("t.vtu", self.pieces(tetrahedron))), 0)
 
 
 class Structured(GridCase):
