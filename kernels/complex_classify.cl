@@ -34,11 +34,11 @@ inline_always bool cluster_mixed(tile_tools k, uint n, cluster_arrays a, bool re
 /* Counts a cluster for the whole group's sums *running; none: the work-item has no cluster. */
 inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a, bool recount, uint2 *running,
                                cluster_sums *sums) {
-    cluster_report report = {0, 0, 0};
+    cluster_report report = {0, 0, 0, 0};
     if (!none) report = cluster_count(k.s, k.c, n, a.in);
-    uint2 before = group_prefix((uint2)((uint)popcount(report.active), report.triangles), running, k.sums);
+    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, k.sums);
     if (recount || !report.active) return;
-    cluster_state state = {report.active, before.x, before.y};
+    cluster_state state = {report.patterns, before.x, before.y};
     a.clusters[n] = state;
     a.active[atomic_inc(&a.head[HEAD_ACTIVE_CLUSTERS])] = n;
     sums->crossed += report.edges;
@@ -46,11 +46,25 @@ inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a
 
 #if WORK_ITEMS == 1
 
+/* As range_sign() of ranges[0] to [15] is SIGN_MIXED, a bit each. */
+inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges) {
+    uint16 first = vload16(0, (global const uint *)ranges), second = vload16(1, (global const uint *)ranges);
+    uint16 low = (uint16)(first.even, second.even), high = (uint16)(first.odd, second.odd);
+    int16 mixed = (low < s->key_inside) & (high >= s->key_outside);
+#if FLOATING
+    mixed |= (high >= KEY_INFINITY) | (low <= ~KEY_INFINITY);
+#endif
+    return mask_pack(convert_char16(mixed));
+}
+
 /* Bit m: cluster first + m is below end and mixed by its range, which is known; its tetrahedra are asked for. */
 inline_always ulong mixed_prefetch(tile_tools k, uint first, uint end, cluster_arrays a) {
     ulong mixed = 0;
-    for (uint m = 0; m < 64 && first + m < end; m++)
-        mixed |= (ulong)(range_sign(k.s, a.ranges[first + m]) == SIGN_MIXED) << m;
+    if (first + 64 <= end)
+        for (uint m = 0; m < 64; m += 16) mixed |= (ulong)ranges_mixed(k.s, a.ranges + first + m) << m;
+    else
+        for (uint m = 0; first + m < end; m++)
+            mixed |= (ulong)(range_sign(k.s, a.ranges[first + m]) == SIGN_MIXED) << m;
     for (ulong rest = mixed; rest; rest &= rest - 1) {
         global const uint *points = a.in.tetrahedra + (ulong)CLUSTER_POINTS * (first + lowest_bit(rest));
         for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
@@ -141,46 +155,54 @@ kernel void complex_classify(slab s, complex_job c, global const BITS *samples, 
 }
 
 /* The active tetrahedra of one cluster, in order. */
-inline_always void cluster_list(const slab *s, const complex_job *c, uint n, complex_arrays in,
+inline_always void cluster_list(const complex_job *c, uint n, global const uint *tetrahedra,
                                 global const cluster_state *clusters, global const uint *tiles,
                                 global const uchar *cases, global active_tetrahedron *out) {
     cluster_state cluster = clusters[n];
     uint tile = n / c->tile_clusters;
     uint place = tile_before(tiles, tile, TILE_VERTICES) + cluster.active_before;
     uint triangle = tile_before(tiles, tile, TILE_TRIANGLES) + cluster.triangles_before;
-    for (ulong rest = cluster.active; rest; rest &= rest - 1) {
-        uint number = n * CLUSTER_TETRAHEDRA + lowest_bit(rest);
-        uint4 points = vload4(number, in.tetrahedra);
-        active_tetrahedron t = {{points.x, points.y, points.z, points.w}, 0, triangle, 0, 0};
-        for (uint v = 0; v < 4; v++)
-            t.pattern |= (uint)((BITS)(in.samples[t.points[v]] - (BITS)s->inside_low) <= (BITS)s->inside_span) << v;
+    for (ulong rest = nibbles_any(cluster.patterns); rest; rest &= rest - 1) {
+        uint bit = lowest_bit(rest), pattern = (uint)(cluster.patterns >> bit) & 15;
+        uint4 points = vload4(n * CLUSTER_TETRAHEDRA + bit / 4, tetrahedra);
+        active_tetrahedron t = {{points.x, points.y, points.z, points.w}, pattern, triangle, 0, 0};
         out[place++] = t;
-        triangle += cases[CASE_BYTES * t.pattern + CASE_TRIANGLES];
+        triangle += cases[CASE_BYTES * pattern + CASE_TRIANGLES];
     }
 }
 
 /* Those of its tetrahedra that will be read, four to a cache line. */
-inline_always void active_prefetch(global const cluster_state *clusters, uint n, complex_arrays in) {
-    ulong active = clusters[n].active;
-    for (uint m = 0; m < CLUSTER_POINTS; m += 16, active >>= 4)
-        if (active & 15) line_prefetch(in.tetrahedra + (ulong)CLUSTER_POINTS * n + m);
+inline_always void active_prefetch(global const cluster_state *clusters, uint n, global const uint *tetrahedra) {
+    ulong patterns = clusters[n].patterns;
+    for (uint m = 0; m < CLUSTER_POINTS; m += 16, patterns >>= 16)
+        if (patterns & 0xffff) line_prefetch(tetrahedra + (ulong)CLUSTER_POINTS * n + m);
 }
 
-kernel void complex_list(slab s, complex_job c, global const BITS *samples, global const uint *tetrahedra,
-                         global const cluster_state *clusters, global const uint *active, global uint *state,
-                         global const uchar *cases, global active_tetrahedron *out) {
+/* The group's part of an array of so many words. */
+inline_always void words_fill(global uint *words, uint count, uint value) {
+    uint part = count / (uint)get_num_groups(0) + 1, first = min(part * (uint)get_group_id(0), count);
+    uint end = first + min(part, count - first);
+    for (uint n = first + (uint)get_local_id(0); n < end; n += WORK_ITEMS) words[n] = value;
+}
+
+/* table and tiles are cleared for the kernels that follow. */
+kernel void complex_list(complex_job c, global const uint *tetrahedra, global const cluster_state *clusters,
+                         global const uint *active, global uint *state, global const uchar *cases,
+                         global active_tetrahedron *out, global uint *table, global uint *tiles) {
     local uint shared[4];
-    complex_arrays in = {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset};
     const uint count = state[HEAD_ACTIVE_CLUSTERS], at_once = 64;
     uint first = 0;
+    tetrahedra += c.tetrahedron_offset;
+    words_fill(table, c.table_mask + 1, EDGE_NONE);
+    words_fill(tiles, TILE_WORDS * c.active_tiles, 0);
     while (first < count) {
         first = at_once * ticket_take(&state[HEAD_TICKETS + KERNEL_LIST], shared);
         for (uint start = 0; start < at_once; start += WORK_ITEMS) {
             uint n = start + (uint)get_local_id(0);
-            if (WORK_ITEMS == 1 && first + n + 2 < count) active_prefetch(clusters, active[first + n + 2], in);
+            if (WORK_ITEMS == 1 && first + n + 2 < count) active_prefetch(clusters, active[first + n + 2], tetrahedra);
             if (WORK_ITEMS == 1 && first + n + 4 < count) line_prefetch(clusters + active[first + n + 4]);
             if (n < at_once && first + n < count)
-                cluster_list(&s, &c, active[first + n], in, clusters, state + HEAD_WORDS, cases, out);
+                cluster_list(&c, active[first + n], tetrahedra, clusters, state + HEAD_WORDS, cases, out);
         }
     }
 }

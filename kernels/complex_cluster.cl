@@ -1,7 +1,7 @@
 /*
  * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
  *
- * The samples of four tetrahedra make a vector; 64 bits hold the patterns of 16.
+ * The samples of four tetrahedra make a vector.
  */
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 
@@ -12,8 +12,8 @@ typedef struct complex_arrays {
 } complex_arrays;
 
 typedef struct cluster_report {
-    ulong active;
-    uint triangles, edges;
+    ulong patterns;
+    uint active, triangles, edges;
 } cluster_report;
 
 inline_always uint cluster_size(const complex_job *c, uint n) {
@@ -25,12 +25,9 @@ inline_always bool cluster_valid(const complex_job *c, uint n, global const uint
     if (count == CLUSTER_POINTS) {
         uint16 most = 0;
         for (uint m = 0; m < CLUSTER_POINTS / 16; m++) most = max(most, vload16(m, points));
-        uint8 m8 = max(most.lo, most.hi);
-        uint4 m4 = max(m8.lo, m8.hi);
-        largest = max(max(m4.x, m4.y), max(m4.z, m4.w));
-    } else {
-        for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
+        return mask_pack(convert_char16(most >= c->point_count)) == 0;
     }
+    for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
     return largest < c->point_count;
 }
 
@@ -50,6 +47,16 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     return vload16(0, samples);
 }
 
+/* The least key of all and the greatest; side by side, as the least of the complements. */
+inline_always brick_range keys_range(BITS16 low, BITS16 high) {
+    PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);
+    PASTE(BITS, 8) m8 = (PASTE(BITS, 8))(min(low8.lo, low8.hi), min(high8.lo, high8.hi));
+    PASTE(BITS, 4) m4 = min(m8.even, m8.odd);
+    PASTE(BITS, 2) m2 = min(m4.even, m4.odd);
+    brick_range range = {key_upper(m2.x), key_upper((BITS)~m2.y)};
+    return range;
+}
+
 /* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
 inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     brick_range range = {0, 0};
@@ -62,17 +69,7 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
         BITS16 keys = keys16(cluster_samples(c, n, m, in), s);
         low = min(low, keys), high = max(high, keys);
     }
-    range.low = keys_least(low);
-    range.high = keys_most(high);
-    return range;
-}
-
-/* The lowest bits of 16 nibbles, next to each other. */
-inline_always ulong nibbles_pack(ulong x) {
-    x = (x | x >> 3) & 0x0303030303030303ul;
-    x = (x | x >> 6) & 0x000f000f000f000ful;
-    x = (x | x >> 12) & 0x000000ff000000fful;
-    return (x | x >> 24) & 0xfffful;
+    return keys_range(low, high);
 }
 
 /* Any bit of each nibble, in its lowest. */
@@ -80,27 +77,19 @@ inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3)
 
 /* Where the surface passes through, and what it makes there. Of points that are valid. */
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
-    cluster_report report = {0, 0, 0};
-    uint size = cluster_size(c, n);
-    for (uint part = 0; part < CLUSTER_TETRAHEDRA / 16; part++) {
-        ulong inside = 0, missing = 0;
-        for (uint m = 0; m < 4; m++) {
-            BITS16 bits = cluster_samples(c, n, 4 * part + m, in);
-            inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
+    ulong inside = 0, missing = 0;
+    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
+        BITS16 bits = cluster_samples(c, n, m, in);
+        inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
 #if FLOATING
-            missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
+        missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
 #endif
-        }
-        ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
-        odd = (odd ^ odd >> 2) & mixed;
-        if (size < 16 * part + 16) {
-            ulong valid = size > 16 * part ? (1ul << (4 * (size - 16 * part))) - 1 : 0;
-            odd &= valid, mixed &= valid;
-        }
-        uint one = (uint)popcount(odd), all = (uint)popcount(mixed);
-        report.active |= nibbles_pack(mixed) << (16 * part);
-        report.triangles += 2 * all - one;
-        report.edges += 4 * all - one;
     }
+    ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
+    uint size = cluster_size(c, n);
+    if (size < CLUSTER_TETRAHEDRA) mixed &= (1ul << 4 * size) - 1;
+    odd = (odd ^ odd >> 2) & mixed;
+    uint one = (uint)popcount(odd), all = (uint)popcount(mixed);
+    cluster_report report = {inside & mixed * 15, all, 2 * all - one, 4 * all - one};
     return report;
 }

@@ -9,12 +9,12 @@
 #include "slab.h"
 #endif
 
-/* The unit that a range of samples is kept for: so many tetrahedra after each other. */
-enum { CLUSTER_TETRAHEDRA = 32 };
+/* The unit that a range of samples is kept for: so many tetrahedra after each other, whose patterns fill 64 bits. */
+enum { CLUSTER_TETRAHEDRA = 16 };
 
 /* What kernel 1 finds out about a cluster that the surface passes through. */
 typedef struct cluster_state {
-    slab_u64 active;        /* bit n: it passes through tetrahedron n of the cluster */
+    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where it does not pass through n */
     slab_u32 active_before; /* active tetrahedra before it in its tile */
     slab_u32 triangles_before;
 } cluster_state;

@@ -29,7 +29,7 @@ inline_always uint edges_of(uint a, global const active_tetrahedron *active, glo
 #if WORK_ITEMS == 1
 
 /* Edges that a work-item has met lately: neighbours in the list share most. */
-enum { RECENT_EDGES = 256 };
+enum { RECENT_EDGES = 2048 };
 
 typedef struct recent_edges {
     uint2 points[RECENT_EDGES];
@@ -48,7 +48,7 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
         uint place = 4 * a + n, entry = 0;
         if (n < edges) {
             uint2 edge = edge_points(active, place, cases);
-            uint hash = edge_hash(edge), r = hash >> 24;
+            uint hash = edge_hash(edge), r = hash >> 21;
             if (recent->points[r].x == edge.x && recent->points[r].y == edge.y) {
                 entry = EDGE_MET | recent->places[r];
             } else {
@@ -110,13 +110,15 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
                          global uint *state, global uint *table, global uint *entries) {
     local uint shared[4];
     uint number = 0, full = 0;
+#if WORK_ITEMS == 1
+    recent_edges recent;
+    for (uint n = 0; n < RECENT_EDGES; n++) recent.points[n] = 0;
+#endif
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
         uint first = number * c.tile_actives, count = 0;
         if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
 #if WORK_ITEMS == 1
-        recent_edges recent;
-        for (uint n = 0; n < RECENT_EDGES; n++) recent.points[n] = 0;
         for (uint n = 0; n < count + FETCH_AHEAD; n++) {
             if (n < count) edges_hash(&c, first + n, active, cases, table, entries, &recent);
             if (n >= FETCH_AHEAD / 2 && n - FETCH_AHEAD / 2 < count)

@@ -114,7 +114,8 @@ typedef struct tc_context_options {
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
     uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
-                                  0: what the device allows. Less memory means smaller slabs, never other results */
+                                  0: what the device allows. Less memory means smaller slabs of structured grids,
+                                  never other results; complexes are not cut */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These

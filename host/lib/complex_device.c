@@ -179,7 +179,7 @@ static void run_describe(complex_run *r, tc_grid *grid, double isovalue) {
                            .point_count = c->point_count,
                            .tetrahedron_count = c->tetrahedron_count,
                            .cluster_count = cluster_count(c)};
-    const uint32_t tile = o->tile_bricks ? o->tile_bricks : o->work_items == 1 ? 512 : 64;
+    const uint32_t tile = o->tile_bricks ? o->tile_bricks : o->work_items == 1 ? 1024 : 64;
     r->job.tile_clusters = o->work_items > tile ? o->work_items : tile;
     r->job.tile_actives = o->work_items == 1 && !o->tile_bricks ? 1024 : r->job.tile_clusters;
     r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
@@ -228,35 +228,43 @@ static tc_status classify(complex_run *r) {
     return TC_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------------ edges */
+
+/* Clears the table and the tiles of the numbering, too. */
 static tc_status active_list(complex_run *r) {
     complex_buffers *w = r->work;
     tc_status status = work_reserve(r->context, &w->active, sizeof(active_tetrahedron) * (uint64_t)r->job.active_count,
                                     "active tetrahedra");
-    const kernel_argument arguments[] = {ARGUMENT(r->s),
-                                         ARGUMENT(r->job),
-                                         ARGUMENT(r->complex->sample_buffer.memory),
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->complex->tetrahedron_buffer.memory),
                                          ARGUMENT(w->clusters.memory),
                                          ARGUMENT(w->active_clusters.memory),
                                          ARGUMENT(w->state.memory),
                                          ARGUMENT(w->cases.memory),
-                                         ARGUMENT(w->active.memory)};
+                                         ARGUMENT(w->active.memory),
+                                         ARGUMENT(w->table.memory),
+                                         ARGUMENT(w->tiles.memory)};
     return status ? status : kernel_run(r, KERNEL_LIST, "kernel complex_list", arguments, 9);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ edges */
-
-/* Enters the crossed edges into a table of so many entries and numbers their vertices. */
-static tc_status edges_join(complex_run *r, uint64_t entries) {
-    complex_buffers *w = r->work;
-    const uint64_t tile_bytes = 4ull * TILE_WORDS * r->job.active_tiles;
+static tc_status table_reserve(complex_run *r, uint64_t entries) {
     r->job.table_mask = (uint32_t)(entries - 1);
     r->job.probe_limit = entries >= 2ull * r->head[HEAD_CROSSED] ? r->job.table_mask : 256;
-    tc_status status = work_reserve(r->context, &w->table, 4 * entries, "the table of edges");
-    if (!status) status = buffer_fill(r, &w->table, EDGE_NONE, 0, 4 * entries);
-    if (!status) status = buffer_fill(r, &w->state, 0, 4 * (HEAD_TICKETS + KERNEL_JOIN), 8);
-    if (!status) status = buffer_fill(r, &w->state, 0, 4 * HEAD_FULL, 4);
-    if (!status) status = buffer_fill(r, &w->tiles, 0, 0, tile_bytes);
+    return work_reserve(r->context, &r->work->table, 4 * entries, "the table of edges");
+}
+
+/* A larger table, and all else that an attempt with one too small has left behind. */
+static tc_status table_enlarge(complex_run *r, uint64_t entries) {
+    tc_status status = table_reserve(r, entries);
+    if (!status) status = buffer_fill(r, &r->work->table, EDGE_NONE, 0, 4 * entries);
+    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * (HEAD_TICKETS + KERNEL_JOIN), 8);
+    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * HEAD_FULL, 4);
+    return status ? status : buffer_fill(r, &r->work->tiles, 0, 0, 4ull * TILE_WORDS * r->job.active_tiles);
+}
+
+/* Enters the crossed edges into the table and numbers their vertices. */
+static tc_status edges_join(complex_run *r) {
+    complex_buffers *w = r->work;
     const kernel_argument join[] = {ARGUMENT(r->job),          ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
                                     ARGUMENT(w->state.memory), ARGUMENT(w->table.memory),  ARGUMENT(w->entries.memory)};
     const kernel_argument number[] = {ARGUMENT(r->s),
@@ -267,7 +275,7 @@ static tc_status edges_join(complex_run *r, uint64_t entries) {
                                       ARGUMENT(w->tiles.memory),
                                       ARGUMENT(w->table.memory),
                                       ARGUMENT(w->entries.memory)};
-    if (!status) status = kernel_run(r, KERNEL_JOIN, "kernel complex_join", join, 6);
+    tc_status status = kernel_run(r, KERNEL_JOIN, "kernel complex_join", join, 6);
     if (!status) status = kernel_run(r, KERNEL_NUMBER, "kernel complex_number", number, 8);
     return status ? status : head_read(r);
 }
@@ -277,11 +285,16 @@ static tc_status edges_join(complex_run *r, uint64_t entries) {
 static tc_status edges_number(complex_run *r) {
     complex_buffers *w = r->work;
     uint64_t entries = 64;
+    while (2 * entries < r->head[HEAD_CROSSED]) entries *= 2;
     tc_status status = work_reserve(r->context, &w->entries, 16ull * r->job.active_count, "crossed edges");
     if (!status) status = work_reserve(r->context, &w->tiles, 4ull * TILE_WORDS * r->job.active_tiles, "the scan");
-    while (2 * entries < r->head[HEAD_CROSSED]) entries *= 2;
-    r->head[HEAD_FULL] = 1;
-    for (; !status && r->head[HEAD_FULL]; entries *= 2) status = edges_join(r, entries);
+    if (!status) status = table_reserve(r, entries);
+    if (!status) status = active_list(r);
+    if (!status) status = edges_join(r);
+    while (!status && r->head[HEAD_FULL]) {
+        status = table_enlarge(r, entries *= 2);
+        if (!status) status = edges_join(r);
+    }
     return status;
 }
 
@@ -290,7 +303,6 @@ static tc_status surface_count(complex_run *r, tc_grid *grid, double isovalue, d
     tc_status status = run_begin(r, grid, isovalue);
     if (!status) status = classify(r);
     if (!status) status = context_progress(r->context, "classify", 0.6 * share);
-    if (!status && r->job.active_count) status = active_list(r);
     if (!status && r->job.active_count) status = edges_number(r);
     return status ? status : context_progress(r->context, "classify", share);
 }
