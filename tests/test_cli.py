@@ -9,6 +9,7 @@ import json
 import os
 import pty
 import re
+import resource
 import select
 import signal
 import stat
@@ -520,10 +521,11 @@ class Faults(Case):
 
 
 class Interrupts(Case):
-    def interrupt(self, ready, *arguments):
-        """Starts the tool with a terminal for its messages, sends Ctrl-C once ready(text so far), expects status 1."""
+    def interrupt(self, ready, *arguments, number=signal.SIGINT, before=signal.SIG_DFL, status=1, says="cancelled"):
+        """Starts the tool with a terminal for its messages, sends a signal once ready(text so far)."""
         ours, theirs = pty.openpty()
-        process = subprocess.Popen([TOOL, *map(str, arguments)], stderr=theirs, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen([TOOL, *map(str, arguments)], stderr=theirs, stdout=subprocess.DEVNULL,
+                                   preexec_fn=lambda: signal.signal(number, before))
         os.close(theirs)
         text, sent = "", False
         while True:
@@ -533,19 +535,39 @@ class Interrupts(Case):
                 except OSError:  # the tool has closed its side
                     break
             if not sent and ready(text):
-                process.send_signal(signal.SIGINT)
+                process.send_signal(number)
                 sent = True
         os.close(ours)
-        self.assertEqual(process.wait(60), 1, text)
-        self.assertIn("cancelled", text)
+        self.assertEqual(process.wait(60), status, text)
+        self.assertIn(says, text)
         return text
 
+    def started(self, _):
+        return any(name.endswith(".tmp") for name in self.files())
+
     def test_generate_leaves_nothing(self):
-        def started(_):
-            return any(os.path.getsize(self.path(name)) > 0 for name in self.files())
-        self.interrupt(started, "generate", "noise", "--dims", "1024,1024,512", "--type", "u16", "-o",
-                       self.path("a.nrrd"))
-        self.assertEqual(self.files(), [])
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGXCPU):
+            self.interrupt(self.started, "generate", "noise", "--dims", "1024,1024,512", "--type", "u16", "-o",
+                           self.path("a.nrrd"), number=number)
+            self.assertEqual(self.files(), [], number)
+
+    def test_ignored_signals_stay_ignored(self):
+        self.interrupt(self.started, "generate", "noise", "--dims", "256,256,512", "--type", "u16", "-o",
+                       self.path("a.nrrd"), number=signal.SIGHUP, before=signal.SIG_IGN, status=0, says="")
+        self.assertEqual(self.files(), ["a.nrrd"])
+
+    def test_limit_on_file_sizes(self):
+        volume = self.generate("sphere", "a.nrrd", "40,40,40")
+        for command in (["extract", volume, "--iso", "127.5", "--engine", "reference", "-o", "big.stl"],
+                        ["tetrahedralize", volume, "-o", "big.vtu"],
+                        ["generate", "noise", "--dims", "64,64,64", "--type", "u8", "-o", "big.nrrd"]):
+            def limit():
+                resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+            result = subprocess.run([TOOL, *command], cwd=self.folder.name, stderr=subprocess.PIPE, text=True,
+                                    stdout=subprocess.DEVNULL, preexec_fn=limit, timeout=300)
+            self.assertEqual(result.returncode, 1, result)
+            self.assertRegex(result.stderr, "^tetracubes: big.*too large.*ulimit -f")
+            self.assertEqual(self.files(), ["a.nrrd"])
 
     def test_extract_leaves_nothing(self):
         volume = self.generate("gyroid", "a.nrrd", "400,400,400")

@@ -206,6 +206,13 @@ class Choice(GridCase):
                      self.path("a.ply"), says="twice")
         self.refuses(2, "info", *self.inputs, "--field", "no", says="density")
 
+    def test_frames(self):
+        self.needs_xml()
+        image = self.write("f.vti", vti_text((2, 2, 2), [("f", "f32", [float(n) for n in range(8)])]))
+        for inputs in (self.inputs, self.inputs[:1], [image]):
+            self.refuses(4, "info", *inputs, "--frame", "1", says="has one frame; leave out --frame")
+            self.expect(0, "info", *inputs, "--frame", "0")
+
     def test_output_is_an_input(self):
         os.rename(self.inputs[1], self.path("q.ply"))
         self.refuses(2, "extract", self.inputs[0], self.path("q.ply"), "--iso", "1", "--field", "density", "-o",
@@ -242,6 +249,64 @@ class Choice(GridCase):
         self.assertGreater(of_cells["triangles"], 10)
         quiet = self.expect(0, "extract", volume, "--iso", "4.1", "--engine", "reference", "--quiet")
         self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+
+
+    def test_points_and_cells_of_one_name(self):
+        self.needs_xml()
+        of_points = [float(p[0]) for p in lattice((4, 3, 3))]
+        of_cells = [float(p[1]) for p in lattice((3, 2, 2))]
+        both = self.write("b.vti", vti_text((4, 3, 3), [("t", "f32", of_points), ("u", "f32", of_points)],
+                                            [("t", "f32", of_cells)]))
+        how = ["--iso", "0.3"]
+        for name, axis in (("t", 0), ("point:t", 0), ("cell:t", 1)):
+            _, surface = self.surface(both, "--field", name, *how)
+            low, high = surface["bounds"]
+            self.assertEqual([a == b for a, b in zip(low, high)], [n == axis for n in range(3)], name)
+        result = self.refuses(2, "extract", both, "--field", "cell:u", *how, says="'cell:u'")
+        self.assertIn("t (point), cell:t (cell), u (point)", result.stderr)
+        self.surface(both, "--field", "u", *how, "--carry", "cell:t,t", "-o", self.path("a.ply"))
+        vertices, _ = read_ply(self.path("a.ply"))
+        for vertex in vertices:
+            self.assertAlmostEqual(vertex["t"], 0.3, places=6)
+            self.assertAlmostEqual(vertex["cell_t"], vertex["y"] / 2, places=6)
+        named = self.write("n.vti", vti_text((4, 3, 3), [("cell:t", "f32", of_points)], [("t", "f32", of_cells)]))
+        _, surface = self.surface(named, "--field", "cell:t", *how)
+        self.assertEqual(surface["bounds"][0][0], surface["bounds"][1][0])
+
+
+class Pieces(GridCase):
+    """Pieces of one file know nothing of each other, and that is said once."""
+    pattern = "pieces may not meet"
+
+    def setUp(self):
+        super().setUp()
+        self.needs_xml()
+
+    def notices(self, path, *fields):
+        result = self.expect(0, "extract", path, "--iso", "1.5", "--engine", "reference", *fields)
+        return result.stderr.count(self.pattern)
+
+    def pieces(self, text):
+        """The file with its piece twice."""
+        begin, end = text.index("<Piece"), text.index("</Piece>") + len("</Piece>")
+        return text[:end] + text[begin:end] + text[end:]
+
+    def test_cells_averaged(self):
+        text = vti_text((3, 3, 3), [("p", "f32", [float(p[0]) for p in lattice((3, 3, 3))])],
+                        [("c", "f32", [float(n) for n in range(8)])])
+        one, two = self.write("1.vti", text), self.write("2.vti", self.pieces(text))
+        self.assertEqual([self.notices(one, "--field", "c"), self.notices(two, "--field", "p")], [0, 0])
+        self.assertEqual(self.notices(two, "--field", "c"), 1)
+
+    def test_cells_cut(self):
+        points = lattice((3, 3, 3))
+        fields = [("x", "f32", [float(p[0]) for p in points])]
+        cells = hexahedra((3, 3, 3))
+        text = vtu_text(points, cells, [HEXAHEDRON] * len(cells), fields)
+        one, two = self.write("1.vtu", text), self.write("2.vtu", self.pieces(text))
+        self.assertEqual([self.notices(one), self.notices(two)], [0, 1])
+        tetrahedron = vtu_text(points, [[0, 2, 6, 18]], [TETRAHEDRON], fields)
+        self.assertEqual(self.notices(self.write("t.vtu", self.pieces(tetrahedron))), 0)
 
 
 class Structured(GridCase):
@@ -421,6 +486,18 @@ class Blocks(GridCase):
             self.assertAlmostEqual(vertex["momentum_x"], vertex["x"], places=4)
             self.assertEqual(vertex["energy"], 2.5)
 
+    def test_carry_where_the_surface_meets_samples(self):
+        """Where a vertex lies on a sample, what is missing at the other end of the edge plays no part."""
+        self.needs_xml()
+        points = lattice((3, 2, 2))
+        volume = self.write("a.vti", vti_text((3, 2, 2), [
+            ("f", "f32", [float(p[0] == 1) for p in points]),
+            ("k", "f32", [5.0 if p[0] == 1 else math.nan for p in points])]))
+        self.surface(volume, "--field", "f", "--iso", "1", "--carry", "k", "-o", self.path("a.ply"))
+        vertices, _ = read_ply(self.path("a.ply"))
+        self.assertGreater(len(vertices), 7)
+        self.assertEqual({vertex["k"] for vertex in vertices}, {5.0})
+
     def test_carry_to_separate_files(self):
         self.expect(0, "extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine", "reference",
                     "--carry", "momentum-x", "--blocks", "separate", "-o", self.path("a.ply"))
@@ -446,6 +523,13 @@ class Unstructured(GridCase):
         self.assertEqual(surface["euler_characteristic"], 2 if not surface["boundary_edges"] else 1)
         self.assertAlmostEqual(surface["volume"], 4 / 3 * math.pi * 9.87 ** 1.5, delta=12)
         self.assertGreater(surface["volume"], 0)
+
+    def test_text_counts_tetrahedra(self):
+        how = ["--iso", "0.5", "--engine", "reference"]
+        text = self.expect(0, "extract", self.write_hexahedra("a.vtu"), "--field", "bump", *how).stdout
+        self.assertRegex(text, r"triangles \(.*\), through \d+ tetrahedra\n")
+        image = self.write("a.vti", vti_text((2, 2, 2), [("f", "f32", [0.0] + 7 * [1.0])]))
+        self.assertRegex(self.expect(0, "extract", image, *how).stdout, "through 1 cells\n")
 
     def test_options_that_need_a_structured_grid(self):
         grid = self.write_hexahedra("a.vtu")

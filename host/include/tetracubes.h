@@ -240,7 +240,7 @@ typedef struct tc_counts {
     size_t struct_size;
     uint64_t vertex_count;
     uint64_t triangle_count;
-    uint64_t active_cell_count; /* cubes that the surface passes through */
+    uint64_t active_cell_count; /* cubes, of complexes tetrahedra, that the surface passes through */
     uint64_t mesh_bytes;        /* of positions and triangles */
     double classify_ms;
 } tc_counts;
@@ -293,8 +293,9 @@ typedef struct tc_field {
 } tc_field;
 
 /* Carries a field onto the surface: out[vertex][component], a + t (b - a) in double with the t that placed the vertex,
- * in the order in which tc_extract makes vertices. out has room for value_count floats, which must be what that takes
- * (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread, whatever the engine; not for grids with cl_samples. */
+ * a or b itself where t is 0 or 1, whatever the other is, in the order in which tc_extract makes vertices. out has room
+ * for value_count floats, which must be what that takes (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread,
+ * whatever the engine; not for grids with cl_samples. */
 TC_API tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
                           uint64_t value_count);
 

@@ -271,6 +271,13 @@ static int load_block(const pairing *p, int64_t n, arena *memory, char *names, d
     return status || !p->data ? status : load_fields(p, n, memory, names, block);
 }
 
+static void note_padding(dataset *out, const plot3d_file *file, const plot3d_form *form) {
+    const char *slash = strrchr(file->path, '/');
+    if (form->padding)
+        dataset_notice(out, "%" PRIu64 " bytes after the data of %.80s are left unread", form->padding,
+                       slash ? slash + 1 : file->path);
+}
+
 static int load(const pairing *p, dataset *out) {
     char *names = NULL;
     if (p->grid->block_count > INT_MAX)
@@ -282,10 +289,8 @@ static int load(const pairing *p, dataset *out) {
         if (status) return status;
     }
     snprintf(out->format, sizeof out->format, "Plot3D");
-    if (p->grid->padding)
-        dataset_notice(out, "%" PRIu64 " bytes after the grid's data are left unread", p->grid->padding);
-    if (p->data && p->data->padding)
-        dataset_notice(out, "%" PRIu64 " bytes after the solution's data are left unread", p->data->padding);
+    note_padding(out, p->grid_file, p->grid);
+    if (p->data) note_padding(out, p->data_file, p->data);
     return 0;
 }
 

@@ -190,6 +190,13 @@ static int wrap_image(dataset *d) {
     return 0;
 }
 
+/* Grids have one frame, as images of three axes do. */
+static int read_grid(int (*reader)(const read_request *request, const mapping *file, dataset *out),
+                     const read_request *request, const mapping *file, dataset *out) {
+    if (request->frame > 0) return fail(STATUS_INPUT, "%s: has one frame; leave out --frame", request->path);
+    return reader(request, file, out);
+}
+
 /* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. What begins as NIfTI may be
  * a grid of 348 points along x. */
 static int may_be_plot3d(readers r) {
@@ -210,12 +217,12 @@ int dataset_read(const read_request *request, dataset *out) {
     if (status) return status;
     readers read = find_readers(request, &file);
     if (request->path2) {
-        status = may_be_plot3d(read) ? plot3d_read(request, &file, out) : refuse_pair(request);
+        status = may_be_plot3d(read) ? read_grid(plot3d_read, request, &file, out) : refuse_pair(request);
     } else if (read.image) {
         status = read.image(request, &file, &out->image);
         if (!status) status = wrap_image(out);
     } else if (read.grid) {
-        status = read.grid(request, &file, out);
+        status = read_grid(read.grid, request, &file, out);
     } else {
         status = refuse_unknown(request->path, &file);
     }

@@ -12,18 +12,31 @@
 
 /* ----------------------------------------------------------------------------------------------------------- names */
 
-const dataset_field *block_field(const dataset_block *b, const char *name) {
+/* Where a field's values lie: anywhere, points first. */
+enum place { ANYWHERE = -1, AT_POINTS, ON_CELLS };
+
+typedef struct choice {
+    const char *name; /* NULL: none */
+    enum place place;
+} choice;
+
+static const dataset_field *chosen_field(const dataset_block *b, choice c) {
     const dataset_field *found = NULL;
     for (int n = 0; n < b->field_count; n++) {
         const dataset_field *f = &b->fields[n];
-        if (strcmp(f->name, name) == 0 && (!found || (found->on_cells && !f->on_cells))) found = f;
+        int fits = strcmp(f->name, c.name) == 0 && (c.place == ANYWHERE || f->on_cells == (c.place == ON_CELLS));
+        if (fits && (!found || (found->on_cells && !f->on_cells))) found = f;
     }
     return found;
 }
 
-static int is_common(const dataset *d, const char *name) {
-    for (int n = 1; n < d->block_count; n++)
-        if (!block_field(&d->blocks[n], name)) return 0;
+const dataset_field *block_field(const dataset_block *b, const char *name) {
+    return chosen_field(b, (choice){name, ANYWHERE});
+}
+
+static int is_common(const dataset *d, choice c) {
+    for (int n = 0; n < d->block_count; n++)
+        if (!chosen_field(&d->blocks[n], c)) return 0;
     return 1;
 }
 
@@ -36,43 +49,65 @@ int common_field_names(const dataset *d, const char ***names) {
         const char *name = first->fields[n].name;
         int is_new = 1;
         for (int m = 0; m < count; m++) is_new = is_new && strcmp((*names)[m], name) != 0;
-        if (is_new && is_common(d, name)) (*names)[count++] = name;
+        if (is_new && is_common(d, (choice){name, ANYWHERE})) (*names)[count++] = name;
     }
     return count;
 }
 
-/* "density (point), velocity (point, 3 components), ..." as far as there is room. */
+size_t field_prefix(const char *text) {
+    static const char *const prefixes[] = {"point:", "cell:"};
+    for (int n = 0; n < 2; n++)
+        if (strncmp(text, prefixes[n], strlen(prefixes[n])) == 0) return strlen(prefixes[n]);
+    return 0;
+}
+
+/* What the text means: a name as it is, else, behind point: or cell:, one of values there. */
+static choice find_choice(const dataset *d, const char *const *names, int count, const char *text) {
+    const size_t prefix = field_prefix(text);
+    for (int n = 0; n < count; n++)
+        if (strcmp(names[n], text) == 0) return (choice){names[n], ANYWHERE};
+    for (int n = 0; n < count && prefix; n++) {
+        const choice c = {names[n], text[0] == 'c' ? ON_CELLS : AT_POINTS};
+        if (strcmp(names[n], text + prefix) == 0 && is_common(d, c)) return c;
+    }
+    return (choice){NULL, ANYWHERE};
+}
+
+/* "density (point)" or "velocity (point, 3 components)", and of values of cells that the name alone does not choose
+ * "cell:density (cell)"; text ends in ", ..." where there is no room. */
+static void list_field(const dataset *d, choice c, char *text, size_t bytes) {
+    const dataset_field *f = chosen_field(d->blocks, c);
+    size_t used = strlen(text);
+    char one[256], components[32] = "";
+    if (f->components > 1) snprintf(components, sizeof components, ", %d components", f->components);
+    snprintf(one, sizeof one, "%s%s%s (%s%s)", used ? ", " : "", c.place == ON_CELLS ? "cell:" : "", c.name,
+             f->on_cells ? "cell" : "point", components);
+    int is_full = used >= 5 && strcmp(text + used - 5, ", ...") == 0;
+    if (is_full) return;
+    snprintf(text + used, bytes - used, "%s", used + strlen(one) + 8 > bytes ? ", ..." : one);
+}
+
 static void list_fields(const dataset *d, const char *const *names, int count, char *text, size_t bytes) {
     text[0] = '\0';
     for (int n = 0; n < count; n++) {
-        const dataset_field *f = block_field(d->blocks, names[n]);
-        size_t used = strlen(text);
-        char one[256], components[32] = "";
-        if (f->components > 1) snprintf(components, sizeof components, ", %d components", f->components);
-        snprintf(one, sizeof one, "%s%s (%s%s)", n ? ", " : "", names[n], f->on_cells ? "cell" : "point", components);
-        if (used + strlen(one) + 8 > bytes) {
-            snprintf(text + used, bytes - used, ", ...");
-            return;
-        }
-        snprintf(text + used, bytes - used, "%s", one);
+        const choice cells = {names[n], ON_CELLS};
+        list_field(d, (choice){names[n], ANYWHERE}, text, bytes);
+        if (!block_field(d->blocks, names[n])->on_cells && is_common(d, cells)) list_field(d, cells, text, bytes);
     }
 }
 
-/* A name that every block has, or why there is none. */
-static int choose_name(const dataset *d, const char *path, const char *option, const char *wanted,
-                       const char **chosen) {
+/* A field that every block has, or why there is none. */
+static int choose(const dataset *d, const char *path, const char *option, const char *wanted, choice *out) {
     const char **names;
     char list[700];
     int status = 0, count = common_field_names(d, &names);
     if (count < 0) return STATUS_FAILED;
     list_fields(d, names, count, list, sizeof list);
-    *chosen = count ? names[0] : NULL;
-    for (int n = 0; wanted && n < count; n++)
-        if (strcmp(names[n], wanted) == 0) *chosen = names[n];
+    *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANYWHERE};
     if (!count)
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
-    else if (wanted && strcmp(*chosen, wanted) != 0)
+    else if (!out->name)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);
     else if (!wanted && count > 1)
@@ -158,12 +193,14 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
 
 int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out) {
     *out = (scalar){.component = -1};
-    int status = choose_name(d, path, "--field takes", request->name, &out->name);
+    choice chosen;
+    int status = choose(d, path, "--field takes", request->name, &chosen);
     if (status) return status;
+    out->name = chosen.name;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;
     for (int n = 0; n < d->block_count && !status; n++) {
-        const dataset_field *f = block_field(&d->blocks[n], out->name);
+        const dataset_field *f = chosen_field(&d->blocks[n], chosen);
         status = check_component(d, path, f, request->component);
         if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n]);
         if (f->components > 1) out->component = request->component;
@@ -174,13 +211,16 @@ int scalar_select(dataset *d, const char *path, const field_request *request, sc
 
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out) {
     *out = (point_field){0};
-    int status = choose_name(d, path, "--carry takes", name, &out->name);
+    choice chosen;
+    int status = choose(d, path, "--carry takes", name, &chosen);
     if (status) return status;
+    out->name = chosen.place == ANYWHERE ? chosen.name : dataset_text(d, name);
+    if (!out->name) return STATUS_FAILED;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;
     for (int n = 0; n < d->block_count && !status; n++) {
         const dataset_block *b = &d->blocks[n];
-        const dataset_field *f = block_field(b, out->name);
+        const dataset_field *f = chosen_field(b, chosen);
         if (n && f->components != out->components)
             return fail(STATUS_INPUT, "%s: field '%s' has %d components in block 0, %d in block %d", path, name,
                         out->components, f->components, n);

@@ -1,7 +1,8 @@
 /*
  * select.h - which field of a dataset is contoured, and its samples: one number per point of every block
  *
- * A field is known by its name; values at points come before values of cells of the same name. Values of cells are
+ * A field is known by its name; values at points come before values of cells of the same name, unless the text that
+ * chooses is point:NAME or cell:NAME. Where a field's own name begins so, that comes first. Values of cells are
  * averaged (average.h). What is made lies in the dataset's memory, values that need no change are used where they are.
  */
 #ifndef SELECT_H
@@ -36,7 +37,7 @@ typedef struct scalar {
 
 /* A field of every block at the points; type and values are each block's own. */
 typedef struct point_field {
-    const char *name;
+    const char *name; /* as it was asked for */
     int components;
     int is_averaged;
     dataset_field *blocks;
@@ -54,6 +55,9 @@ int point_field_select(dataset *d, const char *path, const char *name, point_fie
 /* The names of fields that every block has, as names of the first block's fields, each once; *names from malloc. -1
  * without memory, with its text set; else how many. */
 int common_field_names(const dataset *d, const char ***names);
+
+/* The length of "point:" or "cell:" where the text begins so, else 0. */
+size_t field_prefix(const char *text);
 
 /* The block's field of that name; NULL where it has none. */
 const dataset_field *block_field(const dataset_block *b, const char *name);

@@ -1,5 +1,6 @@
 #include "blocks.h"
 
+#include "cell_types.h"
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
@@ -94,6 +95,20 @@ static void tell(uint64_t count, const char *what) {
     if (count) message("%" PRIu64 " %s", count, what);
 }
 
+/* Whether the cell may be cut in more ways than one, linear or not. */
+static int is_ambiguous(uint8_t type) {
+    return cell_type_dimension(type) == 3 && !strstr(cell_type_name(type), "tetrahedron");
+}
+
+static int has_ambiguous_cells(const block_list *list) {
+    for (int n = 0; n < list->count; n++) {
+        const dataset_block *b = list->blocks[n].source;
+        for (int64_t cell = 0; b->kind == GRID_UNSTRUCTURED && cell < b->cell_count; cell++)
+            if (is_ambiguous(b->cell_types[cell])) return 1;
+    }
+    return 0;
+}
+
 static void tell_all(const block_list *list) {
     uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, blanked_points = 0,
              blanked_cells = 0;
@@ -117,6 +132,8 @@ static void tell_all(const block_list *list) {
     tell(left_out, "cells are left out: blanked, or with a corner that is missing");
     tell(inverted, "cells of negative volume are turned over");
     tell(folded, "cells are folded: their tetrahedra overlap");
+    if (list->count > 1 && has_ambiguous_cells(list))
+        message("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
     tell(blanked_points, "points are blanked: cells with one of them are left out");
     tell(blanked_cells, "blanked cells are left out");
     if (!list->tetrahedron_count && all_cut) message("nothing to contour: no cell of three dimensions is left");

@@ -1,8 +1,8 @@
 #include "carry.h"
 
-#include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "input.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,14 +13,18 @@ static size_t count_names(const char *text) {
     return count;
 }
 
-/* How far the next name goes: as far as the longest name of a field that fits, as names may have commas; else to the
- * next comma. */
+/* How far the next name goes: as far as the longest name of a field that fits, as names may have commas, also behind
+ * point: or cell:; else to the next comma. */
 static size_t name_length(const char *text, const char *const *known, int known_count) {
+    const size_t prefix = field_prefix(text);
     size_t longest = 0;
     for (int n = 0; n < known_count; n++) {
-        size_t length = strlen(known[n]);
-        int fits = strncmp(text, known[n], length) == 0 && (text[length] == ',' || !text[length]);
-        if (fits && length > longest) longest = length;
+        const size_t name = strlen(known[n]), starts[2] = {0, prefix};
+        for (int m = 0; m < 2; m++) {
+            size_t end = starts[m] + name;
+            int fits = strncmp(text + starts[m], known[n], name) == 0 && (text[end] == ',' || !text[end]);
+            if (fits && end > longest) longest = end;
+        }
     }
     return longest ? longest : strcspn(text, ",");
 }
@@ -31,7 +35,7 @@ static int select_one(const options *o, dataset *d, carried *out, const char *na
     if (status) return status;
     for (int n = 0; n < out->count; n++)
         if (strcmp(out->from[n].name, from->name) == 0) return fail(STATUS_USAGE, "--carry: '%s' is given twice", name);
-    if (from->is_averaged && !o->quiet) message("field '%s' is of cells: averaged to the points between them", name);
+    if (from->is_averaged) input_tell_average(o, d, from->name);
     out->fields[out->count++] = (mesh_field){from->name, from->components, NULL};
     return 0;
 }

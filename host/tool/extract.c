@@ -104,6 +104,7 @@ static int read_and_start(job *j) {
 static void describe_input(job *j) {
     const dataset_block *first = j->data.blocks;
     j->report.block_count = j->data.block_count;
+    j->report.is_complex = first->kind == GRID_UNSTRUCTURED;
     j->report.field = j->field.name;
     j->report.type = j->field.blocks[0].type;
     j->report.point_count = 0;

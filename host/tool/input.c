@@ -50,11 +50,16 @@ int input_read(const options *o, dataset *d) {
     return status;
 }
 
+void input_tell_average(const options *o, const dataset *d, const char *name) {
+    if (!o->quiet)
+        message("field '%s' is of cells: averaged to the points between them%s", name,
+                d->block_count > 1 ? ", in each piece alone: surfaces of neighbouring pieces may not meet" : "");
+}
+
 int input_select(const options *o, dataset *d, scalar *out) {
     const field_request request = {o->field, o->component, o->has_nodata, o->nodata};
     int status = scalar_select(d, o->operands[0], &request, out);
-    if (!status && out->is_averaged && !o->quiet)
-        message("field '%s' is of cells: averaged to the points between them", out->name);
+    if (!status && out->is_averaged) input_tell_average(o, d, out->name);
     return status;
 }
 

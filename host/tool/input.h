@@ -15,6 +15,9 @@ int input_read(const options *o, dataset *d);
 /* Chooses the field by --field, --component and --nodata, with a notice where it had to be averaged. */
 int input_select(const options *o, dataset *d, scalar *out);
 
+/* The notice that a field of cells was averaged. */
+void input_tell_average(const options *o, const dataset *d, const char *name);
+
 /* STATUS_USAGE where path, the output, is one of the inputs: it must not replace what it is made from. */
 int input_overwrite_check(const options *o, const char *path);
 

@@ -70,7 +70,8 @@ static const option table[] = {
      "ply, vtp, stl or obj, whatever FILE ends in"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
      "field to contour, of data with several, see 'tetracubes info'; values of\n"
-     "cells are averaged to the points between them"},
+     "cells are averaged to the points between them; point:NAME and cell:NAME\n"
+     "choose where both have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
      "other fields, interpolated onto the vertices (PLY, VTP)"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,

@@ -1,4 +1,9 @@
-/* progress.c - one line on standard error, rewritten at most ten times a second, and the signal flag */
+/*
+ * progress.c - one line on standard error, rewritten at most ten times a second, and the signal flag
+ *
+ * A second SIGINT, SIGTERM or SIGQUIT ends the program at once; SIGHUP and SIGXCPU may be sent again by the system
+ * itself, while the program still tidies up. What was ignored on entry stays so, as nohup wants it.
+ */
 #include "progress.h"
 
 #include "exit_status.h"
@@ -32,13 +37,21 @@ double now_ms(void) {
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-void progress_begin(int quiet) {
-    struct sigaction action;
+static void catch_signal(int number, unsigned flags) {
+    struct sigaction action, before;
     memset(&action, 0, sizeof action);
     action.sa_handler = cancel;
-    action.sa_flags = (int)(SA_RESETHAND | SA_RESTART);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    action.sa_flags = (int)(flags | SA_RESTART);
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
+}
+
+void progress_begin(int quiet) {
+    catch_signal(SIGINT, SA_RESETHAND);
+    catch_signal(SIGTERM, SA_RESETHAND);
+    catch_signal(SIGQUIT, SA_RESETHAND);
+    catch_signal(SIGHUP, 0);
+    catch_signal(SIGXCPU, 0);
+    signal(SIGXFSZ, SIG_IGN); /* writing fails with EFBIG instead, and says so */
     state.shown = !quiet && isatty(STDERR_FILENO);
     state.begin_ms = state.last_ms = now_ms();
 }

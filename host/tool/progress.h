@@ -10,7 +10,8 @@
 /* Milliseconds of a clock that never goes back. */
 double now_ms(void);
 
-/* From here on signals set the flag, and progress_update prints where standard error is a terminal and not quiet. */
+/* From here on signals that end a program set the flag, a limit on file sizes makes writes fail, and progress_update
+ * prints where standard error is a terminal and not quiet. */
 void progress_begin(int quiet);
 
 /* A tc_progress: prints stage and percentage once a second has passed. Nonzero: stop. */

@@ -134,12 +134,12 @@ static void topology_text(const mesh_topology *t) {
     printf("\n");
 }
 
-static void surface_text(const surface_report *s) {
+static void surface_text(const surface_report *s, const char *cells) {
     const mesh_summary *m = &s->summary;
     printf("isovalue %s\n", s->iso->text);
     printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles", s->vertex_count, s->triangle_count);
     if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
-    printf(", through %" PRIu64 " cells\n", s->active_cell_count);
+    printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
     if (s->has_mesh) {
         printf("  bounds      %.7g %.7g %.7g to %.7g %.7g %.7g\n", m->bounds[0][0], m->bounds[0][1], m->bounds[0][2],
                m->bounds[1][0], m->bounds[1][1], m->bounds[1][2]);
@@ -170,7 +170,7 @@ static void input_text(const extract_report *r) {
 void report_extract_text(const extract_report *r) {
     input_text(r);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
-    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n]);
+    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n], r->is_complex ? "tetrahedra" : "cells");
     printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
            r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
 }

@@ -33,6 +33,7 @@ typedef struct extract_report {
     const options *o;
     const int64_t *dims; /* of an input that is one structured block, else NULL */
     int block_count;
+    int is_complex;    /* unstructured: active cells are tetrahedra */
     const char *field; /* "" where it has no name */
     tc_type type;
     uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
