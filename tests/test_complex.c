@@ -290,6 +290,12 @@ static void refusals(tc_context *context) {
     o.samples = (const char *)values + 1;
     EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "samples not aligned");
     o.samples = values;
+    o.points = (const float *)((const char *)points + 2);
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "points not aligned");
+    o.points = points;
+    o.point_count = 0;
+    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_DATA, "tetrahedra and no points");
+    o.point_count = 4;
     o.tetrahedron_count = UINT64_C(1) << 32;
     EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_LIMIT, "too many tetrahedra");
     o.tetrahedron_count = 1;

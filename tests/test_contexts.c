@@ -184,6 +184,29 @@ static void test_threads(const tc_mesh_data *expected, bool device) {
     }
 }
 
+static void *contexts_open_and_close(void *failed) {
+    for (int n = 0; n < 10; n++) {
+        tc_context_options options;
+        tc_context *context = NULL;
+        tc_context_options_init(&options);
+        if (tc_context_create(&options, &context)) ++*(int *)failed;
+        tc_context_destroy(context);
+    }
+    return NULL;
+}
+
+/* Threads wake the driver, and let it sleep, all at once. */
+static void test_first_contexts(void) {
+    pthread_t threads[4];
+    int failed[4] = {0};
+    for (int n = 0; n < 4; n++)
+        EXPECT(pthread_create(&threads[n], NULL, contexts_open_and_close, &failed[n]) == 0, "no thread");
+    for (int n = 0; n < 4; n++) pthread_join(threads[n], NULL);
+    int wanted = device_exists() ? 0 : 10;
+    for (int n = 0; n < 4; n++)
+        EXPECT(failed[n] == wanted, "thread %d: %d of 10 contexts fail, not %d", n, failed[n], wanted);
+}
+
 /* Without a platform (an empty folder of vendors, before the loader has looked) devices are refused in plain words, and
  * the reference works. Runs in a process of its own. */
 static void test_no_platform(void) {
@@ -236,6 +259,7 @@ int main(void) {
     tc_extract_options_init(&how);
     how.isovalue = 127.5;
     test_no_platform();
+    test_first_contexts();
     tc_context *reference = reference_open();
     bool device = device_exists();
     if (!extract(reference, &grid, &how, &mesh, &expected)) return EXIT_FAILURE;

@@ -309,6 +309,13 @@ static void test_winding(subject *s) {
         s->how.normals = 1;
         points_fill(s, turned, 0);
         expect_outward(s, "mirrored points");
+        sample_set(s->samples, TC_F32, 0, (double)NAN); /* what is missing may be anywhere */
+        s->points[0] = s->points[1] = s->points[2] = -9999;
+        expect_outward(s, "a missing sample far away");
+        sample_set(s->samples, TC_F32, 0, -1000);
+        s->grid.has_nodata = 1, s->grid.nodata = -1000;
+        expect_outward(s, "a sample of the missing value far away");
+        s->grid.has_nodata = 0;
         s->grid.points = NULL;
         axes_fill(s, turned);
         expect_outward(s, "falling axes");
