@@ -49,7 +49,8 @@ def peer_cell(peer, key):
     if f"{key}_ms" not in peer:
         return ""
     median = peer[f"{key}_ms"]["median"]
-    return f"{number(median)} (**{median / peer['extract_ms']['median']:.2f}**)"
+    ours = peer.get("beside_ms", peer["extract_ms"]) if key in ("vtk_mc", "skimage") else peer["extract_ms"]
+    return f"{number(median)} (**{median / ours['median']:.2f}**)"
 
 
 def peer_name(peer):
@@ -112,8 +113,8 @@ def peers_text(result, peers):
     uniform = [peer for peer in peers if peer.get("grid", "uniform") == "uniform"]
     others = [peer for peer in peers if peer not in uniform]
     text = [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
-            "others one), a new mesh on every repeat on all sides, in turns; medians (min-max), of the others medians "
-            "(times ours; of the hybrid, Flying Edges' times the hybrid's)." + growth_text(peers), peers_table(uniform)]
+            "others one), a new mesh on every repeat on all sides, in turns, of the two marching cubes and ours in "
+            "turns of their own; medians (min-max), of the others medians (times ours; of the hybrid, Flying Edges' times the hybrid's)." + growth_text(peers), peers_table(uniform)]
     if others:
         text += ["Grids that are not uniform, likewise; the other's filter has all threads where it has any, merged "
                  "points, and for the second isovalue its scalar tree:", grid_peers_table(others)]
