@@ -114,7 +114,8 @@ def peers_text(result, peers):
     others = [peer for peer in peers if peer not in uniform]
     text = [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
             "others one), a new mesh on every repeat on all sides, in turns, of the two marching cubes and ours in "
-            "turns of their own; medians (min-max), of the others medians (times ours; of the hybrid, Flying Edges' times the hybrid's)." + growth_text(peers), peers_table(uniform)]
+            "turns of their own; medians (min-max), of the others medians (times ours; of the hybrid, Flying Edges' "
+            "times the hybrid's)." + growth_text(peers), peers_table(uniform)]
     if others:
         text += ["Grids that are not uniform, likewise; the other's filter has all threads where it has any, merged "
                  "points, and for the second isovalue its scalar tree:", grid_peers_table(others)]

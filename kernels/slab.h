@@ -65,8 +65,8 @@ enum {
     STATE_WORDS
 };
 
-/* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and the
- * next tile of the same group. */
+/* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and
+ * the next tile of the same group. */
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
 typedef struct slab {

@@ -225,7 +225,8 @@ static void test_points(const gpu *g, tc_context *context, cl_mem samples) {
     volume.cl_samples = samples;
     volume.cl_samples_offset = OFFSET;
     EXPECT(!tc_grid_create(context, &volume, &grid), "grid: %s", tc_message());
-    for (int normals = 0; normals < 2 && grid; normals++) test_surface(g, grid, samples, 9000, normals, TC_METHOD_TETRA);
+    for (int normals = 0; normals < 2 && grid; normals++)
+        test_surface(g, grid, samples, 9000, normals, TC_METHOD_TETRA);
     tc_grid_destroy(grid);
     points = NULL, blanked = NULL;
     free(made), free(holes);
