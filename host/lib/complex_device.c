@@ -53,11 +53,11 @@ static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, dou
 
 tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts) {
     complex_run r;
-    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, counts);
+    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, 0, counts);
     tc_status status = whole_count(&r, grid, isovalue, 1);
     if (r.too_large) {
         status = cut_later(&r);
-        return status ? status : complex_slabs_count(grid, isovalue, counts);
+        return status ? status : complex_slabs_count(grid, isovalue, 0.6, counts);
     }
     counts->vertex_count = r.head[HEAD_VERTICES];
     counts->triangle_count = r.head[HEAD_TRIANGLES];
@@ -108,14 +108,14 @@ static tc_status emit(complex_run *r, tc_mesh *mesh) {
 
 tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) {
     complex_run r;
-    if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, mesh);
+    if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, 0, mesh);
     tc_status status = whole_count(&r, grid, isovalue, 0.8);
     double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], false);
     if (!status && r.head[HEAD_TRIANGLES]) status = emit(&r, mesh);
     if (r.too_large) {
         status = cut_later(&r);
-        return status ? status : complex_slabs_extract(grid, isovalue, mesh);
+        return status ? status : complex_slabs_extract(grid, isovalue, 0.8, mesh);
     }
     if (!status) status = context_progress(r.context, "emit", 1);
     mesh->active_cell_count = r.job.active_count;

@@ -100,7 +100,8 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]);
 
 /* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
 
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, tc_counts *counts);
-tc_status complex_slabs_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+/* before: how much of the whole call is over, for progress. */
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts);
+tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
 
 #endif

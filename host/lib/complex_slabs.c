@@ -174,21 +174,22 @@ static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
     return slab_join(t);
 }
 
-static tc_status slabs_classify(slabs_run *t, double share) {
+/* progress: where this stage begins in the whole call, and where it ends. */
+static tc_status slabs_classify(slabs_run *t, double before, double after) {
     const uint32_t count = t->slabs->slab_count;
     tc_status status = TC_OK;
     for (uint32_t n = 0; n < count && !status; n++) {
         status = slab_classify(t, n);
-        if (!status) status = context_progress(t->r.context, "classify", share * (n + 1) / count);
+        if (!status) status = context_progress(t->r.context, "classify", before + (after - before) * (n + 1) / count);
     }
     if (!status) t->slabs->ranges_known = true;
     return status;
 }
 
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, tc_counts *counts) {
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts) {
     slabs_run t;
     tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = slabs_classify(&t, 1);
+    if (!status) status = slabs_classify(&t, before, 1);
     counts->vertex_count = t.edges.count;
     counts->triangle_count = t.triangle_count;
     counts->active_cell_count = t.active_count;
@@ -276,12 +277,13 @@ static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
     return status;
 }
 
-tc_status complex_slabs_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) {
+tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh) {
+    const double middle = before + 0.7 * (1 - before);
     slabs_run t;
     tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = slabs_classify(&t, 0.7);
+    if (!status) status = slabs_classify(&t, before, middle);
     double classified = clock_ms();
-    if (!status) status = slabs_emit_all(&t, mesh, 0.7);
+    if (!status) status = slabs_emit_all(&t, mesh, middle);
     mesh->active_cell_count = t.active_count;
     mesh->slab_count = t.slabs->slab_count;
     mesh->timings.classify_ms = classified - t.r.start_ms;

@@ -2,7 +2,7 @@
  * edge_numbers.h - crossed edges numbered in the order in which they are met first: how slabs of a complex share
  * vertices
  *
- * In the host's memory, about 20 bytes per edge. The edges are kept by number, and a table with open addressing, half
+ * In the host's memory, 16 to 32 bytes per edge. The edges are kept by number, and a table with open addressing, half
  * full at most, has the numbers.
  */
 #ifndef EDGE_NUMBERS_H
