@@ -358,10 +358,10 @@ TC_API void tc_complex_options_init(tc_complex_options *options);
  * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
  * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. A complex that
  * the device cannot hold whole is processed in slabs, runs of its tetrahedra, from the first surface on that does not
- * fit; the bytes are the same. TC_ERROR_MEMORY, with what would do, where not even 16 tetrahedra fit; TC_ERROR_LIMIT for
- * more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A
- * tetrahedron with a point that is not there is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or
- * tc_extract. */
+ * fit; the bytes are the same. TC_ERROR_MEMORY, with what would do, where not even 16 tetrahedra fit; TC_ERROR_LIMIT
+ * for more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64.
+ * A tetrahedron with a point that is not there is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count
+ * or tc_extract. */
 TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */

@@ -37,7 +37,6 @@ static tc_status cut_later(complex_run *r) {
     if (status) return status;
     part_tetrahedra_release(r->grid);
     part_points_release(r->grid);
-    r->part->ranges_known = false;
     r->context->served = NULL; /* the workspace is too large */
     return TC_OK;
 }
