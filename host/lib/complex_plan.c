@@ -110,12 +110,6 @@ static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
 
 static tc_status cut_refuse(const tc_grid *grid) {
     const device_need need = slab_need(grid, 1, false);
-    if (need.largest > grid->context->info.max_buffer_bytes)
-        return (tc_status)fail(TC_ERROR_MEMORY,
-                               "the smallest slab of this complex needs a buffer of %llu bytes, and "
-                               "%s allows %llu: use the reference engine",
-                               (unsigned long long)need.largest, grid->context->info.name,
-                               (unsigned long long)grid->context->info.max_buffer_bytes);
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "the smallest slab of this complex needs %llu bytes of device memory, and the budget is "
                            "%llu: allow %llu or, to be faster, much more",
