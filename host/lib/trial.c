@@ -34,7 +34,7 @@ static tc_status wrong(const tc_context *context, const trial_volume *v, const c
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear"};
     return (tc_status)fail(TC_ERROR_WRONG,
                            "device %s gives wrong results: %s %llu of a small %s grid of %s samples%s is not that of "
-                           "the reference",
+                           "the reference engine; use that one",
                            context->info.name, what, (unsigned long long)n,
                            v->unstructured ? "unstructured" : kinds[v->kind], tc_type_name(v->type),
                            v->missing ? ", some missing," : "");
