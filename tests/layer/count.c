@@ -10,8 +10,7 @@ static void install(cl_icd_dispatch *table) { (void)table; }
 
 static void print(void) {
     for (int e = 0; e < ENTRY_COUNT; e++)
-        if (layer_calls(entry_names[e]))
-            fprintf(stderr, "layer: %s %lu\n", entry_names[e], layer_calls(entry_names[e]));
+        if (fail_calls(entry_names[e])) fprintf(stderr, "layer: %s %lu\n", entry_names[e], fail_calls(entry_names[e]));
 }
 
 static bool command(char *const *words, int count) {

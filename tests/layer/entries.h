@@ -1,8 +1,11 @@
 /*
  * entries.h - every entry point that the library uses, with its parameters, for code that is the same for all of them
  *
- * OPENCL_ENTRIES(S, O): S(name, parameters, arguments) for those that return a status, O(type, name, parameters,
- * arguments) for those that return an object and leave the status in *error, their last parameter.
+ * OPENCL_ENTRIES(S, O, E, M): each entry as one of
+ *     S(name, parameters, arguments)         returns a status
+ *     O(type, name, parameters, arguments)   returns an object, and leaves the status in *error
+ *     E(name, parameters, arguments)         puts a command into `queue`, hands out its `event`, returns a status
+ *     M(type, name, parameters, arguments)   the one of these that returns memory, and leaves the status in *error
  */
 #ifndef ENTRIES_H
 #define ENTRIES_H
@@ -11,7 +14,7 @@
 #define ENTRY_WAITS cl_uint wait_count, const cl_event *waits, cl_event *event
 
 /* clang-format off */
-#define OPENCL_ENTRIES(S, O)                                                                                           \
+#define OPENCL_ENTRIES(S, O, E, M)                                                                                     \
     S(GetPlatformIDs, (cl_uint room, cl_platform_id *platforms, cl_uint *count), (room, platforms, count))             \
     S(GetPlatformInfo, (cl_platform_id platform, cl_platform_info what, ENTRY_INFO),                                   \
       (platform, what, bytes, value, bytes_ret))                                                                       \
@@ -50,23 +53,23 @@
     S(RetainMemObject, (cl_mem memory), (memory))                                                                      \
     S(GetMemObjectInfo, (cl_mem memory, cl_mem_info what, ENTRY_INFO), (memory, what, bytes, value, bytes_ret))        \
     S(ReleaseMemObject, (cl_mem memory), (memory))                                                                     \
-    S(EnqueueReadBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,        \
+    E(EnqueueReadBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,        \
       void *to, ENTRY_WAITS), (queue, memory, blocking, offset, bytes, to, wait_count, waits, event))                  \
-    S(EnqueueWriteBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,       \
+    E(EnqueueWriteBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,       \
       const void *from, ENTRY_WAITS), (queue, memory, blocking, offset, bytes, from, wait_count, waits, event))        \
-    S(EnqueueFillBuffer, (cl_command_queue queue, cl_mem memory, const void *pattern, size_t pattern_bytes,            \
+    E(EnqueueFillBuffer, (cl_command_queue queue, cl_mem memory, const void *pattern, size_t pattern_bytes,            \
       size_t offset, size_t bytes, ENTRY_WAITS),                                                                       \
       (queue, memory, pattern, pattern_bytes, offset, bytes, wait_count, waits, event))                                \
-    O(void *, EnqueueMapBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, cl_map_flags flags,          \
+    M(void *, EnqueueMapBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, cl_map_flags flags,          \
       size_t offset, size_t bytes, ENTRY_WAITS, cl_int *error),                                                        \
       (queue, memory, blocking, flags, offset, bytes, wait_count, waits, event, error))                                \
-    S(EnqueueUnmapMemObject, (cl_command_queue queue, cl_mem memory, void *mapped, ENTRY_WAITS),                       \
+    E(EnqueueUnmapMemObject, (cl_command_queue queue, cl_mem memory, void *mapped, ENTRY_WAITS),                       \
       (queue, memory, mapped, wait_count, waits, event))                                                               \
-    S(EnqueueNDRangeKernel, (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *first,        \
+    E(EnqueueNDRangeKernel, (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *first,        \
       const size_t *global, const size_t *local, ENTRY_WAITS),                                                         \
       (queue, kernel, dimensions, first, global, local, wait_count, waits, event))                                     \
-    S(EnqueueMarkerWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))             \
-    S(EnqueueBarrierWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))            \
+    E(EnqueueMarkerWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))             \
+    E(EnqueueBarrierWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))            \
     S(ReleaseEvent, (cl_event event), (event))                                                                         \
     S(Flush, (cl_command_queue queue), (queue))                                                                        \
     S(Finish, (cl_command_queue queue), (queue))

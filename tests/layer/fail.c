@@ -40,7 +40,7 @@ static bool is_made_first(entry e) { return e == ENTRY_Finish || !strncmp(entry_
         if (error) *error = injected;                                                                                  \
         return NULL;                                                                                                   \
     }
-OPENCL_ENTRIES(S, O)
+OPENCL_ENTRIES(S, O, S, O)
 #undef S
 #undef O
 
@@ -48,7 +48,7 @@ static void install(cl_icd_dispatch *table) {
     below = *table;
 #define S(name, parameters, arguments)       table->cl##name = name;
 #define O(type, name, parameters, arguments) table->cl##name = name;
-    OPENCL_ENTRIES(S, O)
+    OPENCL_ENTRIES(S, O, S, O)
 #undef S
 #undef O
 }
@@ -74,13 +74,13 @@ static bool command(char *const *words, int count) {
     return first_call > 0 && failure < 0;
 }
 
-__attribute__((visibility("default"))) unsigned long layer_calls(const char *entry_name) {
+unsigned long fail_calls(const char *entry_name) {
     unsigned long sum = 0;
     for (int e = 0; e < ENTRY_COUNT; e++)
         if (!entry_name || !strcmp(entry_names[e], entry_name)) sum += atomic_load(&calls[e]);
     return sum;
 }
 
-__attribute__((visibility("default"))) unsigned long layer_failed(void) { return atomic_load(&failed); }
+unsigned long fail_count(void) { return atomic_load(&failed); }
 
 const layer_mode fail_mode = {"fail", install, command};

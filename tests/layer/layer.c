@@ -3,6 +3,8 @@
  */
 #include "layer.h"
 
+#include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,13 +12,13 @@
 #define EXPORT __attribute__((visibility("default")))
 
 /* From the driver up: what a mode does to a call is seen by those above it. */
-static const layer_mode *const modes[] = {&fail_mode, &count_mode};
+static const layer_mode *const modes[] = {&ledger_mode, &fail_mode, &count_mode};
 enum { MODES = sizeof modes / sizeof *modes, COMMAND_BYTES = 1024, WORDS_MOST = 16 };
 
 const char *const entry_names[ENTRY_COUNT] = {
 #define S(name, parameters, arguments)       "cl" #name,
 #define O(type, name, parameters, arguments) "cl" #name,
-    OPENCL_ENTRIES(S, O)
+    OPENCL_ENTRIES(S, O, S, O)
 #undef S
 #undef O
 };
@@ -31,13 +33,30 @@ static bool one_command(char *text) {
     return count == 0;
 }
 
-EXPORT bool layer_command(const char *command) {
+static bool commands_run(const char *commands) {
     char text[COMMAND_BYTES], *rest = NULL;
-    if (snprintf(text, sizeof text, "%s", command) >= (int)sizeof text) return false;
+    if (snprintf(text, sizeof text, "%s", commands) >= (int)sizeof text) return false;
     for (char *one = strtok_r(text, ";", &rest); one; one = strtok_r(NULL, ";", &rest))
         if (!one_command(one)) return false;
     return true;
 }
+
+static atomic_ulong fault_count;
+
+void fault(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    atomic_fetch_add(&fault_count, 1);
+    fprintf(stderr, "layer: ");
+    vfprintf(stderr, format, arguments);
+    fprintf(stderr, "\n");
+    va_end(arguments);
+}
+
+static unsigned long faults(void) { return atomic_load(&fault_count); }
+
+EXPORT const layer_functions layer_control = {commands_run,      fail_calls,     fail_count,
+                                              ledger_references, ledger_pending, faults};
 
 EXPORT cl_int clGetLayerInfo(cl_layer_info what, size_t bytes, void *value, size_t *bytes_ret) {
     static const char name[] = "tetracubes test layer";
@@ -61,7 +80,7 @@ EXPORT cl_int clInitLayer(cl_uint entry_count, const cl_icd_dispatch *target, cl
     *entry_count_ret = sizeof table / sizeof(void *);
     *layer = &table;
     const char *command = getenv("TETRACUBES_LAYER");
-    if (command && !layer_command(command)) {
+    if (command && !commands_run(command)) {
         fprintf(stderr, "layer: TETRACUBES_LAYER is not understood: %s\n", command);
         abort();
     }

@@ -27,7 +27,7 @@
 typedef enum entry {
 #define S(name, parameters, arguments)       ENTRY_##name,
 #define O(type, name, parameters, arguments) ENTRY_##name,
-    OPENCL_ENTRIES(S, O)
+    OPENCL_ENTRIES(S, O, S, O)
 #undef S
 #undef O
         ENTRY_COUNT
@@ -35,20 +35,25 @@ typedef enum entry {
 
 extern const char *const entry_names[ENTRY_COUNT]; /* "clGetPlatformIDs", ... */
 
-/* -------------------------------------------------------------------------------- what a test finds by dlsym */
+/* ------------------------------------------------------------------------------- what a test finds as `layer_control`
+ */
 
-/* Carries a command out. False where it is none. */
-typedef bool layer_command_function(const char *command);
-bool layer_command(const char *command);
+typedef struct layer_functions {
+    /* Carries commands out. False where one is not understood. */
+    bool (*command)(const char *commands);
+    /* Calls of an entry point, such as "clFinish", since the last `fail` command; NULL: of all. */
+    unsigned long (*calls)(const char *entry_name);
+    /* How many of them have been failed. */
+    unsigned long (*failed)(void);
+    /* References to objects that the program holds now: made and retained, not released. */
+    long (*references)(void);
+    /* Commands in queues that have not ended. */
+    int (*pending)(void);
+    /* What the program did that no driver has to bear, each told on standard error when it happened. */
+    unsigned long (*faults)(void);
+} layer_functions;
 
-/* Calls of an entry point, such as "clFinish", since the last `fail` command; of all where it is NULL. 0 where the
- * layer does not know it. */
-typedef unsigned long layer_calls_function(const char *entry_name);
-unsigned long layer_calls(const char *entry_name);
-
-/* How many calls have been failed since the last `fail` command. */
-typedef unsigned long layer_failed_function(void);
-unsigned long layer_failed(void);
+extern const layer_functions layer_control;
 
 /* ------------------------------------------------------------------------------------------- what a mode is */
 
@@ -60,6 +65,14 @@ typedef struct layer_mode {
     bool (*command)(char *const *words, int count);
 } layer_mode;
 
-extern const layer_mode fail_mode, count_mode;
+extern const layer_mode fail_mode, count_mode, ledger_mode;
+
+unsigned long fail_calls(const char *entry_name);
+unsigned long fail_count(void);
+long ledger_references(void);
+int ledger_pending(void);
+
+/* Counts a fault of the program's and tells it. */
+void fault(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif
