@@ -48,63 +48,61 @@ static uint64_t difference(const void *a, const void *b, uint64_t count) {
     return n;
 }
 
-static tc_status counts_compare(const tc_context *context, const trial_volume *v, const uint64_t found[3],
-                                const uint64_t expected[3]) {
-    static const char *const names[] = {"the number of vertices,", "the number of triangles,",
-                                        "the number of active cells,"};
-    for (int n = 0; n < 3; n++)
-        if (found[n] != expected[n]) return wrong(context, v, names[n], found[n]);
+static tc_status counts_compare(const tc_context *context, const trial_volume *v, const tc_counts *found,
+                                const tc_mesh *expected) {
+    if (found->vertex_count != expected->vertex_count)
+        return wrong(context, v, "the number of vertices,", found->vertex_count);
+    if (found->triangle_count != expected->triangle_count)
+        return wrong(context, v, "the number of triangles,", found->triangle_count);
+    if (found->active_cell_count != expected->active_cell_count)
+        return wrong(context, v, "the number of active cells,", found->active_cell_count);
     return TC_OK;
 }
 
-static tc_status meshes_compare(const tc_context *context, const trial_volume *v, const tc_mesh_data *found,
-                                const tc_mesh_data *expected) {
-    const uint64_t counts[][3] = {{found->vertex_count, found->triangle_count, found->active_cell_count},
-                                  {expected->vertex_count, expected->triangle_count, expected->active_cell_count}};
-    tc_status status = counts_compare(context, v, counts[0], counts[1]);
+static tc_status meshes_compare(const tc_context *context, const trial_volume *v, const tc_mesh *found,
+                                const tc_mesh *expected) {
+    const tc_counts counts = {.vertex_count = found->vertex_count,
+                              .triangle_count = found->triangle_count,
+                              .active_cell_count = found->active_cell_count};
+    tc_status status = counts_compare(context, v, &counts, expected);
     if (status) return status;
-    uint64_t n = difference(found->triangles, expected->triangles, expected->triangle_count);
+    uint64_t n = difference(found->triangles.memory, expected->triangles.memory, expected->triangle_count);
     if (n < expected->triangle_count) return wrong(context, v, "triangle", n);
-    n = difference(found->positions, expected->positions, expected->vertex_count);
+    n = difference(found->positions.memory, expected->positions.memory, expected->vertex_count);
     if (n < expected->vertex_count) return wrong(context, v, "vertex", n);
-    n = expected->normals ? difference(found->normals, expected->normals, expected->vertex_count) : n;
+    if (!expected->has_normals) return TC_OK;
+    n = difference(found->normals.memory, expected->normals.memory, expected->vertex_count);
     return n < expected->vertex_count ? wrong(context, v, "normal", n) : TC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ trial */
 
 static tc_status reference_make(const trial_volume *v, const tc_extract_options *how, tc_context **context,
-                                tc_grid **grid, tc_mesh **mesh, tc_mesh_data *data) {
+                                tc_grid **grid, tc_mesh **mesh) {
     tc_context_options reference;
     tc_context_options_init(&reference);
     reference.engine = TC_ENGINE_REFERENCE;
-    data->struct_size = sizeof *data;
     tc_status status = tc_context_create(&reference, context);
     if (!status) status = trial_grid_create(v, *context, grid);
-    if (!status) status = tc_extract(*grid, how, mesh);
-    return status ? status : tc_mesh_get(*mesh, data);
+    return status ? status : tc_extract(*grid, how, mesh);
 }
 
 static tc_status count_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
-                           const tc_mesh_data *expected) {
-    tc_counts c = {.struct_size = sizeof c};
-    tc_status status = tc_count(grid, how, &c);
-    const uint64_t counts[][3] = {{c.vertex_count, c.triangle_count, c.active_cell_count},
-                                  {expected->vertex_count, expected->triangle_count, expected->active_cell_count}};
-    return status ? status : counts_compare(context, v, counts[0], counts[1]);
+                           const tc_mesh *expected) {
+    tc_counts counts = {.struct_size = sizeof counts};
+    tc_status status = tc_count(grid, how, &counts);
+    return status ? status : counts_compare(context, v, &counts, expected);
 }
 
 static tc_status extract_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
-                             tc_mesh **mesh, const tc_mesh_data *expected) {
-    tc_mesh_data data = {.struct_size = sizeof data};
+                             tc_mesh **mesh, const tc_mesh *expected) {
     tc_status status = tc_extract(grid, how, mesh);
-    if (!status) status = tc_mesh_get(*mesh, &data);
-    return status ? status : meshes_compare(context, v, &data, expected);
+    return status ? status : meshes_compare(context, v, *mesh, expected);
 }
 
 /* By the fallback of the scan first, then by look-back. */
 static tc_status device_try(tc_context *context, const trial_volume *v, const tc_extract_options *how, bool emits,
-                            const tc_mesh_data *expected) {
+                            const tc_mesh *expected) {
     const uint32_t spins[] = {1, context->options.spin_limit};
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
@@ -125,14 +123,13 @@ static tc_status kinds_try(tc_context *context, trial_volume *v, const tc_extrac
     tc_context *reference = NULL;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data expected = {0};
     const tc_context_options kept = context->options;
     tc_status status = trial_volume_make(v);
     how.isovalue = v->isovalue;
-    if (!status) status = reference_make(v, &how, &reference, &grid, &mesh, &expected);
+    if (!status) status = reference_make(v, &how, &reference, &grid, &mesh);
     context->options.check_device = 0;
     context->options.progress = NULL;
-    if (!status) status = device_try(context, v, &how, emits, &expected);
+    if (!status) status = device_try(context, v, &how, emits, mesh);
     context->options = kept;
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
