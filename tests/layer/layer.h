@@ -24,14 +24,14 @@
 
 #include <stdbool.h>
 
-typedef enum entry {
+typedef enum layer_entry {
 #define S(name, parameters, arguments)       ENTRY_##name,
 #define O(type, name, parameters, arguments) ENTRY_##name,
     OPENCL_ENTRIES(S, O, S, O)
 #undef S
 #undef O
         ENTRY_COUNT
-} entry;
+} layer_entry;
 
 extern const char *const entry_names[ENTRY_COUNT]; /* "clGetPlatformIDs", ... */
 

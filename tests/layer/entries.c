@@ -1,0 +1,10 @@
+/* The names of the entry points, for the layer and the tests that use it. */
+#include "layer.h"
+
+const char *const entry_names[ENTRY_COUNT] = {
+#define S(name, parameters, arguments)       "cl" #name,
+#define O(type, name, parameters, arguments) "cl" #name,
+    OPENCL_ENTRIES(S, O, S, O)
+#undef S
+#undef O
+};
