@@ -74,5 +74,8 @@ tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, cons
     if (status) return status;
     cl_int error = done ? cl->EnqueueMarkerWithWaitList(queue, 0, NULL, done) : CL_SUCCESS;
     if (!error) error = cl->Flush(queue);
-    return error ? context_fail(grid->context, "marking the end of kernel emit", error) : TC_OK;
+    if (!error) return TC_OK;
+    if (done && *done) cl->ReleaseEvent(*done);
+    if (done) *done = NULL;
+    return context_fail(grid->context, "marking the end of kernel emit", error);
 }

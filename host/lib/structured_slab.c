@@ -123,6 +123,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
     if (!status) status = axes_provide(grid);
     if (!status && device->plan.samples_whole) status = arrays_provide(grid);
+    if (status) cl->Finish(grid->context->queue); /* copies under way read what is the caller's */
     return status;
 }
 

@@ -2,9 +2,11 @@
 #include "layer.h"
 
 const char *const entry_names[ENTRY_COUNT] = {
-#define S(name, parameters, arguments)       "cl" #name,
-#define O(type, name, parameters, arguments) "cl" #name,
-    OPENCL_ENTRIES(S, O, S, O)
+#define S(name, parameters, arguments)         "cl" #name,
+#define O(type, name, parameters, arguments)   "cl" #name,
+#define E(name, blocks, parameters, arguments) S(name, parameters, arguments)
+    OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
 };

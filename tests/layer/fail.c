@@ -40,17 +40,21 @@ static bool is_made_first(layer_entry e) { return e == ENTRY_Finish || !strncmp(
         if (error) *error = injected;                                                                                  \
         return NULL;                                                                                                   \
     }
-OPENCL_ENTRIES(S, O, S, O)
+#define E(name, blocks, parameters, arguments) S(name, parameters, arguments)
+OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
 
 static void install(cl_icd_dispatch *table) {
     below = *table;
-#define S(name, parameters, arguments)       table->cl##name = name;
-#define O(type, name, parameters, arguments) table->cl##name = name;
-    OPENCL_ENTRIES(S, O, S, O)
+#define S(name, parameters, arguments)         table->cl##name = name;
+#define O(type, name, parameters, arguments)   table->cl##name = name;
+#define E(name, blocks, parameters, arguments) table->cl##name = name;
+    OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
 }
 
 static int entry_find(const char *name) {

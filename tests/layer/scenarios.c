@@ -9,11 +9,10 @@
 #include <math.h>
 #include <unistd.h>
 
-enum { NX = 40, NY = 20, NZ = 26, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
+enum { NX = 50, NY = 20, NZ = 50, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
 
 typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY } flow;
 typedef enum coordinates { UNIFORM, RECTILINEAR, CURVILINEAR } coordinates;
-typedef enum cache { NO_CACHE, CACHE_COLD, CACHE_WARM } cache;
 
 struct scenario {
     const char *name;
@@ -21,48 +20,43 @@ struct scenario {
     tc_type type;
     coordinates coordinates;
     tc_method method;
-    bool missing, normals, own_buffers, slabs;
-    cache cache;
+    bool normals, own_buffers, slabs, cold;
     tc_engine engine;
 };
 
 static const scenario scenarios[] = {
     {.name = "devices", .flow = FLOW_DEVICES},
-    {.name = "whole", .flow = FLOW_EXTRACT, .type = TC_U8},
-    {.name = "slabs", .flow = FLOW_EXTRACT, .type = TC_U8, .slabs = true},
-    {.name = "own buffers, missing samples",
+    {.name = "whole", .flow = FLOW_EXTRACT},
+    {.name = "own buffers, hybrid, normals",
+     .flow = FLOW_EXTRACT,
+     .method = TC_METHOD_HYBRID,
+     .normals = true,
+     .own_buffers = true},
+    {.name = "slabs, missing samples", .flow = FLOW_EXTRACT, .type = TC_F32, .slabs = true},
+    {.name = "slabs, own buffers, missing samples",
      .flow = FLOW_EXTRACT,
      .type = TC_F32,
-     .missing = true,
+     .slabs = true,
      .own_buffers = true},
-    {.name = "slabs, own buffers", .flow = FLOW_EXTRACT, .type = TC_U8, .slabs = true, .own_buffers = true},
-    {.name = "hybrid, normals", .flow = FLOW_EXTRACT, .type = TC_U8, .method = TC_METHOD_HYBRID, .normals = true},
-    {.name = "rectilinear", .flow = FLOW_EXTRACT, .type = TC_U8, .coordinates = RECTILINEAR},
-    {.name = "curvilinear, slabs", .flow = FLOW_EXTRACT, .type = TC_U8, .coordinates = CURVILINEAR, .slabs = true},
-    {.name = "curvilinear, own buffers",
-     .flow = FLOW_EXTRACT,
-     .type = TC_U8,
-     .coordinates = CURVILINEAR,
-     .own_buffers = true},
-    {.name = "complex", .flow = FLOW_COMPLEX, .type = TC_U8},
-    {.name = "complex, own buffers", .flow = FLOW_COMPLEX, .type = TC_U8, .own_buffers = true},
-    {.name = "count and emit", .flow = FLOW_EMIT, .type = TC_U8},
-    {.name = "program cache, cold", .flow = FLOW_EXTRACT, .type = TC_U8, .cache = CACHE_COLD},
-    {.name = "program cache, warm", .flow = FLOW_EXTRACT, .type = TC_U8, .cache = CACHE_WARM},
-    {.name = "reference",
+    {.name = "rectilinear", .flow = FLOW_EXTRACT, .coordinates = RECTILINEAR},
+    {.name = "curvilinear, slabs", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .slabs = true},
+    {.name = "curvilinear, own buffers", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .own_buffers = true},
+    {.name = "complex", .flow = FLOW_COMPLEX},
+    {.name = "complex, own buffers", .flow = FLOW_COMPLEX, .own_buffers = true},
+    {.name = "count and emit", .flow = FLOW_EMIT},
+    {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
+    {.name = "reference, missing samples",
      .flow = FLOW_EXTRACT,
      .type = TC_F32,
-     .missing = true,
      .normals = true,
      .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, hybrid, curvilinear",
      .flow = FLOW_EXTRACT,
-     .type = TC_U8,
      .method = TC_METHOD_HYBRID,
      .coordinates = CURVILINEAR,
      .engine = TC_ENGINE_REFERENCE},
-    {.name = "reference, complex", .flow = FLOW_COMPLEX, .type = TC_U8, .engine = TC_ENGINE_REFERENCE},
-    {.name = "carry", .flow = FLOW_CARRY, .type = TC_U8, .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, complex", .flow = FLOW_COMPLEX, .engine = TC_ENGINE_REFERENCE},
+    {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
 };
 enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
@@ -70,8 +64,8 @@ static const double isovalues[2] = {127.5, 90};
 
 static char problem[1500], cache_folder[PATH_BYTES];
 static uint8_t bytes[SAMPLES];
-static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX];
-static uint64_t budgets[SCENARIOS]; /* of memory, for those in slabs */
+static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
+static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
 static tc_complex complex;
 static tc_mesh *expected[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
@@ -307,8 +301,7 @@ static tc_status context_run(int index, trial *t) {
 const char *scenario_run(int index, trial *t) {
     const scenario *s = &scenarios[index];
     problem[0] = 0;
-    setenv("TETRACUBES_CACHE_DIR", s->cache ? cache_folder : "", 1);
-    if (s->cache == CACHE_COLD) cache_clear();
+    if (s->cold) cache_clear();
     const tc_status status = s->flow == FLOW_DEVICES ? devices_run(t) : context_run(index, t);
     if (t->over) t->over(t);
     if (status == TC_OK && !problem[0] && s->flow == FLOW_EMIT) emitted_check(index);
@@ -374,7 +367,7 @@ bool scenarios_prepare(const char *folder) {
     tc_grid_options grid;
     input_make();
     snprintf(cache_folder, sizeof cache_folder, "%s/programs", folder);
-    setenv("TETRACUBES_CACHE_DIR", "", 1);
+    setenv("TETRACUBES_CACHE_DIR", cache_folder, 1);
     complex.struct_size = sizeof complex;
     grid_describe(&scenarios[1], &grid);
     grid.points = points;

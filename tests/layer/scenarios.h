@@ -23,8 +23,8 @@ typedef struct trial {
 
 typedef struct scenario scenario;
 
-/* Makes what scenarios work on and compare with; false, with tc_message, where that fails. Needs the cache of programs
- * in a folder, which it makes below `folder`, for the scenarios of that cache alone. */
+/* Makes what scenarios work on and compare with; false, with tc_message, where that fails. The cache of programs is a
+ * folder below `folder`. */
 bool scenarios_prepare(const char *folder);
 void scenarios_release(void);
 
