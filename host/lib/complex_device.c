@@ -64,7 +64,7 @@ static tc_status array_provide(tc_context *context, device_buffer *buffer, const
     status = buffer_reserve(context, buffer, bytes, name);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, bytes, array, 0, NULL, NULL);
-    return error ? opencl_fail("copying the complex to the device", error) : TC_OK;
+    return error ? context_fail(context, "copying the complex to the device", error) : TC_OK;
 }
 
 static uint32_t cluster_count(const complex_grid *c) {
@@ -119,7 +119,8 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     cases_write(cases);
     cl_int error =
         cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    return error ? opencl_fail("uploading the case table", error) : TC_OK;
+    if (error) buffer_release(context, buffer); /* one that is there counts as filled */
+    return error ? context_fail(context, "uploading the case table", error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- commands */
@@ -141,20 +142,20 @@ static tc_status kernel_run(const complex_run *r, int kernel, const char *name, 
     if (!error)
         error =
             cl->EnqueueNDRangeKernel(r->context->queue, r->kernels[kernel], 1, NULL, &global, &local, 0, NULL, NULL);
-    return error ? opencl_fail(name, error) : TC_OK;
+    return error ? context_fail(r->context, name, error) : TC_OK;
 }
 
 static tc_status buffer_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
                              uint64_t bytes) {
     cl_int error =
         cl->EnqueueFillBuffer(r->context->queue, buffer->memory, &value, sizeof value, first, bytes, 0, NULL, NULL);
-    return error ? opencl_fail("clearing a buffer", error) : TC_OK;
+    return error ? context_fail(r->context, "clearing a buffer", error) : TC_OK;
 }
 
 static tc_status head_read(complex_run *r) {
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->work->state.memory, CL_TRUE, 0, sizeof r->head, r->head,
                                          0, NULL, NULL);
-    return error ? opencl_fail("reading totals", error) : TC_OK;
+    return error ? context_fail(r->context, "reading totals", error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------- classification */
@@ -336,13 +337,13 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
     cl_int error = CL_SUCCESS;
     if (!r->context->in_place) {
         error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_TRUE, 0, bytes, block->memory, 0, NULL, NULL);
-        return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+        return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
     }
     void *mapped = cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &error);
     if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
     cl->Finish(queue);
     buffer_release(r->context, buffer);
-    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
 static tc_status emit(complex_run *r, tc_mesh *mesh) {
@@ -366,7 +367,7 @@ static tc_status emit(complex_run *r, tc_mesh *mesh) {
                                          ARGUMENT(m->triangles.memory)};
     if (!status) status = kernel_run(r, KERNEL_EMIT, "kernel complex_emit", arguments, 12);
     cl_int error = cl->Finish(r->context->queue);
-    if (!status && error) status = opencl_fail("kernel complex_emit", error);
+    if (!status && error) status = context_fail(r->context, "kernel complex_emit", error);
     double emitted = clock_ms();
     if (!status) status = mesh_close(r, &m->positions, &mesh->positions, vertex_bytes);
     if (!status) status = mesh_close(r, &m->triangles, &mesh->triangles, triangle_bytes);

@@ -82,6 +82,9 @@ struct tc_context {
     uint64_t device_bytes, device_bytes_peak;
 };
 
+/* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */
+tc_status context_fail(const tc_context *context, const char *what, cl_int error);
+
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 

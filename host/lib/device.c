@@ -10,8 +10,11 @@
 
 enum { DEVICES_MAX = 256, PLATFORMS_MAX = 32 };
 
+static const cl_int platform_not_found = -1001; /* CL_PLATFORM_NOT_FOUND_KHR: the loader has no driver */
+
 typedef struct device_list {
     int count;
+    cl_int error; /* of the last platform that did not tell its devices */
     device_choice devices[DEVICES_MAX];
 } device_list;
 
@@ -25,7 +28,10 @@ static tc_status platform_list_make(platform_list *list) {
     if (status) return status;
     list->count = 0;
     cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, list->platforms, &list->count);
-    if (error != CL_SUCCESS || list->count == 0)
+    if (error && error != platform_not_found)
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "OpenCL does not tell its platforms (%d); the reference engine needs none", (int)error);
+    if (error || list->count == 0)
         return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL platform is installed (for the CPU on Debian: apt install "
                                                 "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
                                                 "reference engine needs none");
@@ -37,13 +43,21 @@ static tc_status platform_list_make(platform_list *list) {
 static void devices_append(device_list *list, const platform_list *platforms, cl_uint p) {
     cl_device_id devices[DEVICES_MAX];
     cl_uint device_count = 0, room = (cl_uint)(DEVICES_MAX - list->count);
-    if (room == 0 || cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count))
-        return;
+    if (room == 0) return;
+    cl_int error = cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count);
+    if (error && error != CL_DEVICE_NOT_FOUND) list->error = error;
+    if (error) return;
     for (cl_uint d = 0; d < device_count && d < room; d++)
         list->devices[list->count++] = (device_choice){platforms->platforms[p], devices[d], (int)p, (int)d};
 }
 
-static tc_status no_device(const platform_list *platforms) {
+static tc_status no_device(const platform_list *platforms, const device_list *list) {
+    if (list->error)
+        return (tc_status)fail(
+            TC_ERROR_DEVICE,
+            "an OpenCL platform does not tell its devices (%d), and none of the %u installed has one; "
+            "the reference engine needs none",
+            (int)list->error, platforms->count);
     return (tc_status)fail(TC_ERROR_DEVICE,
                            "the %u OpenCL platform(s) installed have no device (for the CPU on "
                            "Debian: apt install pocl-opencl-icd); the reference engine needs none",
@@ -53,9 +67,10 @@ static tc_status no_device(const platform_list *platforms) {
 static tc_status device_list_make(device_list *list) {
     platform_list platforms;
     list->count = 0;
+    list->error = CL_SUCCESS;
     tc_status status = platform_list_make(&platforms);
     for (cl_uint p = 0; !status && p < platforms.count; p++) devices_append(list, &platforms, p);
-    return status || list->count ? status : no_device(&platforms);
+    return status || list->count ? status : no_device(&platforms, list);
 }
 
 static void text_get(cl_device_id device, cl_device_info what, char *out, size_t bytes) {
@@ -68,6 +83,33 @@ static uint64_t number_get(cl_device_id device, cl_device_info what, size_t byte
     uint64_t value = 0;
     if (cl->GetDeviceInfo(device, what, bytes, &value, NULL)) value = 0;
     return value; /* little-endian hosts only, as the sign words are */
+}
+
+/* A number that nothing can be done without. */
+static tc_status limit_get(cl_device_id device, const tc_device_info *info, cl_device_info what, size_t bytes,
+                           const char *name, uint64_t *value) {
+    *value = 0;
+    cl_int error = cl->GetDeviceInfo(device, what, bytes, value, NULL);
+    if (!error && *value) return TC_OK;
+    return (tc_status)fail(TC_ERROR_DEVICE, "%s does not tell its %s (%d): its driver does not work", info->name, name,
+                           (int)error);
+}
+
+static tc_status limits_get(cl_device_id device, tc_device_info *info) {
+    uint64_t units = 0;
+    tc_status status =
+        limit_get(device, info, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint), "number of compute units", &units);
+    info->compute_units = (uint32_t)units;
+    if (!status)
+        status = limit_get(device, info, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t), "largest work-group",
+                           &info->max_work_group_size);
+    if (!status)
+        status =
+            limit_get(device, info, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong), "memory", &info->global_memory_bytes);
+    if (!status)
+        status = limit_get(device, info, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong), "largest buffer",
+                           &info->max_buffer_bytes);
+    return status;
 }
 
 static const char *type_name(cl_device_id device) {
@@ -91,16 +133,12 @@ tc_status device_describe(cl_device_id device, tc_device_info *info) {
     text_get(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
     text_get(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
     strcpy(info->type, type_name(device));
-    info->compute_units = (uint32_t)number_get(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
-    info->max_work_group_size = number_get(device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
-    info->global_memory_bytes = number_get(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
-    info->max_buffer_bytes = number_get(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong));
     info->local_memory_bytes = number_get(device, CL_DEVICE_LOCAL_MEM_SIZE, sizeof(cl_ulong));
     info->shares_host_memory = number_get(device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(cl_bool)) != 0;
     info->has_fp64 = number_get(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(cl_device_fp_config)) != 0;
     info->rounds_division = (number_get(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(cl_device_fp_config)) &
                              CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    return TC_OK;
+    return limits_get(device, info);
 }
 
 static bool text_contains(const char *text, const char *part) {
@@ -153,7 +191,7 @@ tc_status device_choose(const char *specification, device_choice *choice) {
                 return TC_OK;
             }
     }
-    if (!list.count) return no_device(&platforms);
+    if (!list.count) return no_device(&platforms, &list);
     if (specification && *specification)
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "no device \"%s\"%s among the %d of this machine: give an index, "

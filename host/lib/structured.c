@@ -53,7 +53,11 @@ static tc_status words_reserve(tc_context *context, device_buffer *words, uint64
         const cl_ulong word = sign == SIGN_INSIDE ? UINT64_MAX : 0;
         cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, sign * brick_bytes,
                                              brick_bytes, 0, NULL, NULL);
-        if (error) status = opencl_fail("filling constant sign words", error);
+        if (error) status = context_fail(context, "filling constant sign words", error);
+    }
+    if (status) { /* a buffer that is there counts as filled */
+        cl->Finish(context->queue);
+        buffer_release(context, words);
     }
     return status;
 }
@@ -196,7 +200,7 @@ static tc_status totals_read(run *r) {
     uint32_t slabs = r->plan->slab_count;
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.state.memory, CL_TRUE, 0,
                                          slabs * STATE_WORDS * sizeof *r->heads, r->heads, 0, NULL, NULL);
-    if (error) return opencl_fail("reading the totals of kernel classify", error);
+    if (error) return context_fail(r->context, "reading the totals of kernel classify", error);
     totals_add(r);
     for (uint32_t n = 0; n < slabs; n++)
         if (r->heads[n * STATE_WORDS + STATE_NONFINITE]) r->grid->device->missing = true;
@@ -208,7 +212,7 @@ static tc_status slabs_classify(run *r) {
     const cl_uint zero = 0;
     cl_int error = cl->EnqueueFillBuffer(r->context->queue, r->context->work.state.memory, &zero, sizeof zero, 0,
                                          state_bytes(r), 0, NULL, NULL);
-    if (error) return opencl_fail("clearing the scan", error);
+    if (error) return context_fail(r->context, "clearing the scan", error);
     const step_stages stages = {"classify", 0, r->classify_share, classify_load, slab_classify, classify_save};
     tc_status status = steps_run(r, &stages, r->plan->slab_count, plan_window_count(r->plan) > 1);
     return status ? status : totals_read(r);

@@ -4,7 +4,8 @@
  * OPENCL_ENTRIES(S, O, E, M): each entry as one of
  *     S(name, parameters, arguments)         returns a status
  *     O(type, name, parameters, arguments)   returns an object, and leaves the status in *error
- *     E(name, parameters, arguments)         puts a command into `queue`, hands out its `event`, returns a status
+ *     E(name, blocks, parameters, arguments) puts a command into `queue`, hands out its `event`, returns a status;
+ *                                            blocks: whether it returns when the command has ended
  *     M(type, name, parameters, arguments)   the one of these that returns memory, and leaves the status in *error
  */
 #ifndef ENTRIES_H
@@ -39,7 +40,8 @@
       (context, count, devices, lengths, binaries, states, error))                                                     \
     S(BuildProgram, (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,              \
       void (CL_CALLBACK *notify)(cl_program, void *), void *user), (program, count, devices, options, notify, user))   \
-    S(GetProgramInfo, (cl_program program, cl_program_info what, ENTRY_INFO), (program, what, bytes, value, bytes_ret))\
+    S(GetProgramInfo, (cl_program program, cl_program_info what, ENTRY_INFO),                                          \
+      (program, what, bytes, value, bytes_ret))                                                                        \
     S(GetProgramBuildInfo, (cl_program program, cl_device_id device, cl_program_build_info what, ENTRY_INFO),          \
       (program, device, what, bytes, value, bytes_ret))                                                                \
     S(ReleaseProgram, (cl_program program), (program))                                                                 \
@@ -53,23 +55,24 @@
     S(RetainMemObject, (cl_mem memory), (memory))                                                                      \
     S(GetMemObjectInfo, (cl_mem memory, cl_mem_info what, ENTRY_INFO), (memory, what, bytes, value, bytes_ret))        \
     S(ReleaseMemObject, (cl_mem memory), (memory))                                                                     \
-    E(EnqueueReadBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,        \
-      void *to, ENTRY_WAITS), (queue, memory, blocking, offset, bytes, to, wait_count, waits, event))                  \
-    E(EnqueueWriteBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset, size_t bytes,       \
-      const void *from, ENTRY_WAITS), (queue, memory, blocking, offset, bytes, from, wait_count, waits, event))        \
-    E(EnqueueFillBuffer, (cl_command_queue queue, cl_mem memory, const void *pattern, size_t pattern_bytes,            \
+    E(EnqueueReadBuffer, blocking, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,            \
+      size_t bytes, void *to, ENTRY_WAITS), (queue, memory, blocking, offset, bytes, to, wait_count, waits, event))    \
+    E(EnqueueWriteBuffer, blocking, (cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,           \
+      size_t bytes, const void *from, ENTRY_WAITS),                                                                    \
+      (queue, memory, blocking, offset, bytes, from, wait_count, waits, event))                                        \
+    E(EnqueueFillBuffer, false, (cl_command_queue queue, cl_mem memory, const void *pattern, size_t pattern_bytes,     \
       size_t offset, size_t bytes, ENTRY_WAITS),                                                                       \
       (queue, memory, pattern, pattern_bytes, offset, bytes, wait_count, waits, event))                                \
     M(void *, EnqueueMapBuffer, (cl_command_queue queue, cl_mem memory, cl_bool blocking, cl_map_flags flags,          \
       size_t offset, size_t bytes, ENTRY_WAITS, cl_int *error),                                                        \
       (queue, memory, blocking, flags, offset, bytes, wait_count, waits, event, error))                                \
-    E(EnqueueUnmapMemObject, (cl_command_queue queue, cl_mem memory, void *mapped, ENTRY_WAITS),                       \
+    E(EnqueueUnmapMemObject, false, (cl_command_queue queue, cl_mem memory, void *mapped, ENTRY_WAITS),                \
       (queue, memory, mapped, wait_count, waits, event))                                                               \
-    E(EnqueueNDRangeKernel, (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *first,        \
+    E(EnqueueNDRangeKernel, false, (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *first, \
       const size_t *global, const size_t *local, ENTRY_WAITS),                                                         \
       (queue, kernel, dimensions, first, global, local, wait_count, waits, event))                                     \
-    E(EnqueueMarkerWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))             \
-    E(EnqueueBarrierWithWaitList, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))            \
+    E(EnqueueMarkerWithWaitList, false, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))      \
+    E(EnqueueBarrierWithWaitList, false, (cl_command_queue queue, ENTRY_WAITS), (queue, wait_count, waits, event))     \
     S(ReleaseEvent, (cl_event event), (event))                                                                         \
     S(Flush, (cl_command_queue queue), (queue))                                                                        \
     S(Finish, (cl_command_queue queue), (queue))

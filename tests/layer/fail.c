@@ -18,14 +18,14 @@ static atomic_int failing = -1; /* the entry; -1: none */
 static unsigned long first_call, end_call;
 static cl_int failure;
 
-static cl_int failure_of(entry e) {
+static cl_int failure_of(layer_entry e) {
     unsigned long call = atomic_fetch_add(&calls[e], 1) + 1;
     if (atomic_load(&failing) != (int)e || call < first_call || call >= end_call) return CL_SUCCESS;
     atomic_fetch_add(&failed, 1);
     return failure;
 }
 
-static bool is_made_first(entry e) { return e == ENTRY_Finish || !strncmp(entry_names[e], "clRelease", 9); }
+static bool is_made_first(layer_entry e) { return e == ENTRY_Finish || !strncmp(entry_names[e], "clRelease", 9); }
 
 #define S(name, parameters, arguments)                                                                                 \
     static cl_int CL_API_CALL name parameters {                                                                        \
@@ -40,17 +40,21 @@ static bool is_made_first(entry e) { return e == ENTRY_Finish || !strncmp(entry_
         if (error) *error = injected;                                                                                  \
         return NULL;                                                                                                   \
     }
-OPENCL_ENTRIES(S, O, S, O)
+#define E(name, blocks, parameters, arguments) S(name, parameters, arguments)
+OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
 
 static void install(cl_icd_dispatch *table) {
     below = *table;
-#define S(name, parameters, arguments)       table->cl##name = name;
-#define O(type, name, parameters, arguments) table->cl##name = name;
-    OPENCL_ENTRIES(S, O, S, O)
+#define S(name, parameters, arguments)         table->cl##name = name;
+#define O(type, name, parameters, arguments)   table->cl##name = name;
+#define E(name, blocks, parameters, arguments) table->cl##name = name;
+    OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
 }
 
 static int entry_find(const char *name) {

@@ -12,16 +12,8 @@
 #define EXPORT __attribute__((visibility("default")))
 
 /* From the driver up: what a mode does to a call is seen by those above it. */
-static const layer_mode *const modes[] = {&ledger_mode, &fail_mode, &count_mode};
+static const layer_mode *const modes[] = {&late_mode, &ledger_mode, &fail_mode, &count_mode};
 enum { MODES = sizeof modes / sizeof *modes, COMMAND_BYTES = 1024, WORDS_MOST = 16 };
-
-const char *const entry_names[ENTRY_COUNT] = {
-#define S(name, parameters, arguments)       "cl" #name,
-#define O(type, name, parameters, arguments) "cl" #name,
-    OPENCL_ENTRIES(S, O, S, O)
-#undef S
-#undef O
-};
 
 static bool one_command(char *text) {
     char *words[WORDS_MOST], *rest = NULL;

@@ -10,6 +10,7 @@
  *     fail ENTRY N [ERROR [COUNT]]   call N (from 1, counted from here on) of the entry point returns ERROR, a number;
  *                                    so do the COUNT - 1 calls behind it (0: all of them). ENTRY as in clFinish; "off"
  *                                    switches it off
+ *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
  *     count                          at the end of the process the calls of each entry point go to standard error
  *
  * Commands are separated by ';'.
@@ -24,14 +25,16 @@
 
 #include <stdbool.h>
 
-typedef enum entry {
-#define S(name, parameters, arguments)       ENTRY_##name,
-#define O(type, name, parameters, arguments) ENTRY_##name,
-    OPENCL_ENTRIES(S, O, S, O)
+typedef enum layer_entry {
+#define S(name, parameters, arguments)         ENTRY_##name,
+#define O(type, name, parameters, arguments)   ENTRY_##name,
+#define E(name, blocks, parameters, arguments) S(name, parameters, arguments)
+    OPENCL_ENTRIES(S, O, E, O)
 #undef S
 #undef O
+#undef E
         ENTRY_COUNT
-} entry;
+} layer_entry;
 
 extern const char *const entry_names[ENTRY_COUNT]; /* "clGetPlatformIDs", ... */
 
@@ -65,7 +68,7 @@ typedef struct layer_mode {
     bool (*command)(char *const *words, int count);
 } layer_mode;
 
-extern const layer_mode fail_mode, count_mode, ledger_mode;
+extern const layer_mode fail_mode, count_mode, ledger_mode, late_mode;
 
 unsigned long fail_calls(const char *entry_name);
 unsigned long fail_count(void);

@@ -115,7 +115,7 @@ int ledger_pending(void) {
         if (made) object_count_add(made, 1, "cl" #name);                                                               \
         return made;                                                                                                   \
     }
-#define E(name, parameters, arguments)                                                                                 \
+#define E(name, blocks, parameters, arguments)                                                                         \
     static cl_int CL_API_CALL name parameters {                                                                        \
         cl_event made = NULL, *theirs = event;                                                                         \
         object_use(queue, "cl" #name);                                                                                 \
@@ -160,9 +160,9 @@ REFERENCES(R)
 
 static void install(cl_icd_dispatch *table) {
     below = *table;
-#define O(type, name, parameters, arguments) table->cl##name = name;
-#define E(name, parameters, arguments)       table->cl##name = name;
-#define R(name, type, change)                table->cl##name = name;
+#define O(type, name, parameters, arguments)   table->cl##name = name;
+#define E(name, blocks, parameters, arguments) table->cl##name = name;
+#define R(name, type, change)                  table->cl##name = name;
     OPENCL_ENTRIES(S, O, E, O)
     REFERENCES(R)
 #undef S
