@@ -3,11 +3,12 @@
  *
  * A driver may build or run kernels wrongly and report success. So, where the context's options say check_device, the
  * kernels that an extraction needs are run once per context on a volume that has everything in small: several words,
- * bricks and tiles, both parities, ties, subnormal and huge samples, missing ones where the kernels know of them. The
- * sums of the scan are taken both ways, by look-back and by its fallback; a second visit uses the ranges of the first.
- * Counts first: wrong ones could make kernel 2 write where nothing is. Then every byte is compared with the scalar
- * reference. That takes a few milliseconds; so the verdict is kept in the context alone, where it cannot outlive a
- * change of driver or device.
+ * bricks and tiles, both parities, ties, subnormal and huge samples, missing ones where the kernels know of them.
+ *
+ * Counts first: wrong ones could make kernel 2 write where nothing is. Then every byte of the mesh is compared with the
+ * scalar reference's, then counts once more, by the fallback of the scan and from the ranges that the visit before has
+ * left. That takes a few milliseconds; so the verdict is kept in the context alone, where it cannot outlive a change of
+ * driver or device.
  */
 #ifndef TRIAL_H
 #define TRIAL_H

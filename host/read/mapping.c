@@ -3,6 +3,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "truncation.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,6 +15,7 @@
 
 int mapping_open(const char *path, mapping *m) {
     *m = (mapping){0};
+    truncation_watch();
     /* without O_NONBLOCK, opening a pipe would wait for its writer */
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno));

@@ -167,7 +167,7 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
     s->triangle_count = counts.triangle_count;
     s->active_cell_count = counts.active_cell_count;
     s->classify_ms = counts.classify_ms;
-    return status;
+    return status ? status : progress_status();
 }
 
 static void describe_mesh(const options *o, const tc_mesh_data *m, surface_report *s) {

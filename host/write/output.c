@@ -17,6 +17,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "parallel.h"
+#include "truncation.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -144,6 +145,7 @@ void output_bytes(output *o, const void *data, uint64_t bytes) {
             o->error = ENOSPC;
         } else if (errno != EINTR) {
             o->error = errno;
+            if (errno == EFAULT) truncation_note();
         }
     }
 }
@@ -209,6 +211,8 @@ void output_records(output *o, uint64_t count, size_t record_bytes, output_encod
 }
 
 int output_close(output *o) {
+    if (truncation_seen()) o->error = EFAULT; /* what was written may be zeros in place of an input file */
     release(o);
+    if (truncation_seen()) return truncation_status();
     return o->error ? fail_write(o->name, o->error) : 0;
 }

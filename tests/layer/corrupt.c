@@ -32,12 +32,13 @@ typedef struct mistake {
 
 static const mistake mistakes[] = {
     {"popcount", "return (x * 0x0101010101010101ul) >> 56;",
-     "x = (x * 0x0101010101010101ul) >> 56; return x + (lanes)(x == 33ul);"},
+     "x = (x * 0x0101010101010101ul) >> 56; return x + lanes_select(x == 33ul);"},
     {"division", "return a / b; }", "return as_float(as_uint(a / b) + ((as_uint(a) & 15) == 1)); }"},
     {"subnormals", "float crossing(REAL a, REAL b, REAL iso) {\n",
-     "float crossing(REAL a, REAL b, REAL iso) {\n a = fabs(a) < 0x1p-126f ? 0 : a; b = fabs(b) < 0x1p-126f ? 0 : b;\n"},
+     "float crossing(REAL a, REAL b, REAL iso) {\n a = fabs(a) < 0x1p-126f ? 0 : a; b = fabs(b) < 0x1p-126f ? 0 : "
+     "b;\n"},
     {"overflow", "isinf(b - a) ? (REAL)0.5f : (REAL)1", "(REAL)1"},
-    {"contraction", "p0 + t * (p1 - p0)", "fma((float3)(t), p1 - p0, p0)"},
+    {"contraction", "((m[0] * x + m[1] * y) + m[2] * z) + m[3]", "fma(m[2], z, fma(m[0], x, m[1] * y)) + m[3]"},
     {"look-back", "*sum += word & SCAN_VALUE;", "*sum += word & 0xfff;"},
     {"fallback", "atomic_add(&shared[2], e.vertices);", "atomic_add(&shared[2], e.vertices + 1);"},
     {"comparison", "<= (samples64)(BITS)s->inside_span", "< (samples64)(BITS)s->inside_span"},
@@ -135,8 +136,8 @@ static cl_int CL_API_CALL EnqueueNDRangeKernel(cl_command_queue queue, cl_kernel
 static cl_int CL_API_CALL EnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
                                             size_t bytes, void *to, ENTRY_WAITS) {
     const bool flips = action == READ && byte_index < bytes;
-    const cl_int error = below.clEnqueueReadBuffer(queue, memory, blocking || flips, offset, bytes, to, wait_count,
-                                                   waits, event);
+    const cl_int error =
+        below.clEnqueueReadBuffer(queue, memory, blocking || flips, offset, bytes, to, wait_count, waits, event);
     if (!error && flips) ((unsigned char *)to)[byte_index] ^= (unsigned char)(1u << bit_index);
     return error;
 }

@@ -10,6 +10,10 @@
  *     fail ENTRY N [ERROR [COUNT]]   call N (from 1, counted from here on) of the entry point returns ERROR, a number;
  *                                    so do the COUNT - 1 calls behind it (0: all of them). ENTRY as in clFinish; "off"
  *                                    switches it off
+ *     corrupt drop KERNEL [FIRST]    launches of the kernel, from number FIRST on, are left out
+ *     corrupt flip KERNEL ARGUMENT BYTE BIT    that bit of what the argument points to is wrong after each launch
+ *     corrupt read BYTE BIT          that bit is wrong in whatever is read from a buffer
+ *     corrupt build MISTAKE          programs are built wrongly: the table of corrupt.c; "corrupt off" ends either
  *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
  *     count                          at the end of the process the calls of each entry point go to standard error
  *
@@ -68,7 +72,7 @@ typedef struct layer_mode {
     bool (*command)(char *const *words, int count);
 } layer_mode;
 
-extern const layer_mode fail_mode, count_mode, ledger_mode, late_mode;
+extern const layer_mode corrupt_mode, fail_mode, count_mode, ledger_mode, late_mode;
 
 unsigned long fail_calls(const char *entry_name);
 unsigned long fail_count(void);
