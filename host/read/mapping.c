@@ -7,11 +7,45 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* All files mapped so far. */
+static struct {
+    pthread_mutex_t lock;
+    struct file_identity {
+        dev_t device;
+        ino_t number;
+    } *files;
+    size_t count;
+} opened = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static int remember(const struct stat *about) {
+    pthread_mutex_lock(&opened.lock);
+    struct file_identity *grown = realloc(opened.files, (opened.count + 1) * sizeof *grown);
+    if (grown) {
+        grown[opened.count++] = (struct file_identity){about->st_dev, about->st_ino};
+        opened.files = grown;
+    }
+    pthread_mutex_unlock(&opened.lock);
+    return grown != NULL;
+}
+
+int mapping_was_opened(const char *path) {
+    struct stat about;
+    int found = 0;
+    if (stat(path, &about)) return 0;
+    pthread_mutex_lock(&opened.lock);
+    for (size_t n = 0; n < opened.count && !found; n++)
+        found = opened.files[n].device == about.st_dev && opened.files[n].number == about.st_ino;
+    pthread_mutex_unlock(&opened.lock);
+    return found;
+}
 
 int mapping_open(const char *path, mapping *m) {
     *m = (mapping){0};
@@ -28,6 +62,8 @@ int mapping_open(const char *path, mapping *m) {
         status = fail(STATUS_INPUT, "%s: is not a regular file; name a volume file", path);
     } else if ((uintmax_t)about.st_size > SIZE_MAX / 2) {
         status = fail(STATUS_INPUT, "%s: is larger than this machine can address", path);
+    } else if (!remember(&about)) {
+        status = fail(STATUS_FAILED, "%s: out of memory for the names of the input", path);
     } else if (about.st_size > 0) {
         void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
         if (bytes == MAP_FAILED)

@@ -75,6 +75,7 @@ static int check_kinds(const job *j) {
 static int read_input(job *j) {
     double begin = now_ms();
     int status = input_read(j->o, &j->data);
+    if (!status) status = surface_files_check(j->o);
     if (!status) status = check_kinds(j);
     if (!status) status = input_select(j->o, &j->data, &j->field);
     if (!status) status = carry_select(j->o, &j->data, &j->carried);

@@ -7,7 +7,9 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
+#include "output.h"
 #include "progress.h"
+#include "truncation.h"
 #include "volume.h"
 
 #include <errno.h>
@@ -170,7 +172,10 @@ static int run_command(const command *c, int argc, char **argv) {
         print_command_help(c, stdout);
     } else if (!status) {
         progress_begin(o.quiet);
+        output_stop_when(progress_cancelled);
         status = c->run(&o);
+        if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();
+        if (status && truncation_seen()) status = truncation_status(); /* whatever came of it */
         progress_clear();
     }
     options_release(&o);

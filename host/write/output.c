@@ -29,7 +29,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { NAME_KEPT = 200, ATTEMPTS = 100 };
+enum { NAME_KEPT = 200, ATTEMPTS = 100, WRITE_MOST = 1 << 26 };
 
 static const char *advice(int error) {
     switch (error) {
@@ -134,10 +134,15 @@ void output_expect(output *o, uint64_t bytes) {
     if (o->temporary && bytes > 0 && bytes <= INT64_MAX) (void)fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
 }
 
+static int (*stop_asked)(void);
+
+void output_stop_when(int (*asked)(void)) { stop_asked = asked; }
+
 void output_bytes(output *o, const void *data, uint64_t bytes) {
     const unsigned char *from = data;
     while (bytes > 0 && !o->error) {
-        ssize_t written = write(o->fd, from, bytes);
+        ssize_t written = write(o->fd, from, bytes < WRITE_MOST ? bytes : WRITE_MOST);
+        if (stop_asked && stop_asked()) o->error = ECANCELED;
         if (written > 0) {
             from += written;
             bytes -= (uint64_t)written;

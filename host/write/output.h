@@ -30,6 +30,9 @@ typedef struct output {
  * it at once. */
 typedef unsigned char *output_encode(const void *source, uint64_t first, uint64_t end, unsigned char *to);
 
+/* Has `asked` asked between writes, by all outputs from now on: nonzero ends them, and output_close then fails. */
+void output_stop_when(int (*asked)(void));
+
 /* Returns 0 or STATUS_FAILED with its text; the output then needs no output_close. path must outlive the output. */
 int output_open(output *o, const char *path);
 
