@@ -27,6 +27,7 @@ enum { RANGES_MOST = 16, PIECES_MOST = 1 << 16 };
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static unsigned long request_count, failing, failed_count;
 static long piece_count, mapped;
+static int filling = -1;
 static const void *pieces[PIECES_MOST]; /* open addressing; NULL: free */
 
 /* -------------------------------------------------------------------------------------------------- who is asking */
@@ -99,6 +100,12 @@ static void *piece_add(void *memory, const void *caller) {
     return memory;
 }
 
+/* Memory of no promised content, with some. */
+static void *filled(void *memory, size_t bytes, const void *caller) {
+    if (memory && filling >= 0 && is_ours(caller)) memset(memory, filling, bytes);
+    return memory;
+}
+
 /* Takes it from the table, and moves those behind it that would not be found any more. */
 static void piece_remove(const void *memory) {
     if (!memory) return;
@@ -123,7 +130,9 @@ static void piece_remove(const void *memory) {
 
 #define CALLER __builtin_return_address(0)
 
-EXPORT void *malloc(size_t bytes) { return request_fails(CALLER) ? NULL : piece_add(__libc_malloc(bytes), CALLER); }
+EXPORT void *malloc(size_t bytes) {
+    return request_fails(CALLER) ? NULL : piece_add(filled(__libc_malloc(bytes), bytes, CALLER), CALLER);
+}
 
 EXPORT void *calloc(size_t count, size_t bytes) {
     return request_fails(CALLER) ? NULL : piece_add(__libc_calloc(count, bytes), CALLER);
@@ -137,12 +146,12 @@ EXPORT void *realloc(void *memory, size_t bytes) {
 }
 
 EXPORT void *aligned_alloc(size_t alignment, size_t bytes) {
-    return request_fails(CALLER) ? NULL : piece_add(__libc_memalign(alignment, bytes), CALLER);
+    return request_fails(CALLER) ? NULL : piece_add(filled(__libc_memalign(alignment, bytes), bytes, CALLER), CALLER);
 }
 
 EXPORT int posix_memalign(void **memory, size_t alignment, size_t bytes) {
     if (request_fails(CALLER)) return ENOMEM;
-    void *made = piece_add(__libc_memalign(alignment, bytes), CALLER);
+    void *made = piece_add(filled(__libc_memalign(alignment, bytes), bytes, CALLER), CALLER);
     if (made) *memory = made;
     return made ? 0 : ENOMEM;
 }
@@ -181,7 +190,7 @@ EXPORT void *mmap(void *address, size_t bytes, int protection, int flags, int fi
     if (request_fails(CALLER)) return MAP_FAILED;
     void *made = (void *)syscall(SYS_mmap, address, bytes, protection, flags, file, offset); // NOLINT
     if (made != MAP_FAILED && is_ours(CALLER)) __atomic_add_fetch(&mapped, (long)bytes, __ATOMIC_RELAXED);
-    return made;
+    return made != MAP_FAILED && flags & MAP_ANONYMOUS ? filled(made, bytes, CALLER) : made;
 }
 
 EXPORT int munmap(void *address, size_t bytes) {
@@ -198,9 +207,11 @@ static void fail_at(unsigned long n) {
     pthread_mutex_unlock(&lock);
 }
 
+static void fill(int byte) { filling = byte; }
+
 static unsigned long requests(void) { return request_count; }
 static unsigned long failed(void) { return failed_count; }
 static long pieces_left(void) { return piece_count; }
 static long mapped_bytes(void) { return mapped; }
 
-EXPORT const memory_fault_functions memory_fault_control = {fail_at, requests, failed, pieces_left, mapped_bytes};
+EXPORT const memory_fault_functions memory_fault_control = {fail_at, fill, requests, failed, pieces_left, mapped_bytes};

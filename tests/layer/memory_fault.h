@@ -14,6 +14,8 @@
 typedef struct memory_fault_functions {
     /* Request n from now on fails, of those counted; 0: none does. */
     void (*fail)(unsigned long n);
+    /* Memory that is given from now on is full of this byte, where it need not be 0; -1: as it comes. */
+    void (*fill)(int byte);
     /* Requests since then, and how many of them have failed. */
     unsigned long (*requests)(void);
     unsigned long (*failed)(void);

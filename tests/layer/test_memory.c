@@ -1,5 +1,5 @@
 /*
- * test_memory.c - buffers full of one pattern or another, guards around them, and a device that is late: the same bytes
+ * test_memory.c - new memory full of one pattern or another, guards around buffers, a device that is late: same bytes
  *
  * Each watch is first shown to catch what it is for, in a kernel or program made wrong on purpose.
  *
@@ -9,6 +9,7 @@
 
 #include "expect.h"
 #include "layer_find.h"
+#include "memory_fault.h"
 #include "scenarios.h"
 
 #include <string.h>
@@ -16,6 +17,7 @@
 enum { SKIPPED = 77, BYTES = 64 };
 
 static const layer_functions *layer;
+static const memory_fault_functions *host; /* NULL where it is not preloaded */
 static cl_context context;
 static cl_command_queue queue;
 static cl_device_id device;
@@ -99,29 +101,40 @@ static bool call_failed(trial *t, const char *call, tc_status status) {
     return false;
 }
 
-static void test_scenarios(const char *mode) {
+/* host_byte: what new memory of the host is full of; -1: as it comes. */
+static void test_scenarios(const char *mode, int host_byte) {
     char label[128];
     trial t = {.failed = call_failed, .user = label};
     EXPECT(layer->command(mode), "the layer does not take: %s", mode);
+    if (host) host->fill(host_byte);
     for (int index = 0; index < scenario_count(); index++) {
         const unsigned long faults = layer->faults();
         if (!scenario_uses_device(index)) continue;
-        snprintf(label, sizeof label, "%s, %s", mode, scenario_name(index));
+        snprintf(label, sizeof label, "%s, host %d, %s", mode, host_byte, scenario_name(index));
         const char *problem = scenario_run(index, &t);
         EXPECT(!problem, "%s: %s", label, problem);
         EXPECT(layer->faults() == faults, "%s: faults", label);
     }
     layer->command("memory off;late off");
+    if (host) host->fill(-1);
 }
 
 int main(int argc, char **argv) {
-    static const char *const modes[] = {"memory 0xA5", "memory 0x5A", "late hold", "late 200", "memory 0xFF;late hold"};
+    static const struct {
+        const char *layer;
+        int host_byte;
+    } modes[] = {{"memory 0xA5", -1},
+                 {"memory 0x5A", -1},
+                 {"late hold", 0xA5},
+                 {"late 200", 0x5A},
+                 {"memory 0xFF;late hold", 0xFF}};
     int devices;
     if (argc < 2) return EXIT_FAILURE;
     if (tc_device_count(&devices) != TC_OK || !(layer = layer_find()) || !device_open()) {
         printf("skipped: no device, or a loader without layers\n");
         return SKIPPED;
     }
+    host = dlsym(RTLD_DEFAULT, "memory_fault_control");
     test_the_layer();
     clReleaseCommandQueue(queue);
     clReleaseContext(context);
@@ -129,7 +142,7 @@ int main(int argc, char **argv) {
         printf("no scenario: %s\n", tc_message());
         return EXIT_FAILURE;
     }
-    for (size_t n = 0; n < sizeof modes / sizeof *modes; n++) test_scenarios(modes[n]);
+    for (size_t n = 0; n < sizeof modes / sizeof *modes; n++) test_scenarios(modes[n].layer, modes[n].host_byte);
     scenarios_release();
     EXPECT(layer->references() == 0, "%ld references are left at the end", layer->references());
     return EXPECT_DONE();
