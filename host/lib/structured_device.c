@@ -71,11 +71,11 @@ tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, cons
     cl_command_queue queue = grid->context->queue;
     tc_status status = counted_check(grid, options);
     if (!status && grid->device->heads) status = surface_emit(grid, options, mesh);
-    if (status) return status;
-    cl_int error = done ? cl->EnqueueMarkerWithWaitList(queue, 0, NULL, done) : CL_SUCCESS;
-    if (!error) error = cl->Flush(queue);
-    if (!error) return TC_OK;
+    cl_int error = !status && done ? cl->EnqueueMarkerWithWaitList(queue, 0, NULL, done) : CL_SUCCESS;
+    if (!status && !error) error = cl->Flush(queue);
+    if (!status && !error) return TC_OK;
+    cl->Finish(queue); /* nothing is under way for a call that failed */
     if (done && *done) cl->ReleaseEvent(*done);
     if (done) *done = NULL;
-    return context_fail(grid->context, "marking the end of kernel emit", error);
+    return status ? status : context_fail(grid->context, "marking the end of kernel emit", error);
 }

@@ -11,18 +11,18 @@
  */
 #include "expect.h"
 #include "layer_find.h"
+#include "results.h"
 #include "scenarios.h"
 
 #include <signal.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { SKIPPED = 77 };
 
 static const layer_functions *layer;
 static char label[256]; /* of the trial under way */
-static long trials, tolerated;
+static long trials, tolerated, scenarios_run, entries_failed[ENTRY_COUNT];
 
 /* What an injected error is to be reported as. */
 typedef struct failure_kind {
@@ -81,6 +81,7 @@ static bool trial_run(int index, const char *entry, unsigned long call, const fa
     EXPECT(layer->faults() == faults, "%s: faults", label);
     if (!w.failed) return false;
     trials++;
+    for (int e = 0; e < ENTRY_COUNT; e++) entries_failed[e] += !strcmp(entry, entry_names[e]);
     tolerated += w.failures == 0;
     return true;
 }
@@ -101,12 +102,6 @@ static bool no_failure(trial *t, const char *call, tc_status status) {
     return false;
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void calls_note(trial *t) {
     unsigned long *calls = t->user;
     for (int e = 0; e < ENTRY_COUNT; e++) calls[e] = layer->calls(entry_names[e]);
@@ -125,11 +120,12 @@ static void calls_count(int index, unsigned long calls[ENTRY_COUNT]) {
 
 static void scenario_sweep(int index, bool all) {
     unsigned long calls[ENTRY_COUNT];
-    const double start = seconds();
+    const double start = results_seconds();
     const long before = trials;
     calls_count(index, calls);
+    scenarios_run++;
     for (int e = 0; e < ENTRY_COUNT; e++) entry_sweep(index, e, calls[e], all);
-    printf("%-36s %5ld failures, %.1f s\n", scenario_name(index), trials - before, seconds() - start);
+    printf("%-36s %5ld failures, %.1f s\n", scenario_name(index), trials - before, results_seconds() - start);
     fflush(stdout);
 }
 
@@ -145,6 +141,7 @@ static void crash_report(int signal_number) {
 
 int main(int argc, char **argv) {
     int devices;
+    const double start = results_seconds();
     const bool all = argc > 2 && !strcmp(argv[2], "all");
     if (argc < 2) return EXIT_FAILURE;
     if (tc_device_count(&devices) != TC_OK || !(layer = layer_find())) {
@@ -162,6 +159,16 @@ int main(int argc, char **argv) {
             scenario_sweep(index, all);
     scenarios_release();
     EXPECT(layer->references() == 0, "%ld references are left at the end", layer->references());
-    printf("%ld failures, %ld of them done without\n", trials, tolerated);
+    long entries = 0;
+    for (int e = 0; e < ENTRY_COUNT; e++) entries += entries_failed[e] > 0;
+    printf("%ld failures of %ld entry points, %ld of them done without\n", trials, entries, tolerated);
+    if (all)
+        results_write("failures", start,
+                      (result[]){{"calls of OpenCL failed", trials},
+                                 {"entry points", entries},
+                                 {"scenarios", scenarios_run},
+                                 {"failures done without, with the same bytes", tolerated},
+                                 {"wrong statuses or bytes, leaks, crashes", expect_failures}},
+                      5);
     return EXPECT_DONE();
 }
