@@ -88,8 +88,8 @@ static const option table[] = {
      "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
      "ambiguous cases the tetrahedra decide: fewer triangles, structured grids"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
-     "opencl (default); reference: scalar C, needs no OpenCL, same bytes; auto: the\n"
-     "reference where there is no device, or it fails or gives wrong results"},
+     "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
+     "the reference where there is no device, or it fails or gives wrong results"},
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
