@@ -29,7 +29,8 @@ int mapping_open(const char *path, mapping *m) {
     } else if (about.st_size > 0) {
         void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
         if (bytes == MAP_FAILED)
-            status = fail(STATUS_INPUT, "%s: cannot be mapped into memory: %s", path, strerror(errno));
+            status = fail(errno == ENOMEM ? STATUS_FAILED : STATUS_INPUT, "%s: cannot be mapped into memory: %s", path,
+                          strerror(errno));
         else
             *m = (mapping){bytes, (size_t)about.st_size};
     }
