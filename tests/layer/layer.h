@@ -7,9 +7,10 @@
  * TETRACUBES_LAYER when the layer is loaded, or at any time through the command function, which a test in the same
  * process gets by dlsym:
  *
- *     fail ENTRY N [ERROR [COUNT]]   call N (from 1, counted from here on) of the entry point returns ERROR, a number;
+ *     fail ENTRY N [ERROR [COUNT [later]]]
+ *                                    call N (from 1, counted from here on) of the entry point returns ERROR, a number;
  *                                    so do the COUNT - 1 calls behind it (0: all of them). ENTRY as in clFinish; "off"
- *                                    switches it off
+ *                                    switches it off. later: the next call that waits returns it, see fail.c
  *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
  *     memory PATTERN | off           new buffers are full of a byte, and have guards around them: memory.c
  *     count                          at the end of the process the calls of each entry point go to standard error
