@@ -119,7 +119,6 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     cases_write(cases);
     cl_int error =
         cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    if (error) buffer_release(context, buffer); /* one that is there counts as filled */
     return error ? context_fail(context, "uploading the case table", error) : TC_OK;
 }
 
@@ -300,6 +299,13 @@ static tc_status edges_number(complex_run *r) {
     return status;
 }
 
+/* What the workspace holds after a failure may not be what it is taken for. */
+static tc_status run_end(const complex_run *r, tc_status status) {
+    cl->Finish(r->context->queue);
+    if (status) workspace_release(r->context);
+    return status;
+}
+
 /* All but the mesh; head has the counts then. */
 static tc_status surface_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
     tc_status status = run_begin(r, grid, isovalue);
@@ -316,8 +322,7 @@ tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts
     counts->triangle_count = r.head[HEAD_TRIANGLES];
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
-    cl->Finish(r.context->queue);
-    return status;
+    return run_end(&r, status);
 }
 
 /* ------------------------------------------------------------------------------------------------------- extraction */
@@ -386,6 +391,5 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    cl->Finish(r.context->queue);
-    return status;
+    return run_end(&r, status);
 }

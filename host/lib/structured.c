@@ -55,10 +55,6 @@ static tc_status words_reserve(tc_context *context, device_buffer *words, uint64
                                              brick_bytes, 0, NULL, NULL);
         if (error) status = context_fail(context, "filling constant sign words", error);
     }
-    if (status) { /* a buffer that is there counts as filled */
-        cl->Finish(context->queue);
-        buffer_release(context, words);
-    }
     return status;
 }
 
@@ -136,10 +132,11 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
     return r->heads ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
 }
 
-void run_end(run *r) {
+void run_end(run *r, tc_status status) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (r->context->in_place) { /* windows in memory that is not ours to keep */
+    if (status) workspace_release(r->context); /* what it holds may not be what it is taken for */
+    if (r->context->in_place) {                /* windows in memory that is not ours to keep */
         mesh_buffers *mesh = &w->mesh[0];
         device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
         for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
@@ -228,7 +225,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
-    run_end(r);
+    run_end(r, status);
     status = run_begin(r, grid, options, inside, emits);
     r->start_ms = start;
     return status ? status : slabs_classify(r);
@@ -260,7 +257,7 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_
         counted_keep(grid, options, r.heads);
         r.heads = NULL;
     }
-    run_end(&r);
+    run_end(&r, status);
     return status;
 }
 
@@ -279,6 +276,6 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    run_end(&r);
+    run_end(&r, status);
     return status;
 }

@@ -9,31 +9,27 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* All files mapped so far. */
+enum { FILES_KEPT = 4096 };
+
+/* The files mapped last. */
 static struct {
     pthread_mutex_t lock;
     struct file_identity {
         dev_t device;
         ino_t number;
-    } *files;
-    size_t count;
+    } files[FILES_KEPT];
+    uint64_t count; /* of all; file n is in place n modulo FILES_KEPT */
 } opened = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static int remember(const struct stat *about) {
+static void remember(const struct stat *about) {
     pthread_mutex_lock(&opened.lock);
-    struct file_identity *grown = realloc(opened.files, (opened.count + 1) * sizeof *grown);
-    if (grown) {
-        grown[opened.count++] = (struct file_identity){about->st_dev, about->st_ino};
-        opened.files = grown;
-    }
+    opened.files[opened.count++ % FILES_KEPT] = (struct file_identity){about->st_dev, about->st_ino};
     pthread_mutex_unlock(&opened.lock);
-    return grown != NULL;
 }
 
 int mapping_was_opened(const char *path) {
@@ -41,7 +37,7 @@ int mapping_was_opened(const char *path) {
     int found = 0;
     if (stat(path, &about)) return 0;
     pthread_mutex_lock(&opened.lock);
-    for (size_t n = 0; n < opened.count && !found; n++)
+    for (uint64_t n = 0; n < opened.count && n < FILES_KEPT && !found; n++)
         found = opened.files[n].device == about.st_dev && opened.files[n].number == about.st_ino;
     pthread_mutex_unlock(&opened.lock);
     return found;
@@ -62,12 +58,12 @@ int mapping_open(const char *path, mapping *m) {
         status = fail(STATUS_INPUT, "%s: is not a regular file; name a volume file", path);
     } else if ((uintmax_t)about.st_size > SIZE_MAX / 2) {
         status = fail(STATUS_INPUT, "%s: is larger than this machine can address", path);
-    } else if (!remember(&about)) {
-        status = fail(STATUS_FAILED, "%s: out of memory for the names of the input", path);
     } else if (about.st_size > 0) {
+        remember(&about);
         void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
         if (bytes == MAP_FAILED)
-            status = fail(STATUS_INPUT, "%s: cannot be mapped into memory: %s", path, strerror(errno));
+            status = fail(errno == ENOMEM ? STATUS_FAILED : STATUS_INPUT, "%s: cannot be mapped into memory: %s", path,
+                          strerror(errno));
         else
             *m = (mapping){bytes, (size_t)about.st_size};
     }

@@ -7,9 +7,10 @@
  * TETRACUBES_LAYER when the layer is loaded, or at any time through the command function, which a test in the same
  * process gets by dlsym:
  *
- *     fail ENTRY N [ERROR [COUNT]]   call N (from 1, counted from here on) of the entry point returns ERROR, a number;
+ *     fail ENTRY N [ERROR [COUNT [later]]]
+ *                                    call N (from 1, counted from here on) of the entry point returns ERROR, a number;
  *                                    so do the COUNT - 1 calls behind it (0: all of them). ENTRY as in clFinish; "off"
- *                                    switches it off
+ *                                    switches it off. later: the next call that waits returns it, see fail.c
  *     corrupt drop KERNEL [FIRST]    launches of the kernel, from number FIRST on, are left out
  *     corrupt flip KERNEL ARGUMENT BYTE BIT    that bit of what the argument points to is wrong after each launch
  *     corrupt read BYTE BIT          that bit is wrong in whatever is read from a buffer

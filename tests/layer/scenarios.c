@@ -62,7 +62,7 @@ enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
 static const double isovalues[2] = {127.5, 90};
 
-static char problem[1500], cache_folder[PATH_BYTES];
+static char problem[1500], cache_folder[] = "/tmp/tetracubes-programs-XXXXXX";
 static uint8_t bytes[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
@@ -262,7 +262,7 @@ static void emitted_check(int index) {
 
 static void cache_clear(void) {
     DIR *folder = opendir(cache_folder);
-    char path[2 * PATH_BYTES];
+    char path[PATH_BYTES];
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         snprintf(path, sizeof path, "%s/%s", cache_folder, entry->d_name);
         if (entry->d_name[0] != '.') unlink(path);
@@ -361,12 +361,12 @@ static bool theirs_make(void) {
     return !error;
 }
 
-bool scenarios_prepare(const char *folder) {
+bool scenarios_prepare(void) {
     tc_context *reference = NULL;
     tc_context_options options;
     tc_grid_options grid;
     input_make();
-    snprintf(cache_folder, sizeof cache_folder, "%s/programs", folder);
+    if (!mkdtemp(cache_folder)) return false;
     setenv("TETRACUBES_CACHE_DIR", cache_folder, 1);
     complex.struct_size = sizeof complex;
     grid_describe(&scenarios[1], &grid);
@@ -388,6 +388,8 @@ void scenarios_release(void) {
     for (int index = 0; index < SCENARIOS; index++)
         for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
     tc_complex_release(&complex);
+    cache_clear();
+    rmdir(cache_folder);
     for (int n = 0; n < 3; n++)
         if (buffers[n]) clReleaseMemObject(buffers[n]);
     if (their_queue) clReleaseCommandQueue(their_queue);

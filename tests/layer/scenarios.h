@@ -24,8 +24,8 @@ typedef struct trial {
 typedef struct scenario scenario;
 
 /* Makes what scenarios work on and compare with; false, with tc_message, where that fails. The cache of programs is a
- * folder below `folder`. */
-bool scenarios_prepare(const char *folder);
+ * folder made for it, gone after scenarios_release. */
+bool scenarios_prepare(void);
 void scenarios_release(void);
 
 int scenario_count(void);

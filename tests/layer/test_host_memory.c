@@ -5,7 +5,7 @@
  * Each time: the call that was under way returns TC_ERROR_MEMORY, or does without and makes the right bytes; the same
  * call, made again with the same context and grid, succeeds; and at the end no memory and no OpenCL object is left.
  *
- *     test_host_memory FOLDER [all]      FOLDER: for a cache of programs
+ *     test_host_memory [some | all]
  */
 #include "expect.h"
 #include "layer_find.h"
@@ -74,14 +74,14 @@ static void scenario_sweep(int index, bool all) {
 int main(int argc, char **argv) {
     int devices;
     const double start = results_seconds();
-    const bool all = argc > 2 && !strcmp(argv[2], "all"), has_device = tc_device_count(&devices) == TC_OK;
+    const bool all = argc > 1 && !strcmp(argv[1], "all"), has_device = tc_device_count(&devices) == TC_OK;
     memory = dlsym(RTLD_DEFAULT, "memory_fault_control");
     layer = layer_find();
-    if (argc < 2 || !memory) {
-        printf("no folder, or memory_fault is not preloaded\n");
+    if (!memory) {
+        printf("memory_fault is not preloaded\n");
         return EXIT_FAILURE;
     }
-    if (!has_device || !scenarios_prepare(argv[1])) {
+    if (!has_device || !scenarios_prepare()) {
         printf("skipped: no device\n");
         return SKIPPED;
     }

@@ -2,8 +2,6 @@
  * test_memory.c - new memory full of one pattern or another, guards around buffers, a device that is late: same bytes
  *
  * Each watch is first shown to catch what it is for, in a kernel or program made wrong on purpose.
- *
- *     test_memory FOLDER      for a cache of programs
  */
 #define CL_TARGET_OPENCL_VERSION 120
 
@@ -119,7 +117,7 @@ static void test_scenarios(const char *mode, int host_byte) {
     if (host) host->fill(-1);
 }
 
-int main(int argc, char **argv) {
+int main(void) {
     static const struct {
         const char *layer;
         int host_byte;
@@ -129,7 +127,6 @@ int main(int argc, char **argv) {
                  {"late 200", 0x5A},
                  {"memory 0xFF;late hold", 0xFF}};
     int devices;
-    if (argc < 2) return EXIT_FAILURE;
     if (tc_device_count(&devices) != TC_OK || !(layer = layer_find()) || !device_open()) {
         printf("skipped: no device, or a loader without layers\n");
         return SKIPPED;
@@ -138,7 +135,7 @@ int main(int argc, char **argv) {
     test_the_layer();
     clReleaseCommandQueue(queue);
     clReleaseContext(context);
-    if (!scenarios_prepare(argv[1])) {
+    if (!scenarios_prepare()) {
         printf("no scenario: %s\n", tc_message());
         return EXIT_FAILURE;
     }
