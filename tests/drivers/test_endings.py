@@ -92,7 +92,8 @@ class Struck(EndCase):
         self.each(check)
 
     def test_full_disk(self):
-        for number, says in ((errno.ENOSPC, "No space left.*free space"), (errno.EDQUOT, "quota"), (errno.EIO, "Input/output")):
+        for number, says in ((errno.ENOSPC, "No space left.*free space"), (errno.EDQUOT, "quota"),
+                             (errno.EIO, "Input/output")):
             for write in (0, 1):
                 def check(arguments, name):
                     self.struck(1, arguments, f"{re.escape(name)}.*{says}", STRIKE_WRITE=f"{write} error {number}")
@@ -152,8 +153,8 @@ class Places(EndCase):
                 reader, writer = os.pipe()
                 os.close(reader)
                 result = subprocess.run([test_cli.TOOL, *arguments], stdout=writer, stderr=subprocess.PIPE, text=True,
-                                        restore_signals=False, preexec_fn=lambda: signal.signal(signal.SIGPIPE, handling),
-                                        timeout=300)
+                                        restore_signals=False, timeout=300,
+                                        preexec_fn=lambda: signal.signal(signal.SIGPIPE, handling))
                 os.close(writer)
                 if os.path.islink(self.path("pipe.raw")):
                     os.unlink(self.path("pipe.raw"))
