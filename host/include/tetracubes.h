@@ -52,6 +52,7 @@ typedef enum tc_status {
     TC_ERROR_LIMIT,     /* the mesh needs more than 2^32 - 1 vertices */
     TC_ERROR_CANCELLED, /* the progress callback asked to stop */
     TC_ERROR_FILE,      /* a file of the cache, which the caller asked for, cannot be written */
+    TC_ERROR_WRONG,     /* the device computes wrongly: found by check_device of tc_context_options */
 } tc_status;
 
 /* What the last failed call of this thread found wrong, in one or two sentences. Never NULL; valid until the thread's
@@ -127,6 +128,10 @@ typedef struct tc_context_options {
     int own_buffers; /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
                         samples are copied to it and the mesh from it. Slower; runs that path where there is no such
                         device. Never changes results */
+    int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a small
+                         volume goes through them and every byte is compared with the reference engine's. Where one
+                         differs, the call returns TC_ERROR_WRONG. A few milliseconds for each kind of kernels. tc_emit
+                         tries nothing itself */
 } tc_context_options;
 
 typedef struct tc_context tc_context;

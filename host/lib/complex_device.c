@@ -62,8 +62,7 @@ tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts
     counts->triangle_count = r.head[HEAD_TRIANGLES];
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
-    cl->Finish(r.context->queue);
-    return status;
+    return complex_run_end(&r, status);
 }
 
 /* ------------------------------------------------------------------------------------------------------- extraction */
@@ -82,13 +81,13 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
     cl_int error = CL_SUCCESS;
     if (!r->context->in_place) {
         error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_TRUE, 0, bytes, block->memory, 0, NULL, NULL);
-        return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+        return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
     }
     void *mapped = cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &error);
     if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
     cl->Finish(queue);
     buffer_release(r->context, buffer);
-    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
 static tc_status emit(complex_run *r, tc_mesh *mesh) {
@@ -121,6 +120,5 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    cl->Finish(r.context->queue);
-    return status;
+    return complex_run_end(&r, status);
 }

@@ -59,8 +59,8 @@ static tc_status slabs_begin(slabs_run *t, tc_grid *grid, double isovalue) {
     return status;
 }
 
-static void slabs_end(slabs_run *t) {
-    cl->Finish(t->r.context->queue);
+static tc_status slabs_end(slabs_run *t, tc_status status) {
+    status = complex_run_end(&t->r, status);
     part_tetrahedra_release(t->r.grid);
     if (!t->slabs->points_whole) part_points_release(t->r.grid);
     local_points_release(&t->local);
@@ -68,6 +68,7 @@ static void slabs_end(slabs_run *t) {
     free(t->totals);
     free(t->active);
     free(t->numbers);
+    return status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- arrays */
@@ -93,7 +94,7 @@ static tc_status ranges_move(slabs_run *t, uint32_t slab_index, bool save) {
     const size_t bytes = sizeof *ranges * slab_cluster_count(t, slab_index);
     cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL)
                         : cl->EnqueueWriteBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL);
-    return error ? opencl_fail("copying ranges of clusters", error) : TC_OK;
+    return error ? context_fail(t->r.context, "copying ranges of clusters", error) : TC_OK;
 }
 
 static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known) {
@@ -159,7 +160,7 @@ static tc_status slab_join(slabs_run *t) {
     if (status) return status;
     cl_int error = cl->EnqueueReadBuffer(t->r.context->queue, t->r.work->active.memory, CL_TRUE, 0,
                                          count * sizeof *t->active, t->active, 0, NULL, NULL);
-    if (error) return opencl_fail("reading the active tetrahedra back", error);
+    if (error) return context_fail(t->r.context, "reading the active tetrahedra back", error);
     for (uint32_t n = 0; n < count && !status; n++) status = vertices_join(t, &t->active[n]);
     return status;
 }
@@ -194,8 +195,7 @@ tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_
     counts->triangle_count = t.triangle_count;
     counts->active_cell_count = t.active_count;
     counts->classify_ms = clock_ms() - t.r.start_ms;
-    slabs_end(&t);
-    return status;
+    return slabs_end(&t, status);
 }
 
 /* -------------------------------------------------------------------------------------------------------- emission */
@@ -227,7 +227,7 @@ static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) 
     if (!error)
         error = cl->EnqueueReadBuffer(queue, m->triangles.memory, CL_TRUE, 0,
                                       MESH_BYTES_PER_TRIANGLE * (size_t)totals.triangles, triangles, 0, NULL, NULL);
-    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+    return error ? context_fail(t->r.context, "reading the mesh back", error) : TC_OK;
 }
 
 /* Puts the slab's new vertices behind the others, and gives its triangles the numbers in the mesh. */
@@ -289,6 +289,5 @@ tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, t
     mesh->timings.classify_ms = classified - t.r.start_ms;
     mesh->timings.total_ms = clock_ms() - t.r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    slabs_end(&t);
-    return status;
+    return slabs_end(&t, status);
 }

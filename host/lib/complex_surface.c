@@ -58,7 +58,8 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     complex_cases(cases);
     cl_int error =
         cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    return error ? opencl_fail("uploading the case table", error) : TC_OK;
+    if (error) buffer_release(context, buffer); /* one that is there counts as filled */
+    return error ? context_fail(context, "uploading the case table", error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- commands */
@@ -80,20 +81,20 @@ static tc_status kernel_run(const complex_run *r, int kernel, const char *name, 
     if (!error)
         error =
             cl->EnqueueNDRangeKernel(r->context->queue, r->kernels[kernel], 1, NULL, &global, &local, 0, NULL, NULL);
-    return error ? opencl_fail(name, error) : TC_OK;
+    return error ? context_fail(r->context, name, error) : TC_OK;
 }
 
 static tc_status buffer_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
                              uint64_t bytes) {
     cl_int error =
         cl->EnqueueFillBuffer(r->context->queue, buffer->memory, &value, sizeof value, first, bytes, 0, NULL, NULL);
-    return error ? opencl_fail("clearing a buffer", error) : TC_OK;
+    return error ? context_fail(r->context, "clearing a buffer", error) : TC_OK;
 }
 
 static tc_status head_read(complex_run *r) {
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->work->state.memory, CL_TRUE, 0, sizeof r->head, r->head,
                                          0, NULL, NULL);
-    return error ? opencl_fail("reading totals", error) : TC_OK;
+    return error ? context_fail(r->context, "reading totals", error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------- classification */
@@ -139,6 +140,12 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     }
     context->served = grid;
     return cases_provide(context, &r->work->cases);
+}
+
+tc_status complex_run_end(const complex_run *r, tc_status status) {
+    cl->Finish(r->context->queue);
+    if (status) workspace_release(r->context);
+    return status;
 }
 
 static tc_status clusters_reserve(complex_run *r) {
@@ -261,5 +268,5 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
                                          ARGUMENT(triangles->memory)};
     tc_status status = kernel_run(r, KERNEL_EMIT, "kernel complex_emit", arguments, 12);
     cl_int error = cl->Finish(r->context->queue);
-    return !status && error ? opencl_fail("kernel complex_emit", error) : status;
+    return !status && error ? context_fail(r->context, "kernel complex_emit", error) : status;
 }

@@ -35,6 +35,13 @@ tc_status options_take(void *to, size_t to_bytes, const void *from, const char *
     return TC_OK;
 }
 
+tc_status context_fail(const tc_context *context, const char *what, cl_int error) {
+    char whole[512];
+    if (!context->info.name[0]) return opencl_fail(what, error);
+    snprintf(whole, sizeof whole, "%s on %s", what, context->info.name);
+    return opencl_fail(whole, error);
+}
+
 tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
     if (!context->options.progress || !context->options.progress(context->options.progress_user, stage, fraction))
         return TC_OK;
@@ -57,7 +64,7 @@ static tc_status buffer_create(tc_context *context, device_buffer *buffer, uint6
         char what[128];
         snprintf(what, sizeof what, "a device buffer of %llu bytes for %s", (unsigned long long)bytes, name);
         buffer->memory = NULL;
-        return opencl_fail(what, error);
+        return context_fail(context, what, error);
     }
     buffer->bytes = bytes;
     bytes_count(context, bytes);
@@ -115,10 +122,10 @@ static tc_status device_adopt(tc_context *context, cl_context theirs, cl_command
     if (!queue) return (tc_status)fail(TC_ERROR_ARGUMENT, "a cl_context needs a cl_queue with it");
     cl_int error = cl->GetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof context->device, &context->device, NULL);
     if (!error) error = cl->RetainContext(theirs);
-    if (error) return opencl_fail("asking the given queue for its device", error);
+    if (error) return context_fail(context, "asking the given queue for its device", error);
     context->context = theirs;
     error = cl->RetainCommandQueue(queue);
-    if (error) return opencl_fail("retaining the given queue", error);
+    if (error) return context_fail(context, "retaining the given queue", error);
     context->queue = queue;
     return TC_OK;
 }
@@ -129,15 +136,15 @@ static tc_status device_open(tc_context *context, const char *specification) {
     tc_status status = device_choose(specification, &choice);
     if (status) return status;
     context->device = choice.device;
-    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)choice.platform, 0};
-    context->context = cl->CreateContext(properties, 1, &choice.device, NULL, NULL, &error);
-    if (error) return opencl_fail("making a context on the device", error);
-    context->queue = cl->CreateCommandQueue(context->context, choice.device, 0, &error);
-    if (error) return opencl_fail("making a command queue on the device", error);
     status = device_describe(choice.device, &context->info);
     context->info.platform_index = choice.platform_index;
     context->info.device_index = choice.device_index;
-    return status;
+    if (status) return status;
+    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)choice.platform, 0};
+    context->context = cl->CreateContext(properties, 1, &choice.device, NULL, NULL, &error);
+    if (error) return context_fail(context, "making a context", error);
+    context->queue = cl->CreateCommandQueue(context->context, choice.device, 0, &error);
+    return error ? context_fail(context, "making a command queue", error) : TC_OK;
 }
 
 static tc_status opencl_begin(tc_context *context, const tc_context_options *o) {
@@ -157,7 +164,7 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
 tc_status copies_queue_provide(tc_context *context) {
     cl_int error = CL_SUCCESS;
     if (!context->copies) context->copies = cl->CreateCommandQueue(context->context, context->device, 0, &error);
-    return error ? opencl_fail("making a command queue for copies", error) : TC_OK;
+    return error ? context_fail(context, "making a command queue for copies", error) : TC_OK;
 }
 
 tc_status tc_context_create(const tc_context_options *options, tc_context **out) {

@@ -63,6 +63,9 @@ typedef struct workspace {
     device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
+/* Kinds of kernels that are tried apart: of grid, type, method, missing samples, normals, of kernel 1 or both. */
+enum { TRIAL_KINDS = 4 * 8 * 2 * 2 * 2 * 2 };
+
 struct tc_context {
     tc_context_options options; /* strings and OpenCL objects cleared */
     tc_device_info info;
@@ -74,9 +77,13 @@ struct tc_context {
     program *programs;
     workspace work;
     const struct tc_grid *served;  /* the grid that the workspace was last used for */
+    bool passed[TRIAL_KINDS];      /* kernels that were tried (trial.c) */
     const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
+
+/* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */
+tc_status context_fail(const tc_context *context, const char *what, cl_int error);
 
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);

@@ -10,8 +10,11 @@
 
 enum { DEVICES_MAX = 256, PLATFORMS_MAX = 32 };
 
+static const cl_int platform_not_found = -1001; /* CL_PLATFORM_NOT_FOUND_KHR: the loader has no driver */
+
 typedef struct device_list {
     int count;
+    cl_int error; /* of the last platform that did not tell its devices */
     device_choice devices[DEVICES_MAX];
 } device_list;
 
@@ -25,7 +28,10 @@ static tc_status platform_list_make(platform_list *list) {
     if (status) return status;
     list->count = 0;
     cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, list->platforms, &list->count);
-    if (error != CL_SUCCESS || list->count == 0)
+    if (error && error != platform_not_found)
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "OpenCL does not tell its platforms (%d); the reference engine needs none", (int)error);
+    if (error || list->count == 0)
         return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL platform is installed (for the CPU on Debian: apt install "
                                                 "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
                                                 "reference engine needs none");
@@ -37,13 +43,21 @@ static tc_status platform_list_make(platform_list *list) {
 static void devices_append(device_list *list, const platform_list *platforms, cl_uint p) {
     cl_device_id devices[DEVICES_MAX];
     cl_uint device_count = 0, room = (cl_uint)(DEVICES_MAX - list->count);
-    if (room == 0 || cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count))
-        return;
+    if (room == 0) return;
+    cl_int error = cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count);
+    if (error && error != CL_DEVICE_NOT_FOUND) list->error = error;
+    if (error) return;
     for (cl_uint d = 0; d < device_count && d < room; d++)
         list->devices[list->count++] = (device_choice){platforms->platforms[p], devices[d], (int)p, (int)d};
 }
 
-static tc_status no_device(const platform_list *platforms) {
+static tc_status no_device(const platform_list *platforms, const device_list *list) {
+    if (list->error)
+        return (tc_status)fail(
+            TC_ERROR_DEVICE,
+            "an OpenCL platform does not tell its devices (%d), and none of the %u installed has one; "
+            "the reference engine needs none",
+            (int)list->error, platforms->count);
     return (tc_status)fail(TC_ERROR_DEVICE,
                            "the %u OpenCL platform(s) installed have no device (for the CPU on "
                            "Debian: apt install pocl-opencl-icd); the reference engine needs none",
@@ -53,54 +67,87 @@ static tc_status no_device(const platform_list *platforms) {
 static tc_status device_list_make(device_list *list) {
     platform_list platforms;
     list->count = 0;
+    list->error = CL_SUCCESS;
     tc_status status = platform_list_make(&platforms);
     for (cl_uint p = 0; !status && p < platforms.count; p++) devices_append(list, &platforms, p);
-    return status || list->count ? status : no_device(&platforms);
+    return status || list->count ? status : no_device(&platforms, list);
 }
 
-static void text_get(cl_device_id device, cl_device_info what, char *out, size_t bytes) {
+/* Questions to a device; error: the first that it did not answer. */
+typedef struct questions {
+    cl_device_id device;
+    cl_int error;
+} questions;
+
+/* Asks; false where the answer is not to be had. A version of OpenCL that does not know the question is no failure. */
+static bool ask(questions *q, cl_device_info what, size_t bytes, void *answer) {
+    cl_int error = cl->GetDeviceInfo(q->device, what, bytes, answer, NULL);
+    if (error && error != CL_INVALID_VALUE && !q->error) q->error = error;
+    return !error;
+}
+
+static void text_get(questions *q, cl_device_info what, char *out, size_t bytes) {
     char text[512] = "";
-    if (cl->GetDeviceInfo(device, what, sizeof text - 1, text, NULL)) text[0] = 0;
-    snprintf(out, bytes, "%.*s", (int)bytes - 1, text);
+    bool told = ask(q, what, sizeof text - 1, text);
+    snprintf(out, bytes, "%.*s", (int)bytes - 1, told ? text : "");
 }
 
-static uint64_t number_get(cl_device_id device, cl_device_info what, size_t bytes) {
+static uint64_t number_get(questions *q, cl_device_info what, size_t bytes) {
     uint64_t value = 0;
-    if (cl->GetDeviceInfo(device, what, bytes, &value, NULL)) value = 0;
-    return value; /* little-endian hosts only, as the sign words are */
+    return ask(q, what, bytes, &value) ? value : 0; /* little-endian hosts only, as the sign words are */
 }
 
-static const char *type_name(cl_device_id device) {
-    uint64_t type = number_get(device, CL_DEVICE_TYPE, sizeof(cl_device_type));
+static const char *type_name(questions *q) {
+    uint64_t type = number_get(q, CL_DEVICE_TYPE, sizeof(cl_device_type));
     return type & CL_DEVICE_TYPE_GPU           ? "gpu"
            : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
            : type & CL_DEVICE_TYPE_CPU         ? "cpu"
                                                : "other";
 }
 
-tc_status device_describe(cl_device_id device, tc_device_info *info) {
+static void platform_get(questions *q, tc_device_info *info) {
     cl_platform_id platform = NULL;
+    cl_int error = cl->GetDeviceInfo(q->device, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
+    if (!error) error = cl->GetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform, NULL);
+    if (error) info->platform[0] = 0;
+    if (error && !q->error) q->error = error;
+}
+
+/* Nothing can be done without these. */
+static tc_status limits_check(const tc_device_info *info) {
+    const char *none = !info->compute_units         ? "compute units"
+                       : !info->max_work_group_size ? "work-groups"
+                       : !info->global_memory_bytes ? "memory"
+                       : !info->max_buffer_bytes    ? "buffers"
+                                                    : NULL;
+    return none ? (tc_status)fail(TC_ERROR_DEVICE, "%s says that it has no %s: its driver does not work", info->name,
+                                  none)
+                : TC_OK;
+}
+
+tc_status device_describe(cl_device_id device, tc_device_info *info) {
+    questions q = {device, CL_SUCCESS};
     memset(info, 0, sizeof *info);
     info->struct_size = sizeof *info;
     info->platform_index = info->device_index = -1;
-    cl_int error = cl->GetDeviceInfo(device, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
-    if (error) return opencl_fail("asking the device for its platform", error);
-    if (cl->GetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform, NULL))
-        info->platform[0] = 0;
-    text_get(device, CL_DEVICE_NAME, info->name, sizeof info->name);
-    text_get(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
-    text_get(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    strcpy(info->type, type_name(device));
-    info->compute_units = (uint32_t)number_get(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
-    info->max_work_group_size = number_get(device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
-    info->global_memory_bytes = number_get(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
-    info->max_buffer_bytes = number_get(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong));
-    info->local_memory_bytes = number_get(device, CL_DEVICE_LOCAL_MEM_SIZE, sizeof(cl_ulong));
-    info->shares_host_memory = number_get(device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(cl_bool)) != 0;
-    info->has_fp64 = number_get(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(cl_device_fp_config)) != 0;
-    info->rounds_division = (number_get(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(cl_device_fp_config)) &
+    platform_get(&q, info);
+    text_get(&q, CL_DEVICE_NAME, info->name, sizeof info->name);
+    text_get(&q, CL_DEVICE_VERSION, info->version, sizeof info->version);
+    text_get(&q, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    strcpy(info->type, type_name(&q));
+    info->compute_units = (uint32_t)number_get(&q, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
+    info->max_work_group_size = number_get(&q, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
+    info->global_memory_bytes = number_get(&q, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
+    info->max_buffer_bytes = number_get(&q, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong));
+    info->local_memory_bytes = number_get(&q, CL_DEVICE_LOCAL_MEM_SIZE, sizeof(cl_ulong));
+    info->shares_host_memory = number_get(&q, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(cl_bool)) != 0;
+    info->has_fp64 = number_get(&q, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(cl_device_fp_config)) != 0;
+    info->rounds_division = (number_get(&q, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(cl_device_fp_config)) &
                              CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    return TC_OK;
+    if (q.error)
+        return (tc_status)fail(TC_ERROR_DEVICE, "device %s does not tell what it can do (%d): its driver does not work",
+                               *info->name ? info->name : "without a name", (int)q.error);
+    return limits_check(info);
 }
 
 static bool text_contains(const char *text, const char *part) {
@@ -130,7 +177,7 @@ static bool device_matches(const char *specification, int index, const device_ch
     if (is_index) return same;
     if (!strcasecmp(specification, "cpu") || !strcasecmp(specification, "gpu") ||
         !strcasecmp(specification, "accelerator"))
-        return !strcasecmp(specification, type_name(d->device));
+        return !strcasecmp(specification, type_name(&(questions){d->device, CL_SUCCESS}));
     if (device_describe(d->device, &info)) return false;
     return text_contains(info.name, specification) || text_contains(info.platform, specification);
 }
@@ -153,7 +200,7 @@ tc_status device_choose(const char *specification, device_choice *choice) {
                 return TC_OK;
             }
     }
-    if (!list.count) return no_device(&platforms);
+    if (!list.count) return no_device(&platforms, &list);
     if (specification && *specification)
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "no device \"%s\"%s among the %d of this machine: give an index, "

@@ -6,6 +6,7 @@
 #include "failure.h"
 #include "reference.h"
 #include "structured.h"
+#include "trial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,6 +55,16 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
+static tc_status grid_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    if (grid->complex) return complex_count(grid, options, counts);
+    return grid->device ? structured_count(grid, options, counts) : reference_count(grid, options, counts);
+}
+
+static tc_status grid_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    if (grid->complex) return complex_extract(grid, options, mesh);
+    return grid->device ? structured_extract(grid, options, mesh) : reference_extract(grid, options, mesh);
+}
+
 tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     tc_extract_options o;
     if (!grid || !counts || counts->struct_size < sizeof *counts)
@@ -61,10 +72,10 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     *counts = (tc_counts){.struct_size = counts->struct_size};
     tc_status status = extract_options_take(&o, options);
     if (status) return status;
-    if (grid->complex)
-        status = complex_count(grid, &o, counts);
-    else
-        status = grid->device ? structured_count(grid, &o, counts) : reference_count(grid, &o, counts);
+    do { /* again where missing samples were met, and other kernels took over */
+        status = trial_run(grid, &o, false);
+        if (!status) status = grid_count(grid, &o, counts);
+    } while (!status && trial_pending(grid, &o, false));
     if (status) *counts = (tc_counts){.struct_size = counts->struct_size};
     counts->mesh_bytes = counts->vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                          counts->triangle_count * MESH_BYTES_PER_TRIANGLE;
@@ -92,10 +103,9 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
-    if (!status && grid->complex)
-        status = complex_extract(grid, &o, mesh);
-    else if (!status)
-        status = grid->device ? structured_extract(grid, &o, mesh) : reference_extract(grid, &o, mesh);
+    if (!status) status = trial_run(grid, &o, true);
+    if (!status) status = grid_extract(grid, &o, mesh);
+    if (!status) status = trial_run(grid, &o, true); /* of other kernels, where missing samples were met */
     if (status) mesh_clear(mesh);
     if (status && !*out) {
         tc_mesh_destroy(mesh);

@@ -107,7 +107,7 @@ static tc_status source_build(const tc_context *context, program *p) {
     cl_int error;
     p->program =
         cl->CreateProgramWithSource(context->context, SOURCE_COUNT, (const char **)(size_t)p->sources, NULL, &error);
-    if (error) return opencl_fail("handing the kernels to the device", error);
+    if (error) return context_fail(context, "handing the kernels to the device", error);
     error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
     return error ? build_fail(context, p, error) : TC_OK;
 }
@@ -126,7 +126,7 @@ static tc_status kernel_create(const tc_context *context, const program *p, cons
     if (!error)
         error =
             cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
-    if (error) return opencl_fail(name, error);
+    if (error) return context_fail(context, name, error);
     if (context->options.work_items > most)
         return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
                                context->info.name, name, most, context->options.work_items);

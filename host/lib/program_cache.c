@@ -33,29 +33,32 @@ static uint64_t hash_of(const char *bytes, size_t count) {
 
 static void line_write(FILE *out, const char *text) { fprintf(out, "%s\n", text); }
 
-static void device_lines_write(FILE *out, const tc_context *context) {
+/* False where the device does not tell who made it. */
+static bool device_lines_write(FILE *out, const tc_context *context) {
     cl_platform_id platform = NULL;
     char vendor[256] = "", version[256] = "";
-    cl->GetDeviceInfo(context->device, CL_DEVICE_VENDOR, sizeof vendor, vendor, NULL);
-    cl->GetDeviceInfo(context->device, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
-    cl->GetPlatformInfo(platform, CL_PLATFORM_VERSION, sizeof version, version, NULL);
+    if (cl->GetDeviceInfo(context->device, CL_DEVICE_VENDOR, sizeof vendor, vendor, NULL) ||
+        cl->GetDeviceInfo(context->device, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL) ||
+        cl->GetPlatformInfo(platform, CL_PLATFORM_VERSION, sizeof version, version, NULL))
+        return false;
     line_write(out, context->info.name);
     line_write(out, vendor);
     line_write(out, context->info.version);
     line_write(out, context->info.driver);
     line_write(out, context->info.platform);
     line_write(out, version);
+    return true;
 }
 
-/* bytes NULL where memory is out. */
+/* bytes NULL where memory is out, or the device does not tell enough. */
 static cache_text key_make(const tc_context *context, const program_recipe *recipe) {
     cache_text key = {0};
     FILE *out = open_memstream(&key.bytes, &key.count);
     if (!out) return (cache_text){0};
-    device_lines_write(out, context);
+    bool failed = !device_lines_write(out, context);
     line_write(out, recipe->options);
     for (cl_uint n = 0; n < recipe->source_count; n++) line_write(out, recipe->sources[n]);
-    bool failed = ferror(out);
+    failed |= ferror(out) != 0;
     if (!fclose(out) && !failed) return key;
     free(key.bytes);
     return (cache_text){0};

@@ -53,7 +53,7 @@ static tc_status words_reserve(tc_context *context, device_buffer *words, uint64
         const cl_ulong word = sign == SIGN_INSIDE ? UINT64_MAX : 0;
         cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, sign * brick_bytes,
                                              brick_bytes, 0, NULL, NULL);
-        if (error) status = opencl_fail("filling constant sign words", error);
+        if (error) status = context_fail(context, "filling constant sign words", error);
     }
     return status;
 }
@@ -132,10 +132,11 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
     return r->heads ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
 }
 
-void run_end(run *r) {
+void run_end(run *r, tc_status status) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (r->context->in_place) { /* windows in memory that is not ours to keep */
+    if (status) workspace_release(r->context); /* what it holds may not be what it is taken for */
+    if (r->context->in_place) {                /* windows in memory that is not ours to keep */
         mesh_buffers *mesh = &w->mesh[0];
         device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
         for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
@@ -196,7 +197,7 @@ static tc_status totals_read(run *r) {
     uint32_t slabs = r->plan->slab_count;
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.state.memory, CL_TRUE, 0,
                                          slabs * STATE_WORDS * sizeof *r->heads, r->heads, 0, NULL, NULL);
-    if (error) return opencl_fail("reading the totals of kernel classify", error);
+    if (error) return context_fail(r->context, "reading the totals of kernel classify", error);
     totals_add(r);
     for (uint32_t n = 0; n < slabs; n++)
         if (r->heads[n * STATE_WORDS + STATE_NONFINITE]) r->grid->device->missing = true;
@@ -208,7 +209,7 @@ static tc_status slabs_classify(run *r) {
     const cl_uint zero = 0;
     cl_int error = cl->EnqueueFillBuffer(r->context->queue, r->context->work.state.memory, &zero, sizeof zero, 0,
                                          state_bytes(r), 0, NULL, NULL);
-    if (error) return opencl_fail("clearing the scan", error);
+    if (error) return context_fail(r->context, "clearing the scan", error);
     const step_stages stages = {"classify", 0, r->classify_share, classify_load, slab_classify, classify_save};
     tc_status status = steps_run(r, &stages, r->plan->slab_count, plan_window_count(r->plan) > 1);
     return status ? status : totals_read(r);
@@ -224,7 +225,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
-    run_end(r);
+    run_end(r, status);
     status = run_begin(r, grid, options, inside, emits);
     r->start_ms = start;
     return status ? status : slabs_classify(r);
@@ -256,7 +257,7 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_
         counted_keep(grid, options, r.heads);
         r.heads = NULL;
     }
-    run_end(&r);
+    run_end(&r, status);
     return status;
 }
 
@@ -275,6 +276,6 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    run_end(&r);
+    run_end(&r, status);
     return status;
 }

@@ -27,12 +27,12 @@ static tc_status counted_check(const tc_grid *grid, const tc_extract_options *op
     return TC_OK;
 }
 
-static tc_status buffer_check(cl_mem memory, uint64_t bytes, const char *name) {
+static tc_status buffer_check(const run *r, cl_mem memory, uint64_t bytes, const char *name) {
     size_t held = 0;
     if (bytes == 0) return TC_OK;
     if (!memory) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a buffer for %s", name);
     cl_int error = cl->GetMemObjectInfo(memory, CL_MEM_SIZE, sizeof held, &held, NULL);
-    if (error) return opencl_fail("asking a buffer of the mesh for its size", error);
+    if (error) return context_fail(r->context, "asking a buffer of the mesh for its size", error);
     if (held >= bytes) return TC_OK;
     return (tc_status)fail(TC_ERROR_ARGUMENT, "the buffer for %s has %llu bytes and needs %llu", name,
                            (unsigned long long)held, (unsigned long long)bytes);
@@ -44,9 +44,9 @@ static tc_status mesh_check(const run *r, const tc_device_mesh *mesh) {
         return (tc_status)fail(TC_ERROR_LIMIT,
                                "%llu vertices and %llu triangles: numbers of 32 bits do not reach so far",
                                (unsigned long long)r->vertex_count, (unsigned long long)r->triangle_count);
-    tc_status status = buffer_check(mesh->positions, vertex_bytes, "positions");
-    if (!status && r->normals) status = buffer_check(mesh->normals, vertex_bytes, "normals");
-    if (!status) status = buffer_check(mesh->triangles, r->triangle_count * MESH_BYTES_PER_TRIANGLE, "triangles");
+    tc_status status = buffer_check(r, mesh->positions, vertex_bytes, "positions");
+    if (!status && r->normals) status = buffer_check(r, mesh->normals, vertex_bytes, "normals");
+    if (!status) status = buffer_check(r, mesh->triangles, r->triangle_count * MESH_BYTES_PER_TRIANGLE, "triangles");
     return status;
 }
 
@@ -71,8 +71,11 @@ tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, cons
     cl_command_queue queue = grid->context->queue;
     tc_status status = counted_check(grid, options);
     if (!status && grid->device->heads) status = surface_emit(grid, options, mesh);
-    if (status) return status;
-    cl_int error = done ? cl->EnqueueMarkerWithWaitList(queue, 0, NULL, done) : CL_SUCCESS;
-    if (!error) error = cl->Flush(queue);
-    return error ? opencl_fail("marking the end of kernel emit", error) : TC_OK;
+    cl_int error = !status && done ? cl->EnqueueMarkerWithWaitList(queue, 0, NULL, done) : CL_SUCCESS;
+    if (!status && !error) error = cl->Flush(queue);
+    if (!status && !error) return TC_OK;
+    cl->Finish(queue); /* nothing is under way for a call that failed */
+    if (done && *done) cl->ReleaseEvent(*done);
+    if (done) *done = NULL;
+    return status ? status : context_fail(grid->context, "marking the end of kernel emit", error);
 }

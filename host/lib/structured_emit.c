@@ -68,7 +68,7 @@ static tc_status part_sync(run *r, device_buffer *buffer) {
         cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
     if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
     buffer_release(r->context, buffer);
-    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
 static tc_status window_sync(run *r, const mesh_window *w) {
@@ -85,7 +85,7 @@ static tc_status part_read(run *r, const device_buffer *buffer, const host_block
     if (first == end) return TC_OK;
     cl_int error = cl->EnqueueReadBuffer(r->copies, buffer->memory, CL_FALSE, first - start, end - first,
                                          (char *)block->memory + first, 0, NULL, NULL);
-    return error ? opencl_fail("reading the mesh back", error) : TC_OK;
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
 /* Copies a part of the mesh from the window that it is in. */
@@ -145,7 +145,8 @@ static tc_status cases_provide(run *r, device_buffer **out) {
     cases_write(r, cases);
     cl_int error =
         cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    return error ? opencl_fail("uploading the case table", error) : TC_OK;
+    if (error) buffer_release(r->context, buffer); /* one that is there counts as filled */
+    return error ? context_fail(r->context, "uploading the case table", error) : TC_OK;
 }
 
 /* Emits the active bricks of s among [brick_first, brick_last). */
@@ -160,7 +161,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     const cl_uint zero = 0;
     cl_int error = cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
                                          (s.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
-    if (error) return opencl_fail("clearing the ticket of kernel 2", error);
+    if (error) return context_fail(r->context, "clearing the ticket of kernel 2", error);
     s.vertex_window = (uint32_t)w->vertex0;
     s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
     s.position_offset = w->position_offset;
@@ -198,7 +199,7 @@ static tc_status layers_read(run *r, brick_state *layers) {
                                           sizeof *layers, &layers[n], 0, NULL, NULL);
     cl_int finish_error = cl->Finish(r->context->queue);
     if (!error) error = finish_error;
-    return error ? opencl_fail("reading sums of layers", error) : TC_OK;
+    return error ? context_fail(r->context, "reading sums of layers", error) : TC_OK;
 }
 
 static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
@@ -364,7 +365,7 @@ static tc_status emit_unload(run *r, uint32_t n) {
     const emit_step *step = &e->steps[n];
     if (n + 1 == e->step_count) {
         cl_int error = cl->Finish(r->context->queue);
-        if (error) return opencl_fail("kernel emit", error);
+        if (error) return context_fail(r->context, "kernel emit", error);
         e->kernels_end_ms = clock_ms();
     }
     if (r->context->in_place) return e->window_count ? window_sync(r, &step->part) : TC_OK;
@@ -378,7 +379,7 @@ static tc_status steps_emit(run *r, emission *e) {
     if (!status) status = steps_run(r, &stages, e->step_count, r->plan->overlaps && e->window_count != 1);
     if (!status && r->context->in_place && !e->window_count) status = window_sync(r, &e->whole);
     cl_int error = cl->Finish(r->context->queue);
-    if (!status && error) status = opencl_fail("reading the mesh back", error);
+    if (!status && error) status = context_fail(r->context, "reading the mesh back", error);
     if (!status && !r->context->in_place) e->mesh->timings.readback_ms = clock_ms() - e->kernels_end_ms;
     return status;
 }

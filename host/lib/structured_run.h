@@ -81,9 +81,10 @@ typedef struct step_stages {
 /* All steps, in order; overlaps: copies run beside the kernels of other steps, which use other windows. */
 tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool overlaps);
 
-/* Describes an extraction, builds its kernels and provides what they work on but the mesh; run_end gives it back. */
+/* Describes an extraction, builds its kernels and provides what they work on but the mesh; run_end gives it back,
+ * with all that the context keeps where the extraction has failed. */
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
-void run_end(run *r);
+void run_end(run *r, tc_status status);
 
 /* Adds up the heads of all slabs. */
 void totals_add(run *r);

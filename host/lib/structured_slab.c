@@ -19,7 +19,7 @@ tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const 
     for (cl_uint n = 0; n < argument_count && !error; n++)
         error = cl->SetKernelArg(kernel, n, arguments[n].bytes, arguments[n].value);
     if (!error) error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
-    return error ? opencl_fail(name, error) : TC_OK;
+    return error ? context_fail(r->context, name, error) : TC_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- arrays */
@@ -59,7 +59,7 @@ static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buf
     tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
-    return error ? opencl_fail("copying a grid to the device", error) : TC_OK;
+    return error ? context_fail(context, "copying a grid to the device", error) : TC_OK;
 }
 
 /* All arrays whole. */
@@ -70,7 +70,7 @@ static tc_status arrays_provide(tc_grid *grid) {
         status = array_provide(grid, queue, &grid->device->arrays[array], array, 0, array_planes(grid, array));
     if (status || grid->context->in_place) return status;
     cl_int error = cl->Finish(queue);
-    return error ? opencl_fail("copying a grid to the device", error) : TC_OK;
+    return error ? context_fail(grid->context, "copying a grid to the device", error) : TC_OK;
 }
 
 /* Positions along x, y and z, one after the other. */
@@ -84,7 +84,7 @@ static tc_status axes_provide(tc_grid *grid) {
     for (int axis = 0; axis < 3 && !status; offset += bytes[axis++]) {
         cl_int error = cl->EnqueueWriteBuffer(grid->context->queue, buffer->memory, CL_TRUE, offset, bytes[axis],
                                               grid->axes[axis], 0, NULL, NULL);
-        if (error) status = opencl_fail("copying coordinates to the device", error);
+        if (error) status = context_fail(grid->context, "copying coordinates to the device", error);
     }
     return status;
 }
@@ -94,7 +94,7 @@ static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
     const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
     size_t held = 0;
     cl_int error = cl->GetMemObjectInfo(grid->cl_samples, CL_MEM_SIZE, sizeof held, &held, NULL);
-    if (error) return opencl_fail("asking cl_samples for its size", error);
+    if (error) return context_fail(grid->context, "asking cl_samples for its size", error);
     if (grid->cl_samples_offset > held / bytes || held / bytes - grid->cl_samples_offset < count)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "cl_samples has %llu bytes, not %llu samples of %llu after the first %llu",
@@ -104,7 +104,7 @@ static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64, so samples of type %s have to be in the host's memory",
                                grid->context->info.name, tc_type_name(grid->type));
     error = cl->RetainMemObject(grid->cl_samples);
-    if (error) return opencl_fail("retaining cl_samples", error);
+    if (error) return context_fail(grid->context, "retaining cl_samples", error);
     buffer->memory = grid->cl_samples;
     return TC_OK;
 }
@@ -123,6 +123,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
     if (!status) status = axes_provide(grid);
     if (!status && device->plan.samples_whole) status = arrays_provide(grid);
+    if (status) cl->Finish(grid->context->queue); /* copies under way read what is the caller's */
     return status;
 }
 
@@ -234,7 +235,7 @@ static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint
     cl_mem memory = buffer->memory;
     cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL)
                         : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL);
-    return error ? opencl_fail(save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
+    return error ? context_fail(r->context, save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
 }
 
 /* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */

@@ -10,23 +10,23 @@
 #include "structured_run.h"
 
 /* Makes *event that of all commands in the queue so far. */
-static tc_status queue_mark(cl_command_queue queue, cl_event *event) {
+static tc_status queue_mark(const run *r, cl_command_queue queue, cl_event *event) {
     if (*event) cl->ReleaseEvent(*event);
     *event = NULL;
     cl_int error = cl->EnqueueMarkerWithWaitList(queue, 0, NULL, event);
     if (!error) error = cl->Flush(queue);
-    return error ? opencl_fail("marking a place in a queue", error) : TC_OK;
+    return error ? context_fail(r->context, "marking a place in a queue", error) : TC_OK;
 }
 
 /* Commands put into the queue from now on wait for the event. */
-static tc_status queue_await(cl_command_queue queue, const cl_event *event) {
+static tc_status queue_await(const run *r, cl_command_queue queue, const cl_event *event) {
     cl_int error = cl->EnqueueBarrierWithWaitList(queue, 1, event, NULL);
-    return error ? opencl_fail("making one queue wait for the other", error) : TC_OK;
+    return error ? context_fail(r->context, "making one queue wait for the other", error) : TC_OK;
 }
 
-static tc_status queue_follow(cl_command_queue later, cl_command_queue earlier, cl_event *event) {
-    tc_status status = queue_mark(earlier, event);
-    return status ? status : queue_await(later, event);
+static tc_status queue_follow(const run *r, cl_command_queue later, cl_command_queue earlier, cl_event *event) {
+    tc_status status = queue_mark(r, earlier, event);
+    return status ? status : queue_await(r, later, event);
 }
 
 static tc_status step_progress(const run *r, const step_stages *stages, uint32_t step, uint32_t count) {
@@ -47,13 +47,13 @@ static tc_status steps_in_turn(run *r, const step_stages *stages, uint32_t count
 /* Kernels of step n, then the copies that run beside them; *loaded and *computed are of the step before on entry. */
 static tc_status step_overlap(run *r, const step_stages *stages, uint32_t n, uint32_t count, cl_event *loaded,
                               cl_event *computed) {
-    tc_status status = queue_await(r->context->queue, loaded);
+    tc_status status = queue_await(r, r->context->queue, loaded);
     if (!status) status = stages->compute(r, n);
-    if (!status && n) status = queue_await(r->copies, computed);
-    if (!status) status = queue_mark(r->context->queue, computed);
+    if (!status && n) status = queue_await(r, r->copies, computed);
+    if (!status) status = queue_mark(r, r->context->queue, computed);
     if (!status && n) status = stages->unload(r, n - 1);
     if (!status && n + 1 < count) status = stages->load(r, n + 1);
-    if (!status) status = queue_mark(r->copies, loaded);
+    if (!status) status = queue_mark(r, r->copies, loaded);
     return status ? status : step_progress(r, stages, n, count);
 }
 
@@ -62,13 +62,13 @@ static tc_status steps_overlap(run *r, const step_stages *stages, uint32_t count
     tc_status status = copies_queue_provide(r->context);
     if (status) return status;
     r->copies = r->context->copies;
-    status = queue_follow(r->copies, r->context->queue, &loaded);
+    status = queue_follow(r, r->copies, r->context->queue, &loaded);
     if (!status) status = stages->load(r, 0);
-    if (!status) status = queue_mark(r->copies, &loaded);
+    if (!status) status = queue_mark(r, r->copies, &loaded);
     for (uint32_t n = 0; n < count && !status; n++) status = step_overlap(r, stages, n, count, &loaded, &computed);
-    if (!status) status = queue_await(r->copies, &computed);
+    if (!status) status = queue_await(r, r->copies, &computed);
     if (!status) status = stages->unload(r, count - 1);
-    if (!status) status = queue_follow(r->context->queue, r->copies, &loaded);
+    if (!status) status = queue_follow(r, r->context->queue, r->copies, &loaded);
     if (status) cl->Finish(r->copies);
     r->copies = r->context->queue;
     if (loaded) cl->ReleaseEvent(loaded);

@@ -3,17 +3,49 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "truncation.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { FILES_KEPT = 4096 };
+
+/* The files mapped last. */
+static struct {
+    pthread_mutex_t lock;
+    struct file_identity {
+        dev_t device;
+        ino_t number;
+    } files[FILES_KEPT];
+    uint64_t count; /* of all; file n is in place n modulo FILES_KEPT */
+} opened = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static void remember(const struct stat *about) {
+    pthread_mutex_lock(&opened.lock);
+    opened.files[opened.count++ % FILES_KEPT] = (struct file_identity){about->st_dev, about->st_ino};
+    pthread_mutex_unlock(&opened.lock);
+}
+
+int mapping_was_opened(const char *path) {
+    struct stat about;
+    int found = 0;
+    if (stat(path, &about)) return 0;
+    pthread_mutex_lock(&opened.lock);
+    for (uint64_t n = 0; n < opened.count && n < FILES_KEPT && !found; n++)
+        found = opened.files[n].device == about.st_dev && opened.files[n].number == about.st_ino;
+    pthread_mutex_unlock(&opened.lock);
+    return found;
+}
+
 int mapping_open(const char *path, mapping *m) {
     *m = (mapping){0};
+    truncation_watch();
     /* without O_NONBLOCK, opening a pipe would wait for its writer */
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
@@ -27,9 +59,11 @@ int mapping_open(const char *path, mapping *m) {
     } else if ((uintmax_t)about.st_size > SIZE_MAX / 2) {
         status = fail(STATUS_INPUT, "%s: is larger than this machine can address", path);
     } else if (about.st_size > 0) {
+        remember(&about);
         void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
         if (bytes == MAP_FAILED)
-            status = fail(STATUS_INPUT, "%s: cannot be mapped into memory: %s", path, strerror(errno));
+            status = fail(errno == ENOMEM ? STATUS_FAILED : STATUS_INPUT, "%s: cannot be mapped into memory: %s", path,
+                          strerror(errno));
         else
             *m = (mapping){bytes, (size_t)about.st_size};
     }

@@ -9,8 +9,11 @@ typedef struct mapping {
     size_t size;
 } mapping;
 
-/* Maps a regular file. 0 or STATUS_INPUT with text, *m zeroed. */
+/* Maps a regular file. 0 or a status with text, *m zeroed. */
 int mapping_open(const char *path, mapping *m);
+
+/* Nonzero where path is one of the few thousand files mapped last in this process, under whatever name. */
+int mapping_was_opened(const char *path);
 
 /* Accepts a zeroed mapping; zeroes it. */
 void mapping_close(mapping *m);

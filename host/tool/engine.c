@@ -17,6 +17,7 @@ int engine_open(const options *o, tc_engine kind, engine *e) {
     device.device = o->device;
     device.max_memory_bytes = kind == TC_ENGINE_OPENCL ? o->max_memory : 0;
     device.progress = progress_update;
+    device.check_device = !o->verify; /* which compares more */
     return library_status(tc_context_create(&device, &e->context));
 }
 

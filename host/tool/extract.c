@@ -5,6 +5,9 @@
  * The device is started on a second thread while the input is read: neither needs the other, and a compressed volume
  * takes as long as a driver.
  *
+ * Whatever fails in the main engine, --engine auto gives to the reference engine, which goes on from there: its meshes
+ * are the same.
+ *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
  * written; the others are, and the exit status is 3.
  */
@@ -46,9 +49,9 @@ static int check_usage(const options *o) {
     for (size_t n = 0; n < sizeof need_mesh / sizeof *need_mesh; n++)
         if (o->count && options_given(o, need_mesh[n]))
             return fail(STATUS_USAGE, "--count makes no mesh: leave out %s, or --count", need_mesh[n]);
-    if (o->verify && o->engine == TC_ENGINE_REFERENCE)
+    if (o->verify && o->engine != TC_ENGINE_OPENCL)
         return fail(STATUS_USAGE, "--verify compares with the reference engine: it proves nothing about that engine "
-                                  "itself; leave out --verify or --engine reference");
+                                  "itself; leave out --verify or --engine");
     read_request request;
     int status = input_request(o, &request);
     return status ? status : surface_files_check(o);
@@ -72,6 +75,7 @@ static int check_kinds(const job *j) {
 static int read_input(job *j) {
     double begin = now_ms();
     int status = input_read(j->o, &j->data);
+    if (!status) status = surface_files_check(j->o);
     if (!status) status = check_kinds(j);
     if (!status) status = input_select(j->o, &j->data, &j->field);
     if (!status) status = carry_select(j->o, &j->data, &j->carried);
@@ -79,11 +83,25 @@ static int read_input(job *j) {
     return status ? status : progress_status();
 }
 
+/* Where the main engine has failed: with --engine auto the reference takes its place, with what has been uploaded.
+ * Returns the status that is left. */
+static int fall_back(job *j, int status) {
+    if (status != STATUS_FAILED || progress_cancelled()) return status;
+    if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
+    if (!j->o->quiet) message("%s", failure_text());
+    if (!j->o->quiet) message("the reference engine takes over");
+    engine_close(&j->main);
+    j->report.engine = TC_ENGINE_REFERENCE;
+    j->report.device[0] = '\0';
+    status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->main);
+    return status || !j->blocks.count ? status : engine_upload(j->o, &j->blocks, &j->main);
+}
+
 /* The second thread: texts of failures are each thread's own, so this one's is handed over. */
 static void *device_start(void *argument) {
     job *j = argument;
     double begin = now_ms();
-    j->start_status = engine_open(j->o, (tc_engine)j->o->engine, &j->main);
+    j->start_status = engine_open(j->o, j->report.engine, &j->main);
     j->report.device_start_ms = now_ms() - begin;
     if (j->start_status) snprintf(j->start_text, sizeof j->start_text, "%s", failure_text());
     return NULL;
@@ -97,8 +115,8 @@ static int read_and_start(job *j) {
         pthread_join(starter, NULL);
     else if (!status)
         device_start(j);
-    if (status) return status;
-    return j->start_status ? fail(j->start_status, "%s", j->start_text) : 0;
+    if (status || !j->start_status) return status;
+    return fall_back(j, fail(j->start_status, "%s", j->start_text));
 }
 
 static void describe_input(job *j) {
@@ -124,11 +142,11 @@ static int cut(job *j) {
 
 static int upload(job *j) {
     double begin = now_ms();
-    int status = engine_upload(j->o, &j->blocks, &j->main);
+    int status = fall_back(j, engine_upload(j->o, &j->blocks, &j->main));
     j->report.upload_ms += now_ms() - begin;
     if (!status && j->o->verify) status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->reference);
     if (!status && j->o->verify) status = engine_upload(j->o, &j->blocks, &j->reference);
-    if (status || j->o->engine == TC_ENGINE_REFERENCE) return status;
+    if (status || j->report.engine == TC_ENGINE_REFERENCE) return status;
     tc_device_info info = {.struct_size = sizeof info};
     status = library_status(tc_context_device(j->main.context, &info));
     snprintf(j->report.device, sizeof j->report.device, "%s", info.name);
@@ -144,12 +162,13 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
     tc_counts counts;
     double begin = now_ms();
     int status = engine_count(&j->main, how, &counts);
+    if (status && !(status = fall_back(j, status))) status = engine_count(&j->main, how, &counts);
     add_device_start(j, begin, counts.classify_ms);
     s->vertex_count = counts.vertex_count;
     s->triangle_count = counts.triangle_count;
     s->active_cell_count = counts.active_cell_count;
     s->classify_ms = counts.classify_ms;
-    return status;
+    return status ? status : progress_status();
 }
 
 static void describe_mesh(const options *o, const tc_mesh_data *m, surface_report *s) {
@@ -234,7 +253,9 @@ static int make_surface(job *j, surface_report *s) {
     how.method = (tc_method)j->o->method;
     if (j->o->count) return count_surface(j, &how, s);
     double begin = now_ms();
-    if ((status = engine_extract(&j->main, &how, &mesh))) return status;
+    status = engine_extract(&j->main, &how, &mesh);
+    if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, &how, &mesh);
+    if (status) return status;
     add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
     describe_mesh(j->o, &mesh, s);
     if (j->o->verify && (status = verify_surface(j, &how, &mesh, s))) return status;
@@ -272,6 +293,7 @@ int extract_run(const options *o) {
     double begin = now_ms();
     job j = {.o = o};
     j.report.o = o;
+    j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
     int status = check_usage(o);
     if (status) goto cleanup;
     if (o->engine == TC_ENGINE_REFERENCE && o->device && !o->quiet)

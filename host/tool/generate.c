@@ -131,7 +131,6 @@ int generate_run(const options *o) {
     if (r.has_header) write_header(&r, &out);
     write_planes(&r, chunk, chunk_planes, &out);
     status = output_close(&out);
-    if (progress_cancelled()) status = progress_status();
     if (!status && !o->quiet)
         printf("%s: %s, %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", o->output, r.f->name, o->dims[0], o->dims[1],
                o->dims[2], tc_type_name((tc_type)o->type));

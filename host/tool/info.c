@@ -176,6 +176,7 @@ int info_run(const options *o) {
         f.field = &field;
     }
     if (!status) status = find_statistics(&f);
+    if (!status) status = progress_status();
     if (status) goto cleanup;
     f.path = request.path;
     if (o->json)

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "mapping.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -70,6 +71,8 @@ int input_overwrite_check(const options *o, const char *path) {
         if (input.st_dev == output.st_dev && input.st_ino == output.st_ino && S_ISREG(input.st_mode))
             return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
     }
+    if (mapping_was_opened(path))
+        return fail(STATUS_USAGE, "-o %s is a file that the input names, read as part of it: name another file", path);
     return 0;
 }
 

@@ -18,7 +18,8 @@ int input_select(const options *o, dataset *d, scalar *out);
 /* The notice that a field of cells was averaged. */
 void input_tell_average(const options *o, const dataset *d, const char *name);
 
-/* STATUS_USAGE where path, the output, is one of the inputs: it must not replace what it is made from. */
+/* STATUS_USAGE where path, the output, is one of the inputs or, once they are read, a file that they name: it must not
+ * replace what it is made from. */
 int input_overwrite_check(const options *o, const char *path);
 
 /* Nonzero where a field is named, or there is just one and nothing to choose in it: where input_select can succeed

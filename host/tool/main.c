@@ -7,7 +7,9 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
+#include "output.h"
 #include "progress.h"
+#include "truncation.h"
 #include "volume.h"
 
 #include <errno.h>
@@ -71,7 +73,7 @@ static const command commands[] = {
     {"selftest", COMMAND_SELFTEST, selftest_run, NULL, "known answers and the reference, on a device",
      "tetracubes selftest [--device SPEC] [--json]",
      "Extracts small volumes on the device, compares counts with known answers and every byte with\n"
-     "the scalar reference: sample types, sizes, ties, missing data, normals, launch sizes, slabs.\n"
+     "the scalar reference: types, sizes, ties, missing data, normals, grids, methods, scan, launches, slabs.\n"
      "Prints a line per group and PASS or FAIL."},
 };
 
@@ -140,6 +142,8 @@ int library_status(tc_status status) {
         return fail(STATUS_USAGE, "%s", tc_message());
     case TC_ERROR_DATA:
         return fail(STATUS_INPUT, "%s", tc_message());
+    case TC_ERROR_WRONG:
+        return fail(STATUS_FAILED, "%s (--engine reference, or auto)", tc_message());
     case TC_ERROR_CANCELLED:
         return progress_cancelled() ? progress_status() : fail(STATUS_FAILED, "%s", tc_message());
     default:
@@ -168,7 +172,10 @@ static int run_command(const command *c, int argc, char **argv) {
         print_command_help(c, stdout);
     } else if (!status) {
         progress_begin(o.quiet);
+        output_stop_when(progress_cancelled);
         status = c->run(&o);
+        if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();
+        if (status && truncation_seen()) status = truncation_status(); /* whatever came of it */
         progress_clear();
     }
     options_release(&o);

@@ -45,7 +45,7 @@ typedef struct option {
 
 static const char *const type_choices[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64", NULL};
 static const char *const endian_choices[] = {"little", "big", NULL};
-static const char *const engine_choices[] = {"opencl", "reference", NULL};
+static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
 static const char *const method_choices[] = {"tetra", "hybrid", NULL};
 static const char *const format_choices[] = {"ply", "stl", "obj", "vtp", NULL};
 static const char *const blocks_choices[] = {"joined", "separate", NULL};
@@ -88,7 +88,8 @@ static const option table[] = {
      "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
      "ambiguous cases the tetrahedra decide: fewer triangles, structured grids"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
-     "opencl (default), or reference: scalar C, needs no OpenCL, same bytes"},
+     "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
+     "the reference where there is no device, or it fails or gives wrong results"},
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},

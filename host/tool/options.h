@@ -20,6 +20,9 @@ enum command_bit {
     COMMAND_TETRAHEDRALIZE = 32,
 };
 
+/* Of --engine: the device, and the reference where there is none or it fails. */
+enum { ENGINE_AUTO = 2 };
+
 typedef struct typed_isovalue {
     double value;  /* finite */
     char text[48]; /* as typed */
@@ -35,7 +38,7 @@ typedef struct options {
     const char *output; /* NULL where not given, as all texts */
     const char *format;
     const char *device;
-    int engine; /* a tc_engine */
+    int engine; /* a tc_engine, or ENGINE_AUTO */
     int method; /* a tc_method */
     const char *field;
     const char *carry;   /* names with commas between */

@@ -8,6 +8,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "truncation.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -77,4 +78,6 @@ void progress_clear(void) {
 
 int progress_cancelled(void) { return cancelled; }
 
-int progress_status(void) { return cancelled ? fail(STATUS_FAILED, "cancelled; no file was left unfinished") : 0; }
+int progress_status(void) {
+    return cancelled ? fail(STATUS_FAILED, "cancelled; no file was left unfinished") : truncation_status();
+}

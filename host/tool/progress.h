@@ -23,7 +23,7 @@ void progress_clear(void);
 /* Nonzero once a signal came. */
 int progress_cancelled(void);
 
-/* 0, or STATUS_FAILED with the text that a cancelled run ends with. */
+/* 0, or a status with its text: STATUS_FAILED of a cancelled run, STATUS_INPUT where an input file became shorter. */
 int progress_status(void);
 
 #endif

@@ -110,7 +110,7 @@ int report_extract_json(const extract_report *r) {
     }
     json_object_set_new(object, "input", report_string(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? report_string(r->device) : json_null());
-    json_object_set_new(object, "engine", json_string(r->o->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
+    json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "method", json_string(r->o->method == TC_METHOD_HYBRID ? "hybrid" : "tetra"));
     json_object_set_new(object, "dims", r->dims ? report_integers(r->dims) : json_null());
     json_object_set_new(object, "cells", count_json(r->cell_count));

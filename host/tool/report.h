@@ -31,6 +31,7 @@ typedef struct surface_report {
 
 typedef struct extract_report {
     const options *o;
+    tc_engine engine;    /* the one that made the surfaces, the last where --engine auto has changed it */
     const int64_t *dims; /* of an input that is one structured block, else NULL */
     int block_count;
     int is_complex;    /* unstructured: active cells are tetrahedra */

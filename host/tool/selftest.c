@@ -2,7 +2,6 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "field.h"
 #include "progress.h"
 #include "report.h"
 #include "selftest.h"
@@ -13,8 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NOISE_SEED 5
-
 /* What a group came to. */
 typedef struct verdict {
     int trial_count, failed_count;
@@ -22,93 +19,17 @@ typedef struct verdict {
     char text[512]; /* the first failure */
 } verdict;
 
-/* ---------------------------------------------------------------------------------------------------------- volume */
-
-/* Multiples of 32 (i8: of 16), from u8 samples. */
-static void step_samples(const trial *t, size_t count, void *samples) {
-    unsigned char *bytes = samples; /* converted from the last to the first, in place */
-    field_sample(field_find(t->field), t->dims, TC_U8, NOISE_SEED, 0, t->dims[2], samples);
-    for (size_t n = count; n-- > 0;) {
-        unsigned value = bytes[n] & 0xe0u;
-        switch (t->type) {
-        case TC_U8:
-            bytes[n] = (unsigned char)value;
-            break;
-        case TC_I8:
-            ((int8_t *)samples)[n] = (int8_t)(value >> 1);
-            break;
-        case TC_U16:
-            ((uint16_t *)samples)[n] = (uint16_t)value;
-            break;
-        case TC_I16:
-            ((int16_t *)samples)[n] = (int16_t)value;
-            break;
-        case TC_U32:
-            ((uint32_t *)samples)[n] = value;
-            break;
-        case TC_I32:
-            ((int32_t *)samples)[n] = (int32_t)value;
-            break;
-        case TC_F32:
-            ((float *)samples)[n] = (float)value;
-            break;
-        case TC_F64:
-            ((double *)samples)[n] = value;
-            break;
-        }
-    }
-}
-
-static void scatter_missing(const trial *t, size_t count, void *samples) {
-    static const double gaps[] = {NAN, INFINITY, -INFINITY};
-    for (size_t n = 11; n < count; n += 37) {
-        if (t->type == TC_F32) ((float *)samples)[n] = (float)gaps[n % 3];
-        if (t->type == TC_F64) ((double *)samples)[n] = gaps[n % 3];
-    }
-}
-
-/* The trial's samples, from malloc, or NULL. */
-static void *make_samples(const trial *t) {
-    size_t count = (size_t)(t->dims[0] * t->dims[1] * t->dims[2]);
-    void *samples = malloc(count * tc_type_bytes(t->type));
-    if (!samples) return NULL;
-    if (t->change == CHANGE_STEPS)
-        step_samples(t, count, samples);
-    else
-        field_sample(field_find(t->field), t->dims, t->type, NOISE_SEED, 0, t->dims[2], samples);
-    float *f32 = samples;
-    if (t->change == CHANGE_MISSING) scatter_missing(t, count, samples);
-    if (t->change == CHANGE_SUBNORMAL)
-        for (size_t n = 0; n < count; n++) f32[n] = ldexpf(f32[n], -140);
-    if (t->change == CHANGE_HUGE)
-        for (size_t n = 0; n < count; n++) f32[n] = ldexpf(f32[n] - 128.0f, 120);
-    return samples;
-}
-
-static void describe_grid(const trial *t, const void *samples, tc_grid_options *grid) {
-    static const double mirrored[3][4] = {{-0.5, 0.25, 0.0, 10.0}, {0.0, 1.5, 0.125, -3.0}, {0.0, 0.0, 0.7, 0.1}};
-    tc_grid_options_init(grid);
-    memcpy(grid->dims, t->dims, sizeof grid->dims);
-    memcpy(grid->first, t->first, sizeof grid->first);
-    if (t->mirrored) memcpy(grid->matrix, mirrored, sizeof mirrored);
-    grid->type = t->type;
-    grid->samples = samples;
-    grid->has_nodata = t->has_nodata;
-    grid->nodata = t->nodata;
-}
-
 /* ---------------------------------------------------------------------------------------------------------- trials */
 
-static tc_status extract_trial(const trial *t, tc_context *context, const void *samples, tc_grid **grid, tc_mesh **mesh,
-                               tc_mesh_data *data) {
-    tc_grid_options description;
+static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, tc_grid **grid,
+                               tc_mesh **mesh, tc_mesh_data *data) {
     tc_extract_options how;
-    describe_grid(t, samples, &description);
     tc_extract_options_init(&how);
-    how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, -140) : t->isovalue;
+    how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, selftest_exponent(t)) : t->isovalue;
     how.normals = t->normals;
+    how.method = t->method;
     data->struct_size = sizeof *data;
-    tc_status status = tc_grid_create(context, &description, grid);
+    tc_status status = selftest_grid_create(v, context, grid);
     if (!status) status = tc_extract(*grid, &how, mesh);
     return status ? status : tc_mesh_get(*mesh, data);
 }
@@ -127,15 +48,15 @@ static int run_trial(const trial *t, const launch *l, tc_context *device, tc_con
     tc_mesh *meshes[2] = {NULL, NULL};
     tc_mesh_data data[2] = {{0}, {0}};
     char text[256] = "";
-    void *samples = make_samples(t);
-    int status = samples ? 0 : fail(STATUS_FAILED, "out of memory for a volume of the self-test");
+    selftest_volume volume;
+    int status = selftest_volume_make(t, &volume);
     if (status) goto cleanup;
-    tc_status expected = extract_trial(t, reference, samples, &grids[0], &meshes[0], &data[0]);
+    tc_status expected = extract_trial(t, reference, &volume, &grids[0], &meshes[0], &data[0]);
     if (expected) {
         status = library_status(expected);
         goto cleanup;
     }
-    tc_status extracted = extract_trial(t, device, samples, &grids[1], &meshes[1], &data[1]);
+    tc_status extracted = extract_trial(t, device, &volume, &grids[1], &meshes[1], &data[1]);
     if (extracted == TC_ERROR_CANCELLED) {
         status = library_status(extracted);
         goto cleanup;
@@ -150,14 +71,14 @@ static int run_trial(const trial *t, const launch *l, tc_context *device, tc_con
         snprintf(v->text, sizeof v->text,
                  "%s %" PRId64 "x%" PRId64 "x%" PRId64
                  " %s, isovalue %g, work items %u, groups %u, tile bricks %u, division %d: %s",
-                 t->field, t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type), t->isovalue, l->work_items,
-                 l->work_groups, l->tile_bricks, l->division, text);
+                 t->field ? t->field : "quotients", t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type),
+                 t->isovalue, l->work_items, l->work_groups, l->tile_bricks, l->division, text);
 cleanup:
     for (int e = 0; e < 2; e++) {
         tc_mesh_destroy(meshes[e]);
         tc_grid_destroy(grids[e]);
     }
-    free(samples);
+    selftest_volume_release(&volume);
     return status;
 }
 

@@ -13,16 +13,21 @@ typedef enum trial_change {
     CHANGE_NONE,
     CHANGE_STEPS,     /* samples rounded down to multiples of 32: many of them equal the isovalue */
     CHANGE_MISSING,   /* f32, f64: scattered NaN and infinities */
-    CHANGE_SUBNORMAL, /* f32: times 2^-140, the isovalue too */
-    CHANGE_HUGE,      /* f32: less 128, times 2^120: differences overflow; the isovalue is given as it is */
+    CHANGE_SUBNORMAL, /* f32, f64: times 2^-140 or 2^-1060, the isovalue too */
+    CHANGE_HUGE,      /* f32, f64: less 128, times 2^120 or 2^1016: differences overflow; the isovalue as it is */
+    CHANGE_MIDPOINTS, /* f32: pairs whose quotients are as near to the middle of two numbers as they can be */
 } trial_change;
 
+typedef enum trial_kind { KIND_UNIFORM, KIND_RECTILINEAR, KIND_CURVILINEAR, KIND_COMPLEX } trial_kind;
+
 typedef struct trial {
-    const char *field;
+    const char *field; /* unless the change makes the samples */
     int64_t dims[3];
     tc_type type;
     double isovalue;
     trial_change change;
+    trial_kind kind;
+    tc_method method;
     int normals, mirrored; /* mirrored: a left-handed matrix, with spacing and shear */
     int has_nodata;
     double nodata;
@@ -46,6 +51,23 @@ typedef struct trial_group {
     int launch_count;
     int wants_slabs; /* a launch that never makes more than one slab tests nothing: it fails */
 } trial_group;
+
+/* What a trial extracts from. */
+typedef struct selftest_volume {
+    tc_grid_options grid;
+    tc_complex complex; /* KIND_COMPLEX: the grid, cut */
+    void *samples;
+    float *points, *axes;
+} selftest_volume;
+
+/* Returns 0 or a status with its text; to be released in any case. */
+int selftest_volume_make(const trial *t, selftest_volume *v);
+void selftest_volume_release(selftest_volume *v);
+
+/* Of a scaled trial: the power of two. */
+int selftest_exponent(const trial *t);
+
+tc_status selftest_grid_create(const selftest_volume *v, tc_context *context, tc_grid **grid);
 
 extern const trial_group trial_groups[];
 extern const int trial_group_count;

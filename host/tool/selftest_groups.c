@@ -67,6 +67,8 @@ static const trial missing[] = {
 };
 
 static const trial extremes[] = {
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 127.5, .change = CHANGE_SUBNORMAL},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 0, .change = CHANGE_HUGE},
     {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 127.5, .change = CHANGE_SUBNORMAL},
     {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 0, .change = CHANGE_HUGE},
     {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 1e37, .change = CHANGE_HUGE},
@@ -82,6 +84,42 @@ static const trial normals[] = {
 static const trial matrices[] = {
     {.field = "gyroid", .dims = {65, 20, 11}, .type = TC_U8, .isovalue = 127.5, .mirrored = 1},
     {.field = "noise", .dims = {65, 20, 11}, .type = TC_F64, .isovalue = 127.5, .mirrored = 1},
+};
+
+static const trial hybrids[] = {
+    {.field = "gyroid", .dims = {67, 20, 13}, .type = TC_U8, .isovalue = 127.5, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 127.5, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 127.5, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_U8, .isovalue = 128, .method = TC_METHOD_HYBRID, .change = CHANGE_STEPS, .has_nodata = 1, .nodata = 64},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 127.5, .method = TC_METHOD_HYBRID, .change = CHANGE_MISSING, .normals = 1},
+};
+
+static const trial coordinates[] = {
+    {.field = "gyroid", .dims = {67, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_RECTILINEAR, .normals = 1},
+    {.field = "gyroid", .dims = {67, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_CURVILINEAR, .normals = 1},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_U8, .isovalue = 127.5, .kind = KIND_CURVILINEAR, .normals = 1},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 127.5, .kind = KIND_CURVILINEAR, .normals = 1},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_CURVILINEAR, .normals = 1, .change = CHANGE_MISSING},
+};
+
+static const trial complexes[] = {
+    {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 127.5, .kind = KIND_COMPLEX},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_I16, .isovalue = 96, .kind = KIND_COMPLEX, .change = CHANGE_STEPS},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F64, .isovalue = 127.5, .kind = KIND_COMPLEX},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .change = CHANGE_SUBNORMAL},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .change = CHANGE_MISSING},
+};
+
+static const trial scanned[] = {
+    {.field = "gyroid", .dims = {130, 70, 66}, .type = TC_U8, .isovalue = 127.5, .is_known = 1, .vertices = 254936, .triangles = 502192},
+    {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 127.5, .kind = KIND_COMPLEX},
+};
+
+static const trial quotients[] = {
+    {.dims = {130, 21, 18}, .type = TC_F32, .isovalue = 0, .change = CHANGE_MIDPOINTS},
+    {.field = "gyroid", .dims = {200, 41, 38}, .type = TC_U8, .isovalue = 127.5},
+    {.field = "noise", .dims = {130, 21, 18}, .type = TC_F32, .isovalue = 127.5},
 };
 
 static const trial launched[] = {
@@ -109,6 +147,13 @@ static const launch varied[] = {
     {.work_items = 32, .work_groups = 2, .tile_bricks = 3},
 };
 
+/* By look-back; by the fallback wherever it can be; by either as it comes, with groups that wait for each other. */
+static const launch chained[] = {
+    {.tile_bricks = 1},
+    {.tile_bricks = 1, .spin_limit = 1},
+    {.tile_bricks = 1, .spin_limit = 2, .work_groups = 16},
+};
+
 static const launch divided[] = {{.division = 1}, {.division = 2}, {.division = 3}};
 
 static const launch tight[] = {
@@ -128,8 +173,12 @@ const trial_group trial_groups[] = {
     GROUP("extremes", "subnormal and huge samples", extremes, standard, 0),
     GROUP("normals", "normals", normals, standard, 0),
     GROUP("matrices", "mirrored and sheared grids", matrices, standard, 0),
+    GROUP("hybrid", "the hybrid method", hybrids, standard, 0),
+    GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0),
+    GROUP("complexes", "unstructured grids", complexes, standard, 0),
+    GROUP("scan", "the scan and its fallback", scanned, chained, 0),
     GROUP("launches", "work-group and tile sizes", launched, varied, 0),
-    GROUP("divisions", "ways to divide", launched, divided, 0),
+    GROUP("divisions", "ways to divide", quotients, divided, 0),
     GROUP("slabs", "little memory", slabbed, tight, 1),
 };
 

@@ -36,6 +36,7 @@ static int check_usage(const options *o) {
 
 static int read_input(conversion *c) {
     int status = input_read(c->o, &c->data);
+    if (!status) status = input_overwrite_check(c->o, c->o->output);
     if (!status && input_has_choice(c->o, &c->data)) status = input_select(c->o, &c->data, &c->field);
     return status ? status : progress_status();
 }

@@ -17,6 +17,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "parallel.h"
+#include "truncation.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -28,7 +29,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { NAME_KEPT = 200, ATTEMPTS = 100 };
+enum { NAME_KEPT = 200, ATTEMPTS = 100, WRITE_MOST = 1 << 26 };
 
 static const char *advice(int error) {
     switch (error) {
@@ -133,10 +134,15 @@ void output_expect(output *o, uint64_t bytes) {
     if (o->temporary && bytes > 0 && bytes <= INT64_MAX) (void)fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
 }
 
+static int (*stop_asked)(void);
+
+void output_stop_when(int (*asked)(void)) { stop_asked = asked; }
+
 void output_bytes(output *o, const void *data, uint64_t bytes) {
     const unsigned char *from = data;
     while (bytes > 0 && !o->error) {
-        ssize_t written = write(o->fd, from, bytes);
+        ssize_t written = write(o->fd, from, bytes < WRITE_MOST ? bytes : WRITE_MOST);
+        if (stop_asked && stop_asked()) o->error = ECANCELED;
         if (written > 0) {
             from += written;
             bytes -= (uint64_t)written;
@@ -144,6 +150,7 @@ void output_bytes(output *o, const void *data, uint64_t bytes) {
             o->error = ENOSPC;
         } else if (errno != EINTR) {
             o->error = errno;
+            if (errno == EFAULT) truncation_note();
         }
     }
 }
@@ -209,6 +216,8 @@ void output_records(output *o, uint64_t count, size_t record_bytes, output_encod
 }
 
 int output_close(output *o) {
+    if (truncation_seen()) o->error = EFAULT; /* what was written may be zeros in place of an input file */
     release(o);
+    if (truncation_seen()) return truncation_status();
     return o->error ? fail_write(o->name, o->error) : 0;
 }

@@ -30,6 +30,9 @@ typedef struct output {
  * it at once. */
 typedef unsigned char *output_encode(const void *source, uint64_t first, uint64_t end, unsigned char *to);
 
+/* Has `asked` asked between writes, by all outputs from now on: nonzero ends them, and output_close then fails. */
+void output_stop_when(int (*asked)(void));
+
 /* Returns 0 or STATUS_FAILED with its text; the output then needs no output_close. path must outlive the output. */
 int output_open(output *o, const char *path);
 
@@ -42,7 +45,8 @@ void output_bytes(output *o, const void *data, uint64_t bytes);
 /* Writes records 0 to count - 1, each of at most record_bytes bytes when encoded. */
 void output_records(output *o, uint64_t count, size_t record_bytes, output_encode *encode, const void *source);
 
-/* Puts the file under its name, or removes it. Returns 0 or STATUS_FAILED with its text. */
+/* Puts the file under its name, or removes it. Returns 0 or a status with its text: STATUS_FAILED, or STATUS_INPUT
+ * where an input file became shorter meanwhile. */
 int output_close(output *o);
 
 #endif

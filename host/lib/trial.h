@@ -1,0 +1,45 @@
+/*
+ * trial.h - kernels tried on a small volume before a context's results rest on them
+ *
+ * A driver may build or run kernels wrongly and report success. So, where the context's options say check_device, the
+ * kernels that an extraction needs are run once per context on a volume that has everything in small: several words,
+ * bricks and tiles, both parities, ties, subnormal and huge samples, missing ones where the kernels know of them.
+ *
+ * Counts first: wrong ones could make kernel 2 write where nothing is. Then every byte of the mesh is compared with the
+ * scalar reference's, then counts once more, by the fallback of the scan and from the ranges that the visit before has
+ * left. That takes a few milliseconds; so the verdict is kept in the context alone, where it cannot outlive a change of
+ * driver or device.
+ */
+#ifndef TRIAL_H
+#define TRIAL_H
+
+#include "grid.h"
+
+/* TC_OK where the kernels for the grid and the options have passed, or need not be tried; TC_ERROR_WRONG, saying what
+ * differs, where the device computes wrongly. Uses the workspace; emits: kernel 2 is tried too. */
+tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits);
+
+/* True where trial_run would run kernels: also after an extraction that met the grid's first missing sample, and took
+ * other kernels then. */
+bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits);
+
+/* What one trial extracts from. */
+typedef struct trial_volume {
+    tc_type type;
+    grid_kind kind;
+    bool unstructured, missing, plain; /* plain: samples of one magnitude, for normals: squares would overflow */
+    tc_grid_options options;
+    tc_complex complex; /* unstructured: the volume, cut */
+    double isovalue;
+    void *samples;
+    float *points, *axes;
+} trial_volume;
+
+/* Makes samples and coordinates; to be released in any case. */
+tc_status trial_volume_make(trial_volume *v);
+void trial_volume_release(trial_volume *v);
+
+/* A grid over it, in a context of either engine. */
+tc_status trial_grid_create(const trial_volume *v, tc_context *context, tc_grid **grid);
+
+#endif

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""figures.py - README's table of what the long tier tried and found, from tests/results
+
+    figures.py [--results FOLDER] [--readme FILE]
+
+Each file PART.json has `part`, `date`, `versions`, `seconds` and `figures`, a list of {`what`, `value`}. The table goes
+between README's trust:begin and trust:end comments. tests/test_readme.py compares it with the results.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BEGIN, END = "<!-- trust:begin -->", "<!-- trust:end -->"
+
+
+def shown(value):
+    if isinstance(value, float):
+        return f"{value:,.4g}"
+    return f"{value:,}" if isinstance(value, int) else str(value)
+
+
+def rows(result):
+    lines = [f"{figure['what']}: **{shown(figure['value'])}**" for figure in result["figures"]]
+    return f"| {result['part'].replace('_', ' ')} | {'; '.join(lines)} | {result['date']} |"
+
+
+def versions(results):
+    """All programs that the parts name, each once with its versions."""
+    known = {}
+    for result in results:
+        for name, version in result["versions"].items():
+            known.setdefault(name, []).append(str(version))
+    return ", ".join(f"{name} {' and '.join(sorted(set(known[name])))}" for name in sorted(known, key=str.lower))
+
+
+def table(results):
+    lines = ["| part | tried and found | on |", "| --- | --- | --- |"]
+    lines += [rows(result) for result in results]
+    return "\n".join(lines + ["", f"With {versions(results)}."])
+
+
+def replaced(text, inner):
+    before, rest = text.split(BEGIN)
+    return f"{before}{BEGIN}\n{inner}\n{END}{rest.split(END)[1]}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--results", type=Path, default=ROOT / "tests" / "results", metavar="FOLDER")
+    parser.add_argument("--readme", type=Path, default=ROOT / "README.md", metavar="FILE")
+    options = parser.parse_args()
+    results = [json.loads(path.read_text()) for path in sorted(options.results.glob("*.json"))]
+    options.readme.write_text(replaced(options.readme.read_text(), table(results)))
+
+
+if __name__ == "__main__":
+    main()

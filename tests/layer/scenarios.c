@@ -1,0 +1,397 @@
+#define CL_TARGET_OPENCL_VERSION 120
+
+#include "scenarios.h"
+
+#include "engines.h"
+
+#include <CL/cl.h>
+#include <dirent.h>
+#include <math.h>
+#include <unistd.h>
+
+enum { NX = 50, NY = 20, NZ = 50, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
+
+typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY } flow;
+typedef enum coordinates { UNIFORM, RECTILINEAR, CURVILINEAR } coordinates;
+
+struct scenario {
+    const char *name;
+    flow flow;
+    tc_type type;
+    coordinates coordinates;
+    tc_method method;
+    bool normals, own_buffers, slabs, cold;
+    tc_engine engine;
+};
+
+static const scenario scenarios[] = {
+    {.name = "devices", .flow = FLOW_DEVICES},
+    {.name = "whole", .flow = FLOW_EXTRACT},
+    {.name = "own buffers, hybrid, normals",
+     .flow = FLOW_EXTRACT,
+     .method = TC_METHOD_HYBRID,
+     .normals = true,
+     .own_buffers = true},
+    {.name = "slabs, missing samples", .flow = FLOW_EXTRACT, .type = TC_F32, .slabs = true},
+    {.name = "slabs, own buffers, missing samples",
+     .flow = FLOW_EXTRACT,
+     .type = TC_F32,
+     .slabs = true,
+     .own_buffers = true},
+    {.name = "rectilinear", .flow = FLOW_EXTRACT, .coordinates = RECTILINEAR},
+    {.name = "curvilinear, slabs", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .slabs = true},
+    {.name = "curvilinear, own buffers", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .own_buffers = true},
+    {.name = "complex", .flow = FLOW_COMPLEX},
+    {.name = "complex, own buffers", .flow = FLOW_COMPLEX, .own_buffers = true},
+    {.name = "count and emit", .flow = FLOW_EMIT},
+    {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
+    {.name = "reference, missing samples",
+     .flow = FLOW_EXTRACT,
+     .type = TC_F32,
+     .normals = true,
+     .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, hybrid, curvilinear",
+     .flow = FLOW_EXTRACT,
+     .method = TC_METHOD_HYBRID,
+     .coordinates = CURVILINEAR,
+     .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, complex", .flow = FLOW_COMPLEX, .engine = TC_ENGINE_REFERENCE},
+    {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
+};
+enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
+
+static const double isovalues[2] = {127.5, 90};
+
+static char problem[1500], cache_folder[] = "/tmp/tetracubes-programs-XXXXXX";
+static uint8_t bytes[SAMPLES];
+static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
+static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
+static tc_complex complex;
+static tc_mesh *expected[SCENARIOS][2];
+static cl_context theirs; /* a caller's own context */
+static cl_command_queue their_queue;
+static cl_mem their_samples, their_positions, their_triangles;
+
+int scenario_count(void) { return SCENARIOS; }
+
+const char *scenario_name(int index) { return scenarios[index].name; }
+
+bool scenario_uses_device(int index) { return scenarios[index].engine == TC_ENGINE_OPENCL; }
+
+/* ------------------------------------------------------------------------------------------------------------ input */
+
+static void input_make(void) {
+    for (int n = 0; n < SAMPLES; n++) {
+        const int x = n % NX, y = n / NX % NY, z = n / NX / NY;
+        const double value = 127.5 + 60 * sin(0.33 * x) * cos(0.41 * y) + 60 * sin(0.37 * z + 0.2 * y);
+        bytes[n] = (uint8_t)value;
+        values[n] = x == 20 && y == 10 ? NAN : (float)value;
+        points[3 * n] = (float)(x + 0.1 * sin(0.5 * y));
+        points[3 * n + 1] = (float)(y + 0.1 * sin(0.5 * z));
+        points[3 * n + 2] = (float)(z + 0.1 * sin(0.5 * x));
+    }
+    for (int axis = 0; axis < 3; axis++)
+        for (int n = 0; n < NX; n++) axes[axis][n] = (float)(n + 0.01 * n * n);
+}
+
+static void grid_describe(const scenario *s, tc_grid_options *o) {
+    tc_grid_options_init(o);
+    o->dims[0] = NX;
+    o->dims[1] = NY;
+    o->dims[2] = NZ;
+    o->type = s->type;
+    o->samples = s->type == TC_F32 ? (const void *)values : bytes;
+    if (s->coordinates == CURVILINEAR) o->points = points;
+    for (int axis = 0; axis < 3 && s->coordinates == RECTILINEAR; axis++) o->axes[axis] = axes[axis];
+}
+
+static tc_complex_options complex_describe(void) {
+    tc_complex_options o;
+    tc_complex_options_init(&o);
+    o.point_count = SAMPLES;
+    o.points = points;
+    o.type = TC_U8;
+    o.samples = bytes;
+    o.tetrahedron_count = complex.tetrahedron_count;
+    o.tetrahedra = complex.tetrahedra;
+    return o;
+}
+
+static tc_extract_options surface_describe(const scenario *s, int index) {
+    tc_extract_options o;
+    tc_extract_options_init(&o);
+    o.isovalue = isovalues[index];
+    o.method = s->method;
+    o.normals = s->normals;
+    return o;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ trial */
+
+/* Whether a call succeeds, at once or again where the trial wants it made again. */
+#define TRIED(t, call)                                                                                                 \
+    ((status = (call)) == TC_OK ||                                                                                     \
+     ((t)->failed(t, #call, status) && ((status = (call)) == TC_OK || fails_again(#call, status))))
+
+static bool fails_again(const char *call, tc_status status) {
+    snprintf(problem, sizeof problem, "%s fails once more, status %d: %s", call, (int)status, tc_message());
+    return false;
+}
+
+/* Whether the mesh is that of the reference. */
+static bool mesh_is_right(int index, int surface, tc_mesh *mesh) {
+    tc_mesh_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
+    if (tc_mesh_get(mesh, &found) || tc_mesh_get(expected[index][surface], &wanted)) return false;
+    const char *difference = mesh_difference(&wanted, &found);
+    if (!difference && scenarios[index].slabs && found.slab_count < 2) difference = "the grid was not cut into slabs";
+    if (difference) snprintf(problem, sizeof problem, "isovalue %g: %s", isovalues[surface], difference);
+    return !difference;
+}
+
+static bool counts_are_right(int index, int surface, const tc_counts *found) {
+    tc_mesh_data wanted = {.struct_size = sizeof wanted};
+    if (tc_mesh_get(expected[index][surface], &wanted)) return false;
+    if (found->vertex_count == wanted.vertex_count && found->triangle_count == wanted.triangle_count) return true;
+    snprintf(problem, sizeof problem, "isovalue %g: counts are wrong", isovalues[surface]);
+    return false;
+}
+
+/* Counts and extracts both surfaces, the second into the mesh of the first; then the first again. */
+static tc_status surfaces_run(int index, trial *t, tc_grid *grid) {
+    tc_mesh *mesh = NULL;
+    tc_status status = TC_OK;
+    bool fine = true;
+    for (int n = 0; n < 3 && fine; n++) {
+        const tc_extract_options how = surface_describe(&scenarios[index], n % 2);
+        tc_counts counts = {.struct_size = sizeof counts};
+        if (n < 2) fine = TRIED(t, tc_count(grid, &how, &counts)) && counts_are_right(index, n, &counts);
+        fine = fine && TRIED(t, tc_extract(grid, &how, &mesh)) && mesh_is_right(index, n % 2, mesh);
+    }
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ flows */
+
+static tc_status devices_run(trial *t) {
+    int count = 0;
+    tc_device_info info = {.struct_size = sizeof info};
+    tc_status status;
+    if (TRIED(t, tc_device_count(&count)) && count > 0 && TRIED(t, tc_device_get(0, &info)) && !info.compute_units)
+        snprintf(problem, sizeof problem, "the device has no compute units");
+    return status;
+}
+
+static tc_status grid_run(int index, trial *t, tc_context *context) {
+    tc_grid_options options;
+    tc_grid *grid = NULL;
+    tc_status status;
+    grid_describe(&scenarios[index], &options);
+    if (TRIED(t, tc_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    tc_grid_destroy(grid);
+    return status;
+}
+
+static tc_status complex_run(int index, trial *t, tc_context *context) {
+    const tc_complex_options options = complex_describe();
+    tc_grid *grid = NULL;
+    tc_status status;
+    if (TRIED(t, tc_complex_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    tc_grid_destroy(grid);
+    return status;
+}
+
+/* Cuts the grid into a complex, and carries a field onto the surface. */
+static tc_status carry_run(int index, trial *t, tc_context *context) {
+    tc_grid_options options;
+    tc_grid *grid = NULL;
+    tc_complex cut = {.struct_size = sizeof cut};
+    tc_mesh_data wanted = {.struct_size = sizeof wanted};
+    const tc_extract_options how = surface_describe(&scenarios[index], 0);
+    const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 1, .values = values};
+    tc_status status;
+    grid_describe(&scenarios[index], &options);
+    tc_mesh_get(expected[index][0], &wanted);
+    float *carried = calloc((size_t)wanted.vertex_count, sizeof *carried);
+    if (TRIED(t, tc_tetrahedralize_grid(&options, &cut)) && TRIED(t, tc_grid_create(context, &options, &grid)))
+        (void)TRIED(t, tc_carry(grid, &how, &field, carried, wanted.vertex_count));
+    tc_complex_release(&cut);
+    tc_grid_destroy(grid);
+    free(carried);
+    return status;
+}
+
+/* Counts, then emits into the caller's buffers. The command that reads them back is the caller's too. */
+static tc_status emit_run(int index, trial *t, tc_context *context) {
+    tc_grid_options options;
+    tc_grid *grid = NULL;
+    tc_status status;
+    cl_event done = NULL;
+    const tc_extract_options how = surface_describe(&scenarios[index], 0);
+    const tc_device_mesh mesh = {
+        .struct_size = sizeof mesh, .positions = their_positions, .triangles = their_triangles};
+    tc_counts counts = {.struct_size = sizeof counts};
+    grid_describe(&scenarios[index], &options);
+    options.samples = NULL;
+    options.cl_samples = their_samples;
+    if (TRIED(t, tc_grid_create(context, &options, &grid)) && TRIED(t, tc_count(grid, &how, &counts)) &&
+        counts_are_right(index, 0, &counts))
+        (void)TRIED(t, tc_emit(grid, &how, &mesh, &done));
+    if (done) clReleaseEvent(done);
+    tc_grid_destroy(grid);
+    return status;
+}
+
+static void emitted_check(int index) {
+    tc_mesh_data wanted = {.struct_size = sizeof wanted};
+    tc_mesh_get(expected[index][0], &wanted);
+    const size_t position_bytes = 12 * (size_t)wanted.vertex_count, triangle_bytes = 12 * (size_t)wanted.triangle_count;
+    char *positions = malloc(position_bytes), *triangles = malloc(triangle_bytes);
+    cl_int error =
+        clEnqueueReadBuffer(their_queue, their_positions, CL_TRUE, 0, position_bytes, positions, 0, NULL, NULL);
+    if (!error)
+        error = clEnqueueReadBuffer(their_queue, their_triangles, CL_TRUE, 0, triangle_bytes, triangles, 0, NULL, NULL);
+    if (error || memcmp(positions, wanted.positions, position_bytes) ||
+        memcmp(triangles, wanted.triangles, triangle_bytes))
+        snprintf(problem, sizeof problem, "what was emitted differs (%d)", (int)error);
+    free(positions);
+    free(triangles);
+}
+
+/* --------------------------------------------------------------------------------------------------------- contexts */
+
+static void cache_clear(void) {
+    DIR *folder = opendir(cache_folder);
+    char path[PATH_BYTES];
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        snprintf(path, sizeof path, "%s/%s", cache_folder, entry->d_name);
+        if (entry->d_name[0] != '.') unlink(path);
+    }
+    if (folder) closedir(folder);
+}
+
+static tc_context_options context_describe(int index) {
+    const scenario *s = &scenarios[index];
+    tc_context_options o;
+    tc_context_options_init(&o);
+    o.engine = s->engine;
+    o.own_buffers = s->own_buffers;
+    o.max_memory_bytes = budgets[index];
+    if (s->flow == FLOW_EMIT) {
+        o.cl_context = theirs;
+        o.cl_queue = their_queue;
+    }
+    return o;
+}
+
+static tc_status context_run(int index, trial *t) {
+    const tc_context_options options = context_describe(index);
+    const flow kind = scenarios[index].flow;
+    tc_context *context = NULL;
+    tc_status status;
+    if (TRIED(t, tc_context_create(&options, &context)))
+        status = kind == FLOW_COMPLEX ? complex_run(index, t, context)
+                 : kind == FLOW_EMIT  ? emit_run(index, t, context)
+                 : kind == FLOW_CARRY ? carry_run(index, t, context)
+                                      : grid_run(index, t, context);
+    tc_context_destroy(context);
+    return status;
+}
+
+const char *scenario_run(int index, trial *t) {
+    const scenario *s = &scenarios[index];
+    problem[0] = 0;
+    if (s->cold) cache_clear();
+    const tc_status status = s->flow == FLOW_DEVICES ? devices_run(t) : context_run(index, t);
+    if (t->over) t->over(t);
+    if (status == TC_OK && !problem[0] && s->flow == FLOW_EMIT) emitted_check(index);
+    return problem[0] ? problem : NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------ preparation */
+
+static bool calls_may_fail(trial *t, const char *call, tc_status status) {
+    (void)t, (void)call, (void)status;
+    return false;
+}
+
+/* The least memory that the scenario does with, to within a tenth, so that it makes many slabs. */
+static bool budget_find(int index) {
+    trial quiet = {.failed = calls_may_fail};
+    for (budgets[index] = 2000; budgets[index] < 100000000; budgets[index] += budgets[index] / 10) {
+        problem[0] = 0;
+        if (context_run(index, &quiet) == TC_OK) return true;
+    }
+    return false;
+}
+
+static tc_status reference_extract_all(tc_context *reference) {
+    tc_status status = TC_OK;
+    for (int index = 0; index < SCENARIOS && !status; index++) {
+        const scenario *s = &scenarios[index];
+        tc_grid_options options;
+        const tc_complex_options complex_options = complex_describe();
+        tc_grid *grid = NULL;
+        if (s->flow == FLOW_DEVICES) continue;
+        grid_describe(s, &options);
+        status = s->flow == FLOW_COMPLEX ? tc_complex_create(reference, &complex_options, &grid)
+                                         : tc_grid_create(reference, &options, &grid);
+        for (int n = 0; n < 2 && !status; n++) {
+            const tc_extract_options how = surface_describe(s, n);
+            status = tc_extract(grid, &how, &expected[index][n]);
+        }
+        tc_grid_destroy(grid);
+    }
+    return status;
+}
+
+/* The context, queue and buffers of a caller. */
+static bool theirs_make(void) {
+    cl_platform_id platform;
+    cl_device_id device;
+    cl_int error;
+    if (clGetPlatformIDs(1, &platform, NULL) || clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL))
+        return false;
+    theirs = clCreateContext(NULL, 1, &device, NULL, NULL, &error);
+    if (!error) their_queue = clCreateCommandQueue(theirs, device, 0, &error);
+    if (!error)
+        their_samples = clCreateBuffer(theirs, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof bytes, bytes, &error);
+    if (!error) their_positions = clCreateBuffer(theirs, CL_MEM_READ_WRITE, 1 << 20, NULL, &error);
+    if (!error) their_triangles = clCreateBuffer(theirs, CL_MEM_READ_WRITE, 1 << 20, NULL, &error);
+    return !error;
+}
+
+bool scenarios_prepare(void) {
+    tc_context *reference = NULL;
+    tc_context_options options;
+    tc_grid_options grid;
+    input_make();
+    if (!mkdtemp(cache_folder)) return false;
+    setenv("TETRACUBES_CACHE_DIR", cache_folder, 1);
+    complex.struct_size = sizeof complex;
+    grid_describe(&scenarios[1], &grid);
+    grid.points = points;
+    tc_context_options_init(&options);
+    options.engine = TC_ENGINE_REFERENCE;
+    tc_status status = tc_context_create(&options, &reference);
+    if (!status) status = tc_tetrahedralize_grid(&grid, &complex);
+    if (!status) status = reference_extract_all(reference);
+    tc_context_destroy(reference);
+    if (status || !theirs_make()) return false;
+    for (int index = 0; index < SCENARIOS; index++)
+        if (scenarios[index].slabs && !budget_find(index)) return false;
+    return true;
+}
+
+void scenarios_release(void) {
+    cl_mem buffers[] = {their_samples, their_positions, their_triangles};
+    for (int index = 0; index < SCENARIOS; index++)
+        for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
+    tc_complex_release(&complex);
+    cache_clear();
+    rmdir(cache_folder);
+    for (int n = 0; n < 3; n++)
+        if (buffers[n]) clReleaseMemObject(buffers[n]);
+    if (their_queue) clReleaseCommandQueue(their_queue);
+    if (theirs) clReleaseContext(theirs);
+}
