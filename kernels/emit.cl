@@ -15,7 +15,7 @@
 /* Bricks outside [brick_first, brick_last) are left to another launch, where the mesh is larger than a buffer. */
 kernel void emit(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
                  global const ulong *offsets, global const ushort *triangle_offsets, global const brick_state *bricks,
-                 global const uint *active, global uint *state, global const ushort *cases, global float *positions,
+                 global const uint *active, global uint *state, global const uchar *cases, global float *positions,
                  global float *normals, global uint *triangles, global const float *coordinates,
                  global const uchar *blanked) {
     local uint shared[1];

@@ -6,10 +6,12 @@
  *    has: its own and, from what kernel 1 left, its neighbours'. The table is never cleared: only crossed edges are
  *    looked up.
  * 3. Vertices are made of the list, in vector code.
- * 4. Active cubes are listed; a cube copies from the table what its case names, as places in the table.
+ * 4. Active cubes are listed; a cube takes from the table what its case names, as lanes of the numbers of its four
+ * rows.
  *
  * Lists are filled and cases copied by fixed numbers of items, more than often needed, since a branch that cannot be
- * foreseen costs more; what is too much is overwritten by what comes next.
+ * foreseen costs more; what is too much is overwritten by what comes next. Positions and triangles go through private
+ * memory, batch by batch, and from there to the mesh in whole cache lines.
  */
 #if WORK_ITEMS == 1
 
@@ -17,19 +19,17 @@
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
 #define LIST_CUBES  (BRICK_WORDS * 64)
 #define LIST_STEP   2 /* items stored at once */
-#define BATCH_EDGES 1024
+#define BATCH_EDGES 512
 #define BATCH_STEP  16
+#define BATCH_CUBES 128
 
-/* Indices copied at once, as many as most cubes have at the most; those of the largest case; last cubes of a brick, of
- * which what is too much, so many triangles at most, is another's. */
+/* Indices that a cube has at the most, and those that are copied at once, as many as most have. */
 #if HYBRID
+#define CASE_ITEMS 18
 #define CASE_STEP  9
-#define CASE_MOST  18
-#define CASE_EXACT 2
 #else
+#define CASE_ITEMS 30
 #define CASE_STEP  15
-#define CASE_MOST  30
-#define CASE_EXACT 4
 #endif
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
@@ -41,17 +41,23 @@ typedef struct brick_work {
     ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
-    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP];
+    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
     uint list[LIST_EDGES + LIST_STEP]; /* edges as PLACE has them; cubes: see cubes_list */
     ushort cases[LIST_CUBES];
+    ushort lane_place[4 * NUMBER_LANES];
+    uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
 #ifdef REAL
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of PLACE */
     long step[64];           /* by its bits 14 to 19 */
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
+    float positions[3 * BATCH_EDGES];
 #endif
 } brick_work;
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) {
+    for (uint n = 0; n < 4 * NUMBER_LANES; n++)
+        work->lane_place[n] =
+            NUMBER_STEP * NUMBER_PLACE(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = place_step(s, n << 14);
 #endif
@@ -96,6 +102,27 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
         work->corners[z][2 * BRICK_ROWS] = signs->rows[1][z].at.s0;
         work->corners[z][2 * BRICK_ROWS + 1] = signs->rows[1][z].next.s0;
     }
+}
+
+/* --------------------------------------------------------------------------------------------------- way to the mesh
+ */
+
+/* Sixteen words of 4 bytes, of any kind, anywhere. */
+typedef uint16 __attribute__((aligned(4), may_alias)) words16;
+
+/* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
+inline_always void lines_store(const void *words, uint count, global void *out) {
+    const uint *from = (const uint *)words;
+    global uint *to = (global uint *)out;
+    uint n = 0, ahead = min(count, (uint)(-(size_t)to / 4 % 16));
+#pragma clang loop vectorize(disable) unroll(disable)
+    for (; n < ahead; n++) to[n] = from[n];
+    for (; n + 16 <= count; n += 16) {
+        uint16 line = *(const words16 *)(from + n);
+        line_store(line, (global uint16 *)(to + n));
+    }
+#pragma clang loop vectorize(disable) unroll(disable)
+    for (; n < count; n++) to[n] = from[n];
 }
 
 /* --------------------------------------------------------------------------------------------------- vertex numbers */
@@ -244,7 +271,7 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
 
 /* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
 inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
-                               mesh_buffers mesh, const brick_work *work) {
+                               mesh_buffers mesh, brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
         uint left = min(count - first, (uint)BATCH_STEP);
@@ -261,16 +288,14 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
                              work->step[place >> 14], t[n], positions + 3 * n);
         }
 #endif
-        global float *position = mesh.positions + 3 * (out + first);
-        if (left == BATCH_STEP)
-            for (uint n = 0; n < 3; n++) vstore16(vload16(n, positions), n, position);
-        else
-            for (uint n = 0; n < 3 * left; n++) position[n] = positions[n];
+        for (uint n = 0; n < 3; n++)
+            *(words16 *)(work->positions + 3 * first + 16 * n) = *(const words16 *)(positions + 16 * n);
 #if NORMALS
         for (uint n = 0; n < left; n++)
             normal_store(in, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
 #endif
     }
+    lines_store(work->positions, 3 * count, mesh.positions + 3 * out);
 }
 
 inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, grid_arrays in, mesh_buffers mesh,
@@ -318,23 +343,44 @@ inline_always void cases_find(const slab *s, uint count, brick_work *work) {
     }
 }
 
-/* Loops as written: gathers cost more than what they replace. */
-inline_always void triangles_emit(uint count, global const ushort *cases, global uint *index, const brick_work *work) {
-    for (uint n = 0; n < count; n++) {
-        const uint *number = work->number + NUMBER_STEP * (work->list[n] >> 14);
-        global const ushort *entry = cases + CASE_ITEMS * work->cases[n];
-        uint indices = 3u * *entry++;
-        if (n + CASE_EXACT < count) {
+/* The vertices of a cube's triangles, by lanes: numbers of its four rows from its first sample on. More of them than it
+ * has are stored. `number` is that of the cube's own row. */
+#ifdef __AVX512F__ /* compilers know no such shuffle by name */
+inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {
+    int16 lane = convert_int16(vload16(0, lanes_named));
+    int16 here = __builtin_ia32_vpermi2vard512(as_int16(rows[0]), lane, as_int16(rows[1]));
+    int16 deep = __builtin_ia32_vpermi2vard512(as_int16(rows[2]), lane, as_int16(rows[3]));
+    return as_uint16((lane & (2 * NUMBER_LANES)) != 0 ? deep : here);
+}
+
+inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
+    words16 rows[4];
+#pragma unroll
+    for (uint n = 0; n < 4; n++) rows[n] = *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
+    *(words16 *)out = numbers_shuffled(rows, entry + 1);
+    *(words16 *)(out + 15) = numbers_shuffled(rows, entry + 16);
+}
+#else
+inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
 #pragma clang loop vectorize(disable) unroll(full)
-            for (uint m = 0; m < CASE_STEP; m++) index[m] = number[entry[m]];
-            if (indices > CASE_STEP)
+    for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+    if (3 * entry[0] > CASE_STEP)
 #pragma clang loop vectorize(disable) unroll(full)
-                for (uint m = CASE_STEP; m < CASE_MOST; m++) index[m] = number[entry[m]];
-        } else {
-#pragma clang loop vectorize(disable) unroll(disable)
-            for (uint m = 0; m < indices; m++) index[m] = number[entry[m]];
+        for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+}
+#endif
+
+inline_always void triangles_emit(uint count, global const uchar *cases, global uint *index, brick_work *work) {
+    for (uint first = 0; first < count; first += BATCH_CUBES) {
+        uint *at = work->triangles, end = min(count, first + BATCH_CUBES);
+        for (uint n = first; n < end; n++) {
+            global const uchar *entry = cases + CUBE_CASE_BYTES * work->cases[n];
+            case_store(work->number + NUMBER_STEP * (work->list[n] >> 14), entry, at, work);
+            at += 3u * *entry;
         }
-        index += indices;
+        uint written = (uint)(at - work->triangles);
+        lines_store(work->triangles, written, index);
+        index += written;
     }
 }
 
@@ -386,7 +432,7 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
 }
 
 inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
-                              global const ushort *cases, mesh_buffers mesh, brick_work *work) {
+                              global const uchar *cases, mesh_buffers mesh, brick_work *work) {
     brick_signs signs;
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;

@@ -82,7 +82,7 @@ inline_always void cube_vertices_next(const slab *s, uint y, uint z, uint w, uin
 }
 
 inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cube_rows *r, ulong active,
-                                 const cube_numbers *numbers, uint out, row_results k1, global const ushort *cases,
+                                 const cube_numbers *numbers, uint out, row_results k1, global const uchar *cases,
                                  mesh_buffers mesh) {
     ulong8 corners = (ulong8)(r->a0, r->a1, r->b0, r->b1, r->c0, r->c1, r->d0, r->d1);
     for (; active; active &= active - 1) {
@@ -90,7 +90,7 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cu
         cube_vertices(numbers, bit, number);
         if (bit == 63) cube_vertices_next(s, y, z, w + 1, number, k1);
         uint odd = (uint)(~r->even >> bit & 1);
-        global const ushort *entry = cases + CASE_ITEMS * (256 * odd + pattern_at(corners, bit));
+        global const uchar *entry = cases + CUBE_CASE_BYTES * (256 * odd + pattern_at(corners, bit));
         for (uint n = 0; n < 3u * entry[0]; n++) mesh.triangles[3ul * out + n] = number[entry[1 + n]];
         out += entry[0];
     }
@@ -118,7 +118,7 @@ inline_always void crossings_beside(const cube_rows *r, crossings *b, crossings 
 }
 
 inline_always void row_emit(const slab *s, corner brick, uint number, uint place, grid_arrays in, row_results k1,
-                            global const ushort *cases, mesh_buffers mesh) {
+                            global const uchar *cases, mesh_buffers mesh) {
     uint y = brick.y + place % BRICK_ROWS, z = brick.z + place / BRICK_ROWS, w = brick.x / 64;
     cube_rows r = cube_rows_of(s, y, z, w, row_of(s, y, z, w, k1), row_of(s, y + 1, z, w, k1),
                                row_of(s, y, z + 1, w, k1), row_of(s, y + 1, z + 1, w, k1));
@@ -156,7 +156,7 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) { work->non
 
 /* The work-item's row of brick `number`. */
 inline_always void brick_emit(const slab *s, uint number, corner brick, grid_arrays in, row_results k1,
-                              global const ushort *cases, mesh_buffers mesh, brick_work *work) {
+                              global const uchar *cases, mesh_buffers mesh, brick_work *work) {
     uint place = (uint)get_local_id(0) % BRICK_WORDS;
     if (k1.bricks[number].rows >> place & 1) row_emit(s, brick, number, place, in, k1, cases, mesh);
 }

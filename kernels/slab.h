@@ -43,15 +43,18 @@ typedef struct brick_range {
 } brick_range;
 
 /* The table of cases for kernel 2, of 2 parities x 256 patterns: the number of triangles, then three edges for each. */
-enum { CASE_ITEMS = 32, CASES_BYTES = 2 * 256 * CASE_ITEMS * 2 };
+enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
  * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and one or two more. */
 #define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
-enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5 };
+enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* Of a sample, counted in samples. */
 #define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
+
+/* The table of cases then names lanes: of the NUMBER_LANES numbers from the cube's first sample on of its four rows. */
+#define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
 
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {

@@ -31,6 +31,11 @@ typedef ulong8 lanes;
 #ifndef line_prefetch
 #define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
 #endif
+
+/* Stores a vector as large as a cache line, at its start, without reading the line into the caches. */
+#ifndef line_store
+#define line_store(value, place) __builtin_nontemporal_store(value, place)
+#endif
 #else
 #define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 #define LANES           1

@@ -66,7 +66,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
     tc_context_options_init(&options);
     options.own_buffers = own_buffers;
     options.work_items = work_items;
-    if (slabs) options.max_memory_bytes = (missing ? 220000 : 150000) + 300000 * tc_type_bytes(type);
+    if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
     tc_context *contexts[2] = {context_open(&options), reference_open()};
     tc_grid_options_init(&grid);
     const int64_t dims[3] = {150, 21, 90};

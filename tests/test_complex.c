@@ -364,23 +364,6 @@ static void cancelled(tc_engine engine) {
     tc_context_destroy(context);
 }
 
-static void memory_bounded(void) {
-    static uint32_t tetrahedra[4 * 1000];
-    static float points[12];
-    static const uint8_t values[4] = {0, 1, 2, 3};
-    tc_context_options how;
-    tc_complex_options o;
-    tc_grid *grid = NULL;
-    tc_context_options_init(&how);
-    how.max_memory_bytes = 8000;
-    tc_context *context = context_open(&how);
-    tc_complex_options_init(&o);
-    for (uint32_t n = 0; n < 4000; n++) tetrahedra[n] = n % 4;
-    o.point_count = 4, o.points = points, o.samples = values, o.tetrahedron_count = 1000, o.tetrahedra = tetrahedra;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_MEMORY, "a complex beyond the budget");
-    tc_context_destroy(context);
-}
-
 static void devices_open(bool own_buffers) {
     static const uint32_t work_items[CONTEXTS] = {0, 1, 32, 64}, work_groups[CONTEXTS] = {0, 5, 3, 7};
     static const uint32_t tile_bricks[CONTEXTS] = {0, 1, 0, 3}, spin_limit[CONTEXTS] = {0, 1, 0, 1};
@@ -405,7 +388,6 @@ int main(int argc, char **argv) {
     if (has_device) {
         refusals(devices[0]);
         cancelled(TC_ENGINE_OPENCL);
-        if (own_buffers) memory_bounded();
     }
     for (tc_type type = TC_U8; type <= TC_F64; type++) {
         mixed_block_compare(type, 1 + random_below(4), true, false);

@@ -76,7 +76,7 @@ typedef struct tc_device_info {
     uint32_t compute_units;
     uint64_t max_work_group_size;
     uint64_t global_memory_bytes;
-    uint64_t max_buffer_bytes; /* volumes with larger buffers are processed in slabs */
+    uint64_t max_buffer_bytes; /* grids with larger buffers are processed in slabs */
     uint64_t local_memory_bytes;
     int shares_host_memory; /* samples are used in place, not copied, unless the context has own_buffers */
     int has_fp64;           /* without it, vertices of u32, i32 and f64 samples are made on the host */
@@ -114,8 +114,7 @@ typedef struct tc_context_options {
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
     uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
-                                  0: what the device allows. Less memory means smaller slabs of structured grids,
-                                  never other results; complexes are not cut */
+                                  0: what the device allows. Less memory means smaller slabs, never other results */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These
@@ -357,10 +356,12 @@ TC_API void tc_complex_options_init(tc_complex_options *options);
 
 /* A grid that tc_count and tc_extract take like a structured one, without normals, and by TC_METHOD_TETRA only; active
  * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
- * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. Complexes are
- * not cut into slabs: TC_ERROR_MEMORY where the device cannot hold one, TC_ERROR_LIMIT for more than 2^28 tetrahedra;
- * TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64. A tetrahedron with a point that is not there
- * is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count or tc_extract. */
+ * 12 13 23); triangles follow their tetrahedra. Crossings go from the lower to the higher point number. A complex that
+ * the device cannot hold whole is processed in slabs, runs of its tetrahedra, from the first surface on that does not
+ * fit; the bytes are the same. TC_ERROR_MEMORY, with what would do, where not even 16 tetrahedra fit; TC_ERROR_LIMIT
+ * for more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64.
+ * A tetrahedron with a point that is not there is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count
+ * or tc_extract. */
 TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */

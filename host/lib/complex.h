@@ -10,6 +10,15 @@
 #include "inside.h"
 #include "mesh.h"
 
+/* What the device has of a complex: all of it, or a slab. */
+typedef struct complex_part {
+    uint32_t point_count, tetrahedron_count;
+    device_buffer samples, points, tetrahedra;
+    uint64_t sample_offset, point_offset, tetrahedron_offset; /* of the first item in its buffer */
+    device_buffer ranges;                                     /* of its clusters, made at the first visit */
+    bool ranges_known;
+} complex_part;
+
 /* Type and samples are those of the tc_grid. */
 typedef struct complex_grid {
     uint32_t point_count;
@@ -18,10 +27,8 @@ typedef struct complex_grid {
     const uint32_t *tetrahedra;
 
     /* Under an OpenCL engine: */
-    device_buffer sample_buffer, point_buffer, tetrahedron_buffer;
-    uint64_t sample_offset, point_offset, tetrahedron_offset; /* of the first item in its buffer */
-    device_buffer ranges;                                     /* of all clusters, made at the first visit */
-    bool ranges_known;
+    complex_part part;
+    struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
 } complex_grid;
 
 /* As tc_count and tc_extract; the struct of options is complete. */
@@ -37,6 +44,7 @@ tc_status complex_point_fail(const complex_grid *c);
 
 /* The device path (complex_device.c); samples lie on both sides of the isovalue as far as their type goes. */
 tc_status complex_device_create(tc_grid *grid);
+void complex_device_destroy(tc_grid *grid);
 tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts);
 tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
 

@@ -4,20 +4,16 @@
 
 #include <stdlib.h>
 
-/* Places of crossed edges and sums of the scan take 30 bits. */
-static const uint64_t tetrahedra_most = UINT64_C(1) << 28;
-
 void tc_complex_options_init(tc_complex_options *options) {
     *options = (tc_complex_options){.struct_size = sizeof *options};
 }
 
 static tc_status options_check(const tc_complex_options *o) {
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
-    if (o->point_count > UINT32_MAX || o->tetrahedron_count > tetrahedra_most)
-        return (tc_status)fail(TC_ERROR_LIMIT,
-                               "%llu points and %llu tetrahedra: a complex may have %lu and %llu; cut it into parts",
-                               (unsigned long long)o->point_count, (unsigned long long)o->tetrahedron_count,
-                               (unsigned long)UINT32_MAX, (unsigned long long)tetrahedra_most);
+    if (o->point_count > UINT32_MAX || o->tetrahedron_count > UINT32_MAX)
+        return (tc_status)fail(
+            TC_ERROR_LIMIT, "%llu points and %llu tetrahedra: a complex may have %lu of each; cut it into parts",
+            (unsigned long long)o->point_count, (unsigned long long)o->tetrahedron_count, (unsigned long)UINT32_MAX);
     if (o->point_count && (!o->points || !o->samples))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no points, or no samples at them");
     if (o->tetrahedron_count && !o->tetrahedra)
@@ -73,11 +69,7 @@ tc_status tc_complex_create(tc_context *context, const tc_complex_options *optio
 void complex_grid_destroy(tc_grid *grid) {
     complex_grid *c = grid->complex;
     if (!c) return;
-    if (grid->context->served == grid) grid->context->served = NULL;
-    buffer_release(grid->context, &c->sample_buffer);
-    buffer_release(grid->context, &c->point_buffer);
-    buffer_release(grid->context, &c->tetrahedron_buffer);
-    buffer_release(grid->context, &c->ranges);
+    complex_device_destroy(grid);
     free(c);
 }
 
@@ -102,16 +94,26 @@ static bool surface_possible(const tc_grid *grid, double isovalue) {
     return grid->complex->tetrahedron_count && !inside_range_of(grid->type, isovalue).uniform;
 }
 
+/* What the workspace holds after a failure may not be what it is taken for. */
+static tc_status device_end(tc_context *context, tc_status status) {
+    if (!status) return TC_OK;
+    cl->Finish(context->queue);
+    workspace_release(context);
+    return status;
+}
+
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
-    return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_count(grid, options->isovalue, counts)
-                                                             : reference_complex_count(grid, options->isovalue, counts);
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
+        return reference_complex_count(grid, options->isovalue, counts);
+    return device_end(grid->context, complex_device_count(grid, options->isovalue, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
-    return grid->context->options.engine == TC_ENGINE_OPENCL ? complex_device_extract(grid, options->isovalue, mesh)
-                                                             : reference_complex_extract(grid, options->isovalue, mesh);
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
+        return reference_complex_extract(grid, options->isovalue, mesh);
+    return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
 }

@@ -112,41 +112,39 @@ static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uin
 }
 
 /* How kernel 2 finds the vertex on an edge of a cube: by its place in cube_edges, or, where a work-item has a brick to
- * itself, in the brick's table of numbers, seen from the cube's. */
-static uint16_t edge_item(const run *r, uint8_t edge) {
+ * itself, by lane. */
+static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->options.work_items > 1) return edge;
-    return (uint16_t)(NUMBER_PLACE(e.dx, e.dy, e.dz) * NUMBER_TYPES(r->method == TC_METHOD_HYBRID) + e.type);
+    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
 }
 
-/* Per case the number of triangles, then their edges; the rest is never used, but read. */
-static void cases_write(const run *r, uint16_t items[2][256][CASE_ITEMS]) {
-    cube_case cases[2][256];
+/* The cube table of the run's method, by items. */
+static void cases_write(const run *r, cube_case cases[2][256]) {
+    _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
     if (r->method == TC_METHOD_HYBRID)
         hybrid_cases_derive(cases, r->grid->mirrored);
     else
         cube_cases_derive(cases, r->grid->mirrored);
-    memset(items, 0, CASES_BYTES);
-    for (int n = 0; n < 2 * 256; n++) {
-        const cube_case *c = &cases[n / 256][n % 256];
-        uint16_t *item = items[n / 256][n % 256];
-        *item++ = c->triangle_count;
-        for (int triangle = 0; triangle < c->triangle_count; triangle++)
-            for (int corner = 0; corner < 3; corner++) *item++ = edge_item(r, c->edges[triangle][corner]);
-    }
+    for (int n = 0; n < 2 * 256; n++)
+        for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
+            for (int corner = 0; corner < 3; corner++) {
+                uint8_t *edge = &cases[n / 256][n % 256].edges[triangle][corner];
+                *edge = edge_item(r, *edge);
+            }
 }
 
 /* The cube table, uploaded once per context, method and winding. */
 static tc_status cases_provide(run *r, device_buffer **out) {
     device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
-    uint16_t items[2][256][CASE_ITEMS];
+    cube_case cases[2][256];
     *out = buffer;
     if (buffer->memory) return TC_OK;
-    tc_status status = buffer_reserve(r->context, buffer, sizeof items, "the case table");
+    tc_status status = buffer_reserve(r->context, buffer, sizeof cases, "the case table");
     if (status) return status;
-    cases_write(r, items);
+    cases_write(r, cases);
     cl_int error =
-        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof items, items, 0, NULL, NULL);
+        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
     if (error) buffer_release(r->context, buffer); /* one that is there counts as filled */
     return error ? context_fail(r->context, "uploading the case table", error) : TC_OK;
 }

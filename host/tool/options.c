@@ -94,7 +94,7 @@ static const option table[] = {
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
     {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_SIZE, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024):\n"
-     "less memory means smaller slabs (of structured grids), never another result"},
+     "less memory means smaller slabs, never another result"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
