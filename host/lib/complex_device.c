@@ -62,7 +62,8 @@ tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts
     counts->triangle_count = r.head[HEAD_TRIANGLES];
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
-    return complex_run_end(&r, status);
+    cl->Finish(r.context->queue);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- extraction */
@@ -120,5 +121,6 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    return complex_run_end(&r, status);
+    cl->Finish(r.context->queue);
+    return status;
 }

@@ -84,9 +84,6 @@ typedef struct complex_run {
 /* Kernels, and the workspace for this grid. */
 tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue);
 
-/* Hands the status on. What the workspace holds after a failure may not be what it is taken for: it goes. */
-tc_status complex_run_end(const complex_run *r, tc_status status);
-
 /* Finds the active tetrahedra of the part; then numbers its vertices. head has the counts. */
 tc_status surface_classify(complex_run *r);
 tc_status surface_number(complex_run *r);

@@ -59,8 +59,8 @@ static tc_status slabs_begin(slabs_run *t, tc_grid *grid, double isovalue) {
     return status;
 }
 
-static tc_status slabs_end(slabs_run *t, tc_status status) {
-    status = complex_run_end(&t->r, status);
+static void slabs_end(slabs_run *t) {
+    cl->Finish(t->r.context->queue);
     part_tetrahedra_release(t->r.grid);
     if (!t->slabs->points_whole) part_points_release(t->r.grid);
     local_points_release(&t->local);
@@ -68,7 +68,6 @@ static tc_status slabs_end(slabs_run *t, tc_status status) {
     free(t->totals);
     free(t->active);
     free(t->numbers);
-    return status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- arrays */
@@ -195,7 +194,8 @@ tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_
     counts->triangle_count = t.triangle_count;
     counts->active_cell_count = t.active_count;
     counts->classify_ms = clock_ms() - t.r.start_ms;
-    return slabs_end(&t, status);
+    slabs_end(&t);
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- emission */
@@ -289,5 +289,6 @@ tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, t
     mesh->timings.classify_ms = classified - t.r.start_ms;
     mesh->timings.total_ms = clock_ms() - t.r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    return slabs_end(&t, status);
+    slabs_end(&t);
+    return status;
 }

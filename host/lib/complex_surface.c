@@ -58,7 +58,6 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     complex_cases(cases);
     cl_int error =
         cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    if (error) buffer_release(context, buffer); /* one that is there counts as filled */
     return error ? context_fail(context, "uploading the case table", error) : TC_OK;
 }
 
@@ -140,12 +139,6 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     }
     context->served = grid;
     return cases_provide(context, &r->work->cases);
-}
-
-tc_status complex_run_end(const complex_run *r, tc_status status) {
-    cl->Finish(r->context->queue);
-    if (status) workspace_release(r->context);
-    return status;
 }
 
 static tc_status clusters_reserve(complex_run *r) {
