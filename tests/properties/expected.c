@@ -15,18 +15,18 @@ void expected_begin(expected *e, uint64_t most_bodies, int corner_count) {
     const uint64_t most = most_bodies * (corner_count == 4 ? 4 : 12); /* arcs, and crossed edges, of a body */
     uint32_t places = 16;
     while (places < 2 * most) places *= 2;
-    *e = (expected){.table_mask = places - 1};
+    *e = (expected){.place_mask = places - 1};
     e->ends = memory_get(most, sizeof *e->ends);
     e->arcs = memory_get(most, sizeof *e->arcs);
-    e->table = memory_get(places, sizeof *e->table);
-    e->places = memory_get(places, sizeof *e->places);
+    e->keys = memory_get(places, sizeof *e->keys);
+    e->vertices = memory_get(places, sizeof *e->vertices);
 }
 
 void expected_free(expected *e) {
     free(e->ends);
     free(e->arcs);
-    free(e->table);
-    free(e->places);
+    free(e->keys);
+    free(e->vertices);
     *e = (expected){0};
 }
 
@@ -35,15 +35,15 @@ void expected_free(expected *e) {
 static uint32_t vertex_between(expected *e, uint32_t a, uint32_t b) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     const uint64_t key = ((uint64_t)low << 32 | high) + 1;
-    uint32_t place = (uint32_t)(key * 0x9e3779b97f4a7c15u >> 32) & e->table_mask;
-    while (e->table[place] && e->table[place] != key) place = (place + 1) & e->table_mask;
-    if (!e->table[place]) {
-        e->table[place] = key;
-        e->places[place] = e->vertex_count;
+    uint32_t place = (uint32_t)(key * 0x9e3779b97f4a7c15u >> 32) & e->place_mask;
+    while (e->keys[place] && e->keys[place] != key) place = (place + 1) & e->place_mask;
+    if (!e->keys[place]) {
+        e->keys[place] = key;
+        e->vertices[place] = e->vertex_count;
         e->ends[e->vertex_count][0] = low, e->ends[e->vertex_count][1] = high;
         e->vertex_count++;
     }
-    return e->places[place];
+    return e->vertices[place];
 }
 
 static void cross(const double u[3], const double v[3], double out[3]) {

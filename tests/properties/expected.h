@@ -36,8 +36,10 @@ typedef struct expected {
     bool conforming;     /* no arc belongs to three bodies, or to two in the same direction */
     uint32_t (*ends)[2]; /* the samples that each vertex lies between, lower number first */
     arc *arcs;
-    uint64_t *table; /* crossed edges by their ends: [place] vertex + 1 in the upper half of ends' places */
-    uint32_t *places, table_mask;
+
+    /* which vertex lies between two samples: open addressing, 0 is an empty place */
+    uint64_t *keys;
+    uint32_t *vertices, place_mask;
 } expected;
 
 /* Room for so many bodies; exits where memory runs out. */
