@@ -150,7 +150,7 @@ static int ranked_compare(const void *a, const void *b) {
     return p->key < q->key ? -1 : p->key > q->key;
 }
 
-void expected_renumber(expected *e, uint64_t *keys) {
+void expected_renumber(expected *e, const uint64_t *keys) {
     ranked *order = memory_get(e->vertex_count, sizeof *order);
     uint32_t *rank = memory_get(e->vertex_count, sizeof *rank);
     uint32_t(*ends)[2] = memory_get(e->vertex_count, sizeof *ends);

@@ -49,8 +49,8 @@ void expected_begin(expected *e, uint64_t most_bodies, int corner_count);
  * 01 02 03 12 13 23. active_cells is the caller's to count. */
 void expected_add(expected *e, const body *b, bool mirrored);
 
-/* Numbers the vertices anew, by rising keys, one per vertex; keys are overwritten. */
-void expected_renumber(expected *e, uint64_t *keys);
+/* Numbers the vertices anew, by rising keys, one per vertex. */
+void expected_renumber(expected *e, const uint64_t *keys);
 
 /* Counts what follows from the arcs. */
 void expected_finish(expected *e);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """long.py PART PROGRAM - the long tier of test_topology or test_geometry
 
-PART is `topology` or `geometry`. As many processes at once as there are processors, each with a kernel cache of its
-own, as processes have raced in one. Prints what they print; where TETRACUBES_RESULTS names a folder, PART.json there
+PART is `topology` or `geometry`. As many processes at once as there are processors; those that follow each other share
+a kernel cache, others have their own, as processes have raced in one. Prints what they print; where TETRACUBES_RESULTS names a folder, PART.json there
 receives date, versions, seconds and figures. Exits with 1 where one of them fails.
 """
 import concurrent.futures
@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 KINDS = "uniform rectilinear curvilinear missing hybrid tetrahedra hexahedra mixed".split()
@@ -28,10 +29,11 @@ def commands(part):
     return [["patterns", "large"], *random, ["faults"]]
 
 
-def run(program, arguments):
-    with tempfile.TemporaryDirectory() as cache:
-        environment = {**os.environ, "POCL_CACHE_DIR": cache, "TETRACUBES_CACHE_DIR": ""}
-        done = subprocess.run([program, *arguments], capture_output=True, text=True, env=environment)
+def run(program, arguments, caches):
+    cache = os.path.join(caches, str(threading.get_ident()))
+    os.makedirs(cache, exist_ok=True)
+    environment = {**os.environ, "POCL_CACHE_DIR": cache, "TETRACUBES_CACHE_DIR": ""}
+    done = subprocess.run([program, *arguments], capture_output=True, text=True, env=environment)
     print("\n".join(["$ " + " ".join(["test", *arguments]), done.stdout + done.stderr]), flush=True)
     return done
 
@@ -67,8 +69,8 @@ def geometry_figures(text):
 def main():
     part, program = sys.argv[1:]
     start = time.monotonic()
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        runs = list(pool.map(lambda arguments: run(program, arguments), commands(part)))
+    with tempfile.TemporaryDirectory() as caches, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = list(pool.map(lambda arguments: run(program, arguments, caches), commands(part)))
     if any(done.returncode for done in runs):
         return 77 if all(done.returncode in (0, 77) for done in runs) else 1
     text = "".join(done.stdout for done in runs)

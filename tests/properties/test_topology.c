@@ -36,11 +36,11 @@ typedef struct tally {
 static bool kernels_are_ready(const subject *s) {
     const bool missing = s->grid.has_nodata || s->grid.blanked_samples || s->grid.blanked_cells;
     if (!kind_is_structured(s->kind)) return true;
-    if (s->kind == HYBRID && (s->grid.points || s->grid.axes[0])) return false;
-    if (s->kind == HYBRID) return s->type == TC_F32 || (!missing && s->type != TC_F64 && s->type % 2 == 0);
-    if (s->grid.axes[0]) return s->type == TC_F32;
-    if (s->grid.points) return s->type == TC_F32 || s->type == TC_F64 || s->type == TC_U8;
-    return true;
+    const bool uniform = !s->grid.points && !s->grid.axes[0];
+    const tc_type t = s->type;
+    if (s->kind == HYBRID)
+        return uniform && (t == TC_U8 || t == TC_F32 || (!missing && (t == TC_I16 || t == TC_U32 || t == TC_F64)));
+    return uniform || t == TC_F32 || (s->grid.points && (t == TC_U8 || t == TC_F64));
 }
 
 /* The fault of the reference's mesh, or of the device's where `too` is set; NULL where there is none. */
