@@ -2,8 +2,9 @@
 """long.py PART PROGRAM - the long tier of test_topology or test_geometry
 
 PART is `topology` or `geometry`. As many processes at once as there are processors; those that follow each other share
-a kernel cache, others have their own, as processes have raced in one. Prints what they print; where TETRACUBES_RESULTS names a folder, PART.json there
-receives date, versions, seconds and figures. Exits with 1 where one of them fails.
+a kernel cache, others have their own, as processes have raced in one. Prints what they print; where
+TETRACUBES_RESULTS names a folder, PART.json there receives date, versions, seconds and figures. Exits with 1 where one
+of them fails.
 """
 import concurrent.futures
 import datetime

@@ -10,20 +10,15 @@
  * Of a linear field every vertex lies on the plane to a few units in the last place, on any grid and in any type. Of a
  * quadratic one the value at a vertex is off by no more than L^2 |f''| / 8, L the longest edge, and that is reached.
  *
- * Area and volume of the gyroid's piece: integrals over one period of |grad f| g(f - c) and of its antiderivative, g
- * Gaussian of widths 0.04 to 0.08, by the trapezoidal rule (exact to rounding there: 320^3 and 400^3 points agree to
- * 13 digits), extrapolated in the square of the width; the last two extrapolations agree to 1e-9.
- *
  * Usage: test_geometry [long SHAPE]: of one shape, both types everywhere, finer grids and one resolution more
  */
-#include "../complex.h"
+#include "analytic.h"
+
 #include "../engines.h"
 #include "../samples.h"
 
 #include <float.h>
 #include <math.h>
-
-#define PI 3.14159265358979323846
 
 enum { LEVELS_MOST = 4 };
 
@@ -37,177 +32,9 @@ static void *memory_get(size_t bytes) {
     exit(EXIT_FAILURE);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- fields */
-
-static const double sphere_radius = 0.71, torus_ring = 0.55, torus_tube = 0.27, gyroid_level = 0.8;
-
-static double square_of(const double p[3]) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
-
-static double sphere_value(const double p[3]) { return -square_of(p); }
-static double sphere_distance(const double p[3]) { return fabs(sqrt(square_of(p)) - sphere_radius); }
-
-static double tube_square(const double p[3]) {
-    const double from_ring = hypot(p[0], p[1]) - torus_ring;
-    return from_ring * from_ring + p[2] * p[2];
-}
-
-static double torus_value(const double p[3]) { return -tube_square(p); }
-static double torus_distance(const double p[3]) { return fabs(sqrt(tube_square(p)) - torus_tube); }
-
-static double gyroid_value(const double p[3]) {
-    return sin(p[0]) * cos(p[1]) + sin(p[1]) * cos(p[2]) + sin(p[2]) * cos(p[0]);
-}
-
-/* To first order. */
-static double gyroid_distance(const double p[3]) {
-    double gradient[3];
-    for (int n = 0; n < 3; n++) {
-        const double x = p[n], y = p[(n + 1) % 3], z = p[(n + 2) % 3];
-        gradient[n] = cos(x) * cos(y) - sin(z) * sin(x);
-    }
-    return fabs(gyroid_value(p) - gyroid_level) / sqrt(square_of(gradient));
-}
-
-typedef struct shape {
-    const char *name;
-    double (*value)(const double p[3]), (*distance)(const double p[3]);
-    double isovalue, low, high; /* the domain's ends along each axis */
-    double area, volume;
-    double (*cap)(double x); /* how much of the plane in which the domain ends is inside */
-    double room;             /* the surface may be moved by so much */
-} shape;
-
-static double no_cap(double x) { return 0 * x; }
-
-/* For given y, sin x cos y + sin y cos z + sin z cos x is a wave in z around its first term. */
-static double gyroid_cap(double x) {
-    enum { STEPS = 20000 };
-    double sum = 0;
-    for (int n = 0; n < STEPS; n++) {
-        const double y = 2 * PI * n / STEPS, height = (gyroid_level - sin(x) * cos(y)) / hypot(sin(y), cos(x));
-        sum += 2 * acos(fmax(-1, fmin(1, height)));
-    }
-    return sum * 2 * PI / STEPS;
-}
-
-/* Where a grid's origin lies in the field. */
-typedef struct place {
-    double of[3];
-} place;
-
-/* Evenly spread, whatever the number (Roberts' sequence in three dimensions). */
-static place place_choose(int n, double room) {
-    static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-    place p;
-    for (int axis = 0; axis < 3; axis++) p.of[axis] = room * fmod(0.5 + n * steps[axis], 1);
-    return p;
-}
-
-/* ------------------------------------------------------------------------------------------------------------ grids */
-
-typedef enum layout { UNIFORM, CURVILINEAR, HEXAHEDRA, LAYOUTS } layout;
-
-static const char *const layout_names[LAYOUTS] = {"uniform", "curvilinear", "hexahedra"};
-
-typedef struct field_grid {
-    int64_t n; /* samples along each axis */
-    float *points;
-    void *samples;
-    tc_type type;
-    double low, step;
-} field_grid;
-
-/* Points of the uniform grid as the library makes them, or moved by a smooth map that keeps the domain's faces. */
-static void points_make(field_grid *g, bool mapped, double high) {
-    const double turn = 2 * PI / (high - g->low), size = 0.12 * (high - g->low) / (2 * PI);
-    size_t at = 0;
-    for (int64_t z = 0; z < g->n; z++)
-        for (int64_t y = 0; y < g->n; y++)
-            for (int64_t x = 0; x < g->n; x++) {
-                const int64_t index[3] = {x, y, z};
-                double p[3];
-                for (int axis = 0; axis < 3; axis++) p[axis] = g->low + g->step * (double)index[axis];
-                for (int axis = 0; axis < 3; axis++) {
-                    const double u = turn * (p[axis] - g->low), v = turn * (p[(axis + 1) % 3] - g->low);
-                    g->points[at++] = (float)(p[axis] + (mapped ? size * sin(u) * (1 + cos(v)) : 0));
-                }
-            }
-}
-
-static field_grid field_grid_make(double (*value)(const double p[3]), double low, double high, place origin, int64_t n,
-                                  bool mapped, tc_type type) {
-    field_grid g = {.n = n, .type = type, .low = low, .step = (double)(float)((high - low) / (double)(n - 1))};
-    const size_t count = (size_t)(n * n * n);
-    g.points = memory_get(12 * count);
-    g.samples = memory_get(8 * count);
-    points_make(&g, mapped, high);
-    for (size_t m = 0; m < count; m++) {
-        double p[3];
-        for (size_t axis = 0; axis < 3; axis++) p[axis] = (double)g.points[3 * m + axis] + origin.of[axis];
-        sample_set(g.samples, type, (int64_t)m, value(p));
-    }
-    return g;
-}
-
-static void field_grid_free(field_grid *g) {
-    free(g->points);
-    free(g->samples);
-}
-
-static tc_status hexahedra_create(const field_grid *g, tc_complex *complex, tc_grid **grid) {
-    static const uint8_t order[8] = {0, 1, 3, 2, 4, 5, 7, 6};
-    const uint32_t n = (uint32_t)g->n, m = n - 1;
-    cell_list list = cell_list_make(0, (uint64_t)m * m * m);
-    free(list.points);
-    list.points = g->points;
-    list.point_count = (uint64_t)n * n * n;
-    for (uint32_t cell = 0; cell < m * m * m; cell++) {
-        uint32_t corners[8];
-        for (uint32_t c = 0; c < 8; c++)
-            corners[c] = ((cell / m / m + (order[c] >> 2)) * n + cell / m % m + (order[c] >> 1 & 1)) * n + cell % m +
-                         (order[c] & 1);
-        cell_list_add(&list, 12, 8, corners, false);
-    }
-    tc_cells cells = cell_list_view(&list);
-    tc_complex_options options;
-    tc_complex_options_init(&options);
-    tc_status status = tc_tetrahedralize(&cells, complex);
-    options.point_count = list.point_count, options.points = g->points;
-    options.type = g->type, options.samples = g->samples;
-    options.tetrahedron_count = complex->tetrahedron_count, options.tetrahedra = complex->tetrahedra;
-    if (!status) status = tc_complex_create(reference, &options, grid);
-    list.points = NULL;
-    cell_list_free(&list);
-    return status;
-}
-
-static tc_status structured_create(const field_grid *g, layout l, tc_grid **grid) {
-    tc_grid_options options;
-    tc_grid_options_init(&options);
-    for (int axis = 0; axis < 3; axis++) {
-        options.dims[axis] = g->n;
-        options.matrix[axis][axis] = g->step;
-        options.matrix[axis][3] = g->low;
-    }
-    options.type = g->type;
-    options.samples = g->samples;
-    if (l == CURVILINEAR) options.points = g->points;
-    return tc_grid_create(reference, &options, grid);
-}
-
-static bool field_grid_extract(const field_grid *g, layout l, tc_method method, double isovalue, tc_mesh_data *data) {
-    tc_grid *grid = NULL;
-    tc_complex complex = {.struct_size = sizeof complex};
-    tc_extract_options how;
-    tc_extract_options_init(&how);
-    how.isovalue = isovalue;
-    how.method = method;
-    *data = (tc_mesh_data){.struct_size = sizeof *data};
-    tc_status status = l == HEXAHEDRA ? hexahedra_create(g, &complex, &grid) : structured_create(g, l, &grid);
-    if (!status) status = tc_extract(grid, &how, &mesh);
-    if (!status) status = tc_mesh_get(mesh, data);
-    tc_grid_destroy(grid);
-    tc_complex_release(&complex);
+/* The mesh, which stays until the next one; false where there is none. */
+static bool surface_get(const field_grid *g, layout l, tc_method method, double isovalue, tc_mesh_data *data) {
+    const tc_status status = field_grid_extract(g, reference, l, method, isovalue, &mesh, data);
     EXPECT(!status, "no mesh of %d^3 samples: %s", (int)g->n, tc_message());
     return !status;
 }
@@ -243,7 +70,7 @@ static errors errors_of(const shape *s, place origin, const tc_mesh_data *m) {
         for (int axis = 0; axis < 3; axis++) u[axis] = p[1][axis] - p[0][axis], v[axis] = p[2][axis] - p[0][axis];
         for (int n = 0; n < 3; n++)
             normal[n] = 0.5 * (u[(n + 1) % 3] * v[(n + 2) % 3] - u[(n + 2) % 3] * v[(n + 1) % 3]);
-        area += sqrt(square_of(normal));
+        area += hypot(hypot(normal[0], normal[1]), normal[2]);
         flux += normal[0] * (p[0][0] + p[1][0] + p[2][0]) / 3;
     }
     e.of[AREA] = area - s->area;
@@ -333,7 +160,7 @@ static void series_measure(const series *r, plant what, errors levels[LEVELS_MOS
             const place origin = place_choose(n, s->room);
             const int64_t size = ((r->coarsest - 1) << level) + 1;
             field_grid g = field_grid_make(s->value, s->low, s->high, origin, size, r->layout != UNIFORM, r->type);
-            if (field_grid_extract(&g, r->layout, r->method, s->isovalue, &data)) {
+            if (surface_get(&g, r->layout, r->method, s->isovalue, &data)) {
                 const bool spared = what == ONE_MOVED && (level + 1 < r->levels || n > 0);
                 tc_mesh_data damaged = plant_fault(spared ? NONE : what, &data, g.step);
                 const errors one = errors_of(s, origin, &damaged);
@@ -349,7 +176,7 @@ static void series_measure(const series *r, plant what, errors levels[LEVELS_MOS
 static void series_converges(const series *r) {
     errors levels[LEVELS_MOST];
     char name[80];
-    snprintf(name, sizeof name, "%s, %s, %s, %s", r->shape->name, layout_names[r->layout],
+    snprintf(name, sizeof name, "%s, %s, %s, %s", r->shape->name, layout_name(r->layout),
              r->method == TC_METHOD_HYBRID ? "hybrid" : "tetra", tc_type_name(r->type));
     series_measure(r, NONE, levels);
     const char *fault = order_fault(levels, r->levels, 7);
@@ -399,10 +226,10 @@ static void test_planes(void) {
             if (whole && l == CURVILINEAR) continue;
             const double isovalue = 71.7;
             field_grid g = field_grid_make(plane_value, 0, 16, (place){{0}}, 17, l != UNIFORM && !whole, type);
-            if (!field_grid_extract(&g, l, TC_METHOD_TETRA, isovalue, &data)) return;
+            if (!surface_get(&g, l, TC_METHOD_TETRA, isovalue, &data)) return;
             const double error = plane_error(&data, isovalue, 16);
             EXPECT(data.triangle_count > 500 && error <= PLANE_ROUNDINGS,
-                   "plane, %s, %s: %llu triangles, off by %g roundings", layout_names[l], tc_type_name(type),
+                   "plane, %s, %s: %llu triangles, off by %g roundings", layout_name(l), tc_type_name(type),
                    (unsigned long long)data.triangle_count, error);
             worst = fmax(worst, error);
             float *positions = memory_get(12 * (size_t)data.vertex_count);
@@ -418,15 +245,17 @@ static void test_planes(void) {
 
 /* |p|^2 changes along an edge of length L by L^2 / 4 from its chord; edges are diagonals or, of the hybrid, sides. */
 static void test_error_bound(void) {
+    const shape *sphere = &shapes[0];
     for (int method = 0; method < 2; method++) {
         tc_mesh_data data;
-        field_grid g = field_grid_make(sphere_value, -1, 1, (place){{0}}, 41, false, TC_F64);
-        const double isovalue = -sphere_radius * sphere_radius, bound = (method ? 0.25 : 0.5) * g.step * g.step;
+        field_grid g = field_grid_make(sphere->value, -1, 1, (place){{0}}, 41, false, TC_F64);
+        const double bound = (method ? 0.25 : 0.5) * g.step * g.step;
         double most = 0;
-        if (!field_grid_extract(&g, UNIFORM, (tc_method)method, isovalue, &data)) return;
+        if (!surface_get(&g, UNIFORM, (tc_method)method, sphere->isovalue, &data)) return;
         for (uint64_t n = 0; n < data.vertex_count; n++) {
             const float *v = data.positions + 3 * n;
-            most = fmax(most, fabs(sphere_value((double[3]){(double)v[0], (double)v[1], (double)v[2]}) - isovalue));
+            const double p[3] = {(double)v[0], (double)v[1], (double)v[2]};
+            most = fmax(most, fabs(sphere->value(p) - sphere->isovalue));
         }
         EXPECT(most <= bound * (1 + 1e-3) && most >= 0.98 * bound, "method %d: values off by %g, not %g", method, most,
                bound);
@@ -449,17 +278,8 @@ static void test_shape(const shape *s, bool finer) {
 
 int main(int argc, char **argv) {
     const bool finer = argc > 2 && !strcmp(argv[1], "long");
-    const shape shapes[] = {
-        {"sphere", sphere_value, sphere_distance, -sphere_radius * sphere_radius, -1, 1,
-         4 * PI * sphere_radius * sphere_radius, 4 * PI / 3 * sphere_radius * sphere_radius * sphere_radius, no_cap,
-         0.12},
-        {"torus", torus_value, torus_distance, -torus_tube * torus_tube, -1, 1, 4 * PI * PI * torus_ring * torus_tube,
-         2 * PI * PI * torus_ring * torus_tube * torus_tube, no_cap, 0.12},
-        {"gyroid", gyroid_value, gyroid_distance, gyroid_level, 0, 2 * PI, 106.00102046, 59.217285386, gyroid_cap,
-         2 * PI},
-    };
     reference = reference_open();
-    for (size_t n = 0; n < sizeof shapes / sizeof *shapes; n++)
+    for (size_t n = 0; n < SHAPES; n++)
         if (!finer || !strcmp(argv[2], shapes[n].name)) test_shape(&shapes[n], finer);
     test_planes();
     test_error_bound();
