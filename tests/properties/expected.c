@@ -84,7 +84,7 @@ static void arc_add(expected *e, const body *b, const double normal[3], const in
     const bool turned = (dot(along, wanted) < 0) != mirrored;
     const uint32_t p = vertex_between(e, b->samples[first[0]], b->samples[first[1]]);
     const uint32_t q = vertex_between(e, b->samples[second[0]], b->samples[second[1]]);
-    e->arcs[e->arc_count++] = (arc){turned ? q : p, turned ? p : q, 0};
+    e->arcs[e->arc_count++] = (arc){turned ? q : p, turned ? p : q, UINT32_MAX, UINT32_MAX};
 }
 
 static void face_add(expected *e, const body *b, const int *ring, int size, bool mirrored) {
@@ -105,16 +105,14 @@ static void face_add(expected *e, const body *b, const int *ring, int size, bool
 
 /* The arcs from `first` on are those of one body: every vertex begins one and ends one. */
 static void loops_close(expected *e, uint32_t first) {
-    for (uint32_t n = first; n < e->arc_count; n++) {
-        e->arcs[n].next = UINT32_MAX;
+    for (uint32_t n = first; n < e->arc_count; n++)
         for (uint32_t m = first; m < e->arc_count; m++)
             if (e->arcs[m].from == e->arcs[n].to) e->arcs[n].next = m;
-    }
     for (uint32_t n = first; n < e->arc_count; n++) {
-        uint32_t least = n;
-        for (uint32_t m = e->arcs[n].next; m != n && m != UINT32_MAX; m = e->arcs[m].next)
-            if (m < least) least = m;
-        e->loop_count += least == n;
+        if (e->arcs[n].loop != UINT32_MAX) continue;
+        for (uint32_t m = n; m != UINT32_MAX && e->arcs[m].loop == UINT32_MAX; m = e->arcs[m].next)
+            e->arcs[m].loop = e->loop_count;
+        e->loop_count++;
     }
 }
 

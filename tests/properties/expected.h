@@ -27,6 +27,7 @@ typedef struct body {
 typedef struct arc {
     uint32_t from, to; /* vertices */
     uint32_t next;     /* the arc that follows in its loop */
+    uint32_t loop;
 } arc;
 
 typedef struct expected {

@@ -230,6 +230,45 @@ static const char *arcs_fault(const subject *s, const expected *e, const tc_mesh
     return found;
 }
 
+/* The loops that pass three vertices: how many, and the last of them. */
+static uint32_t loops_through(const expected *e, const uint32_t *heads, const uint32_t *links, const uint32_t v[3],
+                              uint32_t *last) {
+    uint32_t count = 0;
+    for (uint32_t n = heads[v[0]]; n != UINT32_MAX; n = links[n]) {
+        unsigned passed = 0;
+        for (uint32_t m = e->arcs[n].next; m != n; m = e->arcs[m].next)
+            passed |= (unsigned)(e->arcs[m].from == v[1]) | (unsigned)(e->arcs[m].from == v[2]) << 1;
+        if (passed == 3) count++, *last = e->arcs[n].loop;
+    }
+    return count;
+}
+
+/* Every triangle lies within a loop, and no loop has more than its disk needs. */
+static const char *cells_fault(const expected *e, const tc_mesh_data *m) {
+    uint32_t *heads = malloc((e->vertex_count + 2 * (size_t)e->arc_count + 1) * sizeof *heads);
+    uint32_t *links = heads + e->vertex_count, *room = links + e->arc_count, loop = 0;
+    const char *found = NULL;
+    if (!heads) exit(EXIT_FAILURE);
+    for (uint32_t n = 0; n < e->vertex_count; n++) heads[n] = UINT32_MAX;
+    for (uint32_t n = 0; n < e->loop_count; n++) room[n] = UINT32_MAX - 1; /* -2 */
+    for (uint32_t n = 0; n < e->arc_count; n++) {
+        links[n] = heads[e->arcs[n].from];
+        heads[e->arcs[n].from] = n;
+        room[e->arcs[n].loop]++;
+    }
+    for (uint64_t t = 0; t < m->triangle_count && !found; t++) {
+        const uint32_t *v = m->triangles + 3 * t;
+        uint32_t loops = 0;
+        for (int n = 0; n < 3; n++)
+            if (v[n] >= e->vertex_count) found = "a triangle has a corner that is no vertex";
+        if (!found) loops = loops_through(e, heads, links, v, &loop);
+        if (!found && loops == 0) found = "a triangle lies in no cell";
+        if (loops == 1 && room[loop]-- == 0) found = "a cell has more triangles than it needs";
+    }
+    free(heads);
+    return found;
+}
+
 /* ----------------------------------------------------------------------------------------------------------- places */
 
 static float crossing_f32(float a, float b, float isovalue) {
@@ -344,6 +383,7 @@ const char *surface_fault(const subject *s, const expected *e, const tc_mesh_dat
     if (!found && (checks & CHECK_COUNTS)) found = counts_fault(e, mesh);
     if (!found && (checks & CHECK_TOPOLOGY)) found = topology_fault(s, e, mesh);
     if (!found && (checks & CHECK_ARCS)) found = arcs_fault(s, e, mesh);
+    if (!found && (checks & CHECK_CELLS)) found = cells_fault(e, mesh);
     if (!found && (checks & CHECK_PLACES)) found = positions_fault(s, e, mesh);
     if (!found && (checks & CHECK_FACING)) found = facing_fault(s, e, mesh);
     return found;

@@ -197,9 +197,9 @@ static const struct {
     {"a triangle turned round", CHECK_TOPOLOGY | CHECK_ARCS | CHECK_FACING},
     {"all triangles turned round", CHECK_ARCS | CHECK_FACING},
     {"a triangle left out", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS},
-    {"a triangle twice", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS},
+    {"a triangle twice", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS | CHECK_CELLS},
     {"a corner at another vertex", CHECK_TOPOLOGY | CHECK_ARCS},
-    {"a vertex split in two", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS},
+    {"a vertex split in two", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS | CHECK_CELLS},
     {"two vertices made one", CHECK_COUNTS | CHECK_TOPOLOGY | CHECK_ARCS},
     {"a vertex without triangles", CHECK_COUNTS | CHECK_TOPOLOGY},
     {"a vertex moved by one bit", CHECK_PLACES},
@@ -286,6 +286,8 @@ static bool vertices_differ(const tc_mesh_data *m) {
 
 /* Plants each fault once; counts[] by mutation. Strictly: every check that should see it alone has to. */
 static void faults_plant(const tc_mesh_data *mesh, bool strictly, uint64_t *counts, const char *name) {
+    /* of the hybrid method cells may share three vertices, and disks are not flat */
+    const unsigned unfit = grid.kind == HYBRID ? CHECK_CELLS | CHECK_FACING : 0;
     expected e;
     subject_expect(&grid, &e);
     for (mutation m = FLIP; m < SIGN; m++) {
@@ -294,7 +296,7 @@ static void faults_plant(const tc_mesh_data *mesh, bool strictly, uint64_t *coun
         EXPECT(surface_fault(&grid, &e, &c.data, CHECK_ALL), "%s: %s is not found", name, mutations[m].name);
         EXPECT(mesh_difference(mesh, &c.data), "%s: %s makes no difference between engines", name, mutations[m].name);
         for (unsigned check = CHECK_COUNTS; check < CHECK_ALL && strictly; check *= 2)
-            if ((mutations[m].found_by & check) && !(check == CHECK_FACING && grid.kind == HYBRID))
+            if (mutations[m].found_by & check & ~unfit)
                 EXPECT(surface_fault(&grid, &e, &c.data, check), "%s: %s is not found by check %u", name,
                        mutations[m].name, check);
         counts[m]++;
