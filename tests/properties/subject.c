@@ -194,7 +194,7 @@ static void hexahedron_add(cell_list *list, const uint32_t cube[8]) {
 static cell_list block_make(kind k, const uint32_t size[3]) {
     const uint32_t nx = size[0] + 1, ny = size[1] + 1, count = nx * ny * (size[2] + 1);
     cell_list list = cell_list_make(count, 6 * size[0] * size[1] * size[2]);
-    uint32_t numbers[SUBJECT_SAMPLES], cube[8];
+    uint32_t numbers[SUBJECT_SAMPLES] = {0}, cube[8];
     for (uint32_t n = 0; n < count; n++) numbers[n] = n;
     for (uint32_t n = count - 1; n > 0; n--) {
         const uint32_t m = random_below(n + 1), number = numbers[n];

@@ -71,7 +71,7 @@ static bool body_is_cut(const body *b) {
 
 /* Bricks of 64 x 8 x 4 samples, in them rows of 64, in those the axes x, y, z and diagonals xy, xz, yz, then x. */
 static uint64_t place_in_order(const tc_grid_options *g, const uint32_t ends[2]) {
-    static const unsigned ranks[7] = {[1] = 0, [2] = 1, [4] = 2, [3] = 3, [5] = 4, [6] = 5}; /* by the axes spanned */
+    static const unsigned ranks[8] = {[1] = 0, [2] = 1, [4] = 2, [3] = 3, [5] = 4, [6] = 5}; /* by the axes spanned */
     uint64_t at[3];
     unsigned spans = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -246,9 +246,9 @@ static uint32_t loops_through(const expected *e, const uint32_t *heads, const ui
 /* Every triangle lies within a loop, and no loop has more than its disk needs. */
 static const char *cells_fault(const expected *e, const tc_mesh_data *m) {
     uint32_t *heads = malloc((e->vertex_count + 2 * (size_t)e->arc_count + 1) * sizeof *heads);
-    uint32_t *links = heads + e->vertex_count, *room = links + e->arc_count, loop = 0;
     const char *found = NULL;
     if (!heads) exit(EXIT_FAILURE);
+    uint32_t *links = heads + e->vertex_count, *room = links + e->arc_count, loop = 0;
     for (uint32_t n = 0; n < e->vertex_count; n++) heads[n] = UINT32_MAX;
     for (uint32_t n = 0; n < e->loop_count; n++) room[n] = UINT32_MAX - 1; /* -2 */
     for (uint32_t n = 0; n < e->arc_count; n++) {
