@@ -19,7 +19,7 @@ typedef struct shape {
     field_value *value, *distance; /* of a point from the surface; the gyroid's to first order */
     double isovalue, low, high;    /* the domain's ends along each axis */
     double area, volume;
-    double (*cap)(double x); /* how much of the plane in which the domain ends is inside */
+    double (*cap)(double x); /* how much of a plane across an axis, in which the domain ends, is inside */
     double room;             /* the surface may be moved by so much */
 } shape;
 

@@ -55,10 +55,12 @@ static void triangle_get(const tc_mesh_data *m, uint64_t t, double p[3][3]) {
             p[n][axis] = (double)m->positions[3 * (size_t)m->triangles[3 * t + (uint64_t)n] + (size_t)axis];
 }
 
-/* The volume is the flux of (x, 0, 0): through the surface, and through the plane in which the domain ends. */
+/* The volume is the flux of a third of (x, y, z): through the surface, and through the planes in which the domain
+ * ends. */
 static errors errors_of(const shape *s, place origin, const tc_mesh_data *m) {
     errors e = {{0}};
-    double area = 0, flux = s->high * s->cap(s->high + origin.of[0]);
+    double area = 0, volume = 0;
+    for (int axis = 0; axis < 3; axis++) volume += s->high * s->cap(s->high + origin.of[axis]) / 3;
     for (uint64_t n = 0; n < m->vertex_count; n++) {
         double p[3];
         for (size_t axis = 0; axis < 3; axis++) p[axis] = (double)m->positions[3 * n + axis] + origin.of[axis];
@@ -71,10 +73,10 @@ static errors errors_of(const shape *s, place origin, const tc_mesh_data *m) {
         for (int n = 0; n < 3; n++)
             normal[n] = 0.5 * (u[(n + 1) % 3] * v[(n + 2) % 3] - u[(n + 2) % 3] * v[(n + 1) % 3]);
         area += hypot(hypot(normal[0], normal[1]), normal[2]);
-        flux += normal[0] * (p[0][0] + p[1][0] + p[2][0]) / 3;
+        for (int axis = 0; axis < 3; axis++) volume += normal[axis] * (p[0][axis] + p[1][axis] + p[2][axis]) / 9;
     }
     e.of[AREA] = area - s->area;
-    e.of[VOLUME] = flux - s->volume;
+    e.of[VOLUME] = volume - s->volume;
     return e;
 }
 
@@ -147,15 +149,17 @@ typedef struct series {
     tc_method method;
     tc_type type;
     int64_t coarsest; /* samples along an axis */
-    int levels, places;
+    int levels;
+    int places; /* of the finest grid; twice as many of each coarser one, whose errors scatter more */
 } series;
 
 /* ONE_MOVED is put into one mesh, of the finest grid. */
 static void series_measure(const series *r, plant what, errors levels[LEVELS_MOST]) {
     const shape *s = r->shape;
     for (int level = 0; level < r->levels; level++) {
+        const int places = r->places << (r->levels - 1 - level);
         levels[level] = (errors){{0}};
-        for (int n = 0; n < r->places; n++) {
+        for (int n = 0; n < places; n++) {
             tc_mesh_data data;
             const place origin = place_choose(n, s->room);
             const int64_t size = ((r->coarsest - 1) << level) + 1;
@@ -164,7 +168,7 @@ static void series_measure(const series *r, plant what, errors levels[LEVELS_MOS
                 const bool spared = what == ONE_MOVED && (level + 1 < r->levels || n > 0);
                 tc_mesh_data damaged = plant_fault(spared ? NONE : what, &data, g.step);
                 const errors one = errors_of(s, origin, &damaged);
-                errors_add(&levels[level], &one, r->places);
+                errors_add(&levels[level], &one, places);
                 free((void *)(uintptr_t)damaged.positions);
                 free((void *)(uintptr_t)damaged.triangles);
             }

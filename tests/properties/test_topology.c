@@ -82,7 +82,7 @@ static void device_open(void) {
     tc_context_options_init(&options);
     device = context_open(&options);
     EXPECT(!tc_context_device(device, &info), "%s", tc_message());
-    printf("device: %s, %s\n", info.name, info.version);
+    printf("device: %s, driver %s\n", info.name, info.driver);
 }
 
 static int random_main(int argc, char **argv) {
