@@ -1,0 +1,390 @@
+#include "surface.h"
+
+#include "../samples.h"
+#include "../split.h"
+#include "../topology.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef unsigned long long ull;
+
+static char fault[256];
+
+/* ----------------------------------------------------------------------------------------------------------- bodies */
+
+static bool sample_is_inside(const subject *s, int64_t n) {
+    return sample_get(s->samples, s->type, n) >= s->how.isovalue;
+}
+
+static int64_t corner_sample(const tc_grid_options *g, const int64_t p[3], int corner) {
+    return ((p[2] + (corner >> 2)) * g->dims[1] + p[1] + (corner >> 1 & 1)) * g->dims[0] + p[0] + (corner & 1);
+}
+
+/* The cube at p; false where it is left out. */
+static bool cube_make(const subject *s, const int64_t p[3], body *b) {
+    const tc_grid_options *g = &s->grid;
+    const int64_t number = (p[2] * (g->dims[1] - 1) + p[1]) * (g->dims[0] - 1) + p[0];
+    bool present = !(g->blanked_cells && g->blanked_cells[number]);
+    b->corner_count = 8;
+    for (int c = 0; c < 8; c++) {
+        const int64_t sample = corner_sample(g, p, c);
+        int64_t sum = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const int64_t at = p[axis] + (c >> axis & 1);
+            b->at[c][axis] = (double)at;
+            sum += g->first[axis] + at;
+        }
+        b->samples[c] = (uint32_t)sample;
+        b->inside[c] = sample_is_inside(s, sample);
+        b->even[c] = sum % 2 == 0;
+        present = present && subject_has(s, sample);
+    }
+    return present;
+}
+
+static void cube_add(const subject *s, const body *cube, expected *e) {
+    if (s->how.method == TC_METHOD_HYBRID) {
+        expected_add(e, cube, s->mirrored);
+        return;
+    }
+    for (unsigned t = 0; t < 5; t++) {
+        body b = {.corner_count = 4};
+        unsigned corners[4];
+        split_tetrahedron(!cube->even[0], t, corners);
+        for (int n = 0; n < 4; n++) {
+            b.samples[n] = cube->samples[corners[n]];
+            b.inside[n] = cube->inside[corners[n]];
+            memcpy(b.at[n], cube->at[corners[n]], sizeof b.at[n]);
+        }
+        expected_add(e, &b, s->mirrored);
+    }
+}
+
+static bool body_is_cut(const body *b) {
+    int inside = 0;
+    for (int n = 0; n < b->corner_count; n++) inside += b->inside[n];
+    return inside > 0 && inside < b->corner_count;
+}
+
+/* Bricks of 64 x 8 x 4 samples, in them rows of 64, in those the axes x, y, z and diagonals xy, xz, yz, then x. */
+static uint64_t place_in_order(const tc_grid_options *g, const uint32_t ends[2]) {
+    static const unsigned ranks[8] = {[1] = 0, [2] = 1, [4] = 2, [3] = 3, [5] = 4, [6] = 5}; /* by the axes spanned */
+    uint64_t at[3];
+    unsigned spans = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t stride = axis == 0 ? 1 : axis == 1 ? g->dims[0] : g->dims[0] * g->dims[1];
+        const uint64_t p = (uint64_t)(ends[0] / stride % g->dims[axis]);
+        const uint64_t q = (uint64_t)(ends[1] / stride % g->dims[axis]);
+        at[axis] = p < q ? p : q;
+        spans |= (unsigned)(p != q) << axis;
+    }
+    const uint64_t brick = (at[2] / 4 << 12 | at[1] / 8) << 12 | at[0] / 64;
+    return ((brick << 2 | at[2] % 4) << 3 | at[1] % 8) << 9 | (uint64_t)ranks[spans] << 6 | at[0] % 64;
+}
+
+static void structured_expect(const subject *s, expected *e) {
+    const tc_grid_options *g = &s->grid;
+    uint64_t active = 0;
+    const bool whole = s->how.method == TC_METHOD_HYBRID;
+    const uint64_t cubes = (uint64_t)((g->dims[0] - 1) * (g->dims[1] - 1) * (g->dims[2] - 1));
+    expected_begin(e, whole ? cubes : 5 * cubes, whole ? 8 : 4);
+    for (int64_t z = 0; z + 1 < g->dims[2]; z++)
+        for (int64_t y = 0; y + 1 < g->dims[1]; y++)
+            for (int64_t x = 0; x + 1 < g->dims[0]; x++) {
+                body cube;
+                if (!cube_make(s, (int64_t[3]){x, y, z}, &cube) || !body_is_cut(&cube)) continue;
+                cube_add(s, &cube, e);
+                active++;
+            }
+    e->active_cells = active;
+    uint64_t *keys = malloc((e->vertex_count + 1) * sizeof *keys);
+    if (!keys) exit(EXIT_FAILURE);
+    for (uint32_t n = 0; n < e->vertex_count; n++) keys[n] = place_in_order(g, e->ends[n]);
+    expected_renumber(e, keys);
+    free(keys);
+}
+
+static void complex_expect(const subject *s, expected *e) {
+    uint64_t active = 0;
+    expected_begin(e, s->cells.tetrahedron_count, 4);
+    for (uint64_t n = 0; n < s->cells.tetrahedron_count; n++) {
+        body b = {.corner_count = 4};
+        bool present = true;
+        for (int v = 0; v < 4; v++) {
+            b.samples[v] = s->cells.tetrahedra[4 * n + (uint64_t)v];
+            b.inside[v] = sample_is_inside(s, b.samples[v]);
+            subject_place(s, b.samples[v], b.at[v]);
+            present = present && subject_has(s, b.samples[v]);
+        }
+        if (!present || !body_is_cut(&b)) continue;
+        expected_add(e, &b, false);
+        active++;
+    }
+    e->active_cells = active;
+}
+
+void subject_expect(const subject *s, expected *e) {
+    kind_is_structured(s->kind) ? structured_expect(s, e) : complex_expect(s, e);
+    expected_finish(e);
+}
+
+/* ----------------------------------------------------------------------------------------------- counts and indices */
+
+static const char *counts_fault(const expected *e, const tc_mesh_data *m) {
+    if (m->vertex_count == e->vertex_count && m->triangle_count == e->triangle_count &&
+        m->active_cell_count == e->active_cells)
+        return NULL;
+    snprintf(fault, sizeof fault, "%llu vertices, %llu triangles, %llu active cells; should be %u, %llu, %llu",
+             (ull)m->vertex_count, (ull)m->triangle_count, (ull)m->active_cell_count, e->vertex_count,
+             (ull)e->triangle_count, (ull)e->active_cells);
+    return fault;
+}
+
+static const char *topology_fault(const subject *s, const expected *e, const tc_mesh_data *m) {
+    topology t;
+    topology_of(m->positions, m->vertex_count, m->triangles, m->triangle_count, &t);
+    if (s->complete && e->fans != e->vertex_count) return "the grid's signs give a vertex of a complete grid two fans";
+    if (!t.bad_edges && !t.bad_triangles && !t.orphans && t.boundary_edges == e->boundary_edges && t.fans == e->fans &&
+        t.euler_characteristic == e->euler_characteristic)
+        return NULL;
+    snprintf(
+        fault, sizeof fault,
+        "%llu bad edges, %llu bad triangles, %llu orphans; boundary edges %llu for %llu, Euler characteristic %lld "
+        "for %lld, fans %llu for %llu",
+        (ull)t.bad_edges, (ull)t.bad_triangles, (ull)t.orphans, (ull)t.boundary_edges, (ull)e->boundary_edges,
+        (long long)t.euler_characteristic, (long long)e->euler_characteristic, (ull)t.fans, (ull)e->fans);
+    return fault;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- arcs */
+
+/* An edge as the mesh passes it, or as a disk does. */
+typedef struct side {
+    uint32_t low, high;
+    uint8_t of_mesh, falls;
+} side;
+
+static int side_compare(const void *a, const void *b) {
+    const side *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    return p->high < q->high ? -1 : p->high > q->high;
+}
+
+static side side_make(uint32_t from, uint32_t to, bool of_mesh) {
+    return from < to ? (side){from, to, of_mesh, 0} : (side){to, from, of_mesh, 1};
+}
+
+static void place_of(const tc_grid_options *g, uint32_t n, int64_t p[3]) {
+    p[0] = n % g->dims[0], p[1] = n / g->dims[0] % g->dims[1], p[2] = n / g->dims[0] / g->dims[1];
+}
+
+/* Whether both vertices lie in one of the planes in which a structured grid ends. */
+static bool side_ends_grid(const subject *s, const expected *e, const side *edge) {
+    const uint32_t corners[4] = {e->ends[edge->low][0], e->ends[edge->low][1], e->ends[edge->high][0],
+                                 e->ends[edge->high][1]};
+    unsigned planes = 63;
+    for (int n = 0; n < 4; n++) {
+        int64_t p[3];
+        place_of(&s->grid, corners[n], p);
+        for (int axis = 0; axis < 3; axis++) {
+            if (p[axis] != 0) planes &= ~(1u << axis);
+            if (p[axis] != s->grid.dims[axis] - 1) planes &= ~(8u << axis);
+        }
+    }
+    return planes != 0;
+}
+
+static const char *edge_fault(const subject *s, const expected *e, const side *sides, size_t count) {
+    int mesh[2] = {0}, disks[2] = {0};
+    for (size_t n = 0; n < count; n++) (sides[n].of_mesh ? mesh : disks)[sides[n].falls]++;
+    const bool chord = disks[0] + disks[1] == 0;
+    const char *what = NULL;
+    if (chord && (mesh[0] != 1 || mesh[1] != 1)) what = "an edge within a cell is not passed once in each direction";
+    if (!chord && (mesh[0] != disks[0] || mesh[1] != disks[1]))
+        what = "an edge is not passed as the cells beside it do";
+    if (!what && s->complete && kind_is_structured(s->kind) && mesh[0] + mesh[1] == 1 && !side_ends_grid(s, e, sides))
+        what = "the surface ends where the grid does not";
+    if (!what) return NULL;
+    snprintf(fault, sizeof fault, "%s: %d and %d times for %d and %d, vertices %u and %u", what, mesh[0], mesh[1],
+             disks[0], disks[1], sides->low, sides->high);
+    return fault;
+}
+
+static const char *arcs_fault(const subject *s, const expected *e, const tc_mesh_data *m) {
+    const size_t corners = 3 * (size_t)m->triangle_count, count = corners + e->arc_count;
+    side *sides = malloc((count + 1) * sizeof *sides);
+    const char *found = NULL;
+    if (!sides) exit(EXIT_FAILURE);
+    for (size_t n = 0; n < corners; n++)
+        sides[n] = side_make(m->triangles[n], m->triangles[n % 3 == 2 ? n - 2 : n + 1], true);
+    for (size_t n = 0; n < e->arc_count; n++) sides[corners + n] = side_make(e->arcs[n].from, e->arcs[n].to, false);
+    qsort(sides, count, sizeof *sides, side_compare);
+    for (size_t n = 0, end; n < count && !found; n = end) {
+        for (end = n + 1; end < count && !side_compare(&sides[n], &sides[end]);) end++;
+        found = edge_fault(s, e, sides + n, end - n);
+    }
+    free(sides);
+    return found;
+}
+
+/* The loops that pass three vertices: how many, and the last of them. */
+static uint32_t loops_through(const expected *e, const uint32_t *heads, const uint32_t *links, const uint32_t v[3],
+                              uint32_t *last) {
+    uint32_t count = 0;
+    for (uint32_t n = heads[v[0]]; n != UINT32_MAX; n = links[n]) {
+        unsigned passed = 0;
+        for (uint32_t m = e->arcs[n].next; m != n; m = e->arcs[m].next)
+            passed |= (unsigned)(e->arcs[m].from == v[1]) | (unsigned)(e->arcs[m].from == v[2]) << 1;
+        if (passed == 3) count++, *last = e->arcs[n].loop;
+    }
+    return count;
+}
+
+/* Every triangle lies within a loop, and no loop has more than its disk needs. */
+static const char *cells_fault(const expected *e, const tc_mesh_data *m) {
+    uint32_t *heads = malloc((e->vertex_count + 2 * (size_t)e->arc_count + 1) * sizeof *heads);
+    const char *found = NULL;
+    if (!heads) exit(EXIT_FAILURE);
+    uint32_t *links = heads + e->vertex_count, *room = links + e->arc_count, loop = 0;
+    for (uint32_t n = 0; n < e->vertex_count; n++) heads[n] = UINT32_MAX;
+    for (uint32_t n = 0; n < e->loop_count; n++) room[n] = UINT32_MAX - 1; /* -2 */
+    for (uint32_t n = 0; n < e->arc_count; n++) {
+        links[n] = heads[e->arcs[n].from];
+        heads[e->arcs[n].from] = n;
+        room[e->arcs[n].loop]++;
+    }
+    for (uint64_t t = 0; t < m->triangle_count && !found; t++) {
+        const uint32_t *v = m->triangles + 3 * t;
+        uint32_t loops = 0;
+        for (int n = 0; n < 3; n++)
+            if (v[n] >= e->vertex_count) found = "a triangle has a corner that is no vertex";
+        if (!found) loops = loops_through(e, heads, links, v, &loop);
+        if (!found && loops == 0) found = "a triangle lies in no cell";
+        if (loops == 1 && room[loop]-- == 0) found = "a cell has more triangles than it needs";
+    }
+    free(heads);
+    return found;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- places */
+
+static float crossing_f32(float a, float b, float isovalue) {
+    if (isinf(b - a)) a *= 0.5f, b *= 0.5f, isovalue *= 0.5f;
+    return (isovalue - a) / (b - a);
+}
+
+static float crossing_f64(double a, double b, double isovalue) {
+    if (isinf(b - a)) a *= 0.5, b *= 0.5, isovalue *= 0.5;
+    return (float)((isovalue - a) / (b - a));
+}
+
+static float crossing_of(const subject *s, const uint32_t ends[2]) {
+    const double a = sample_get(s->samples, s->type, ends[0]), b = sample_get(s->samples, s->type, ends[1]);
+    const bool wide = s->type == TC_U32 || s->type == TC_I32 || s->type == TC_F64;
+    return wide ? crossing_f64(a, b, s->how.isovalue) : crossing_f32((float)a, (float)b, (float)s->how.isovalue);
+}
+
+/* The contract's arithmetic. */
+static void position_make(const subject *s, const uint32_t ends[2], float out[3]) {
+    const float t = crossing_of(s, ends);
+    if (!kind_is_structured(s->kind) || s->grid.points || s->grid.axes[0]) {
+        double p[3], q[3];
+        subject_place(s, ends[0], p);
+        subject_place(s, ends[1], q);
+        for (int row = 0; row < 3; row++) {
+            const float a = (float)p[row], b = (float)q[row];
+            out[row] = t == 1 ? b : a + t * (b - a);
+        }
+        return;
+    }
+    int64_t a[3], b[3];
+    float at[3];
+    place_of(&s->grid, ends[0], a);
+    place_of(&s->grid, ends[1], b);
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = (float)(s->grid.first[axis] + a[axis]) + t * (float)(b[axis] - a[axis]);
+    for (int row = 0; row < 3; row++) {
+        const double *m = s->grid.matrix[row];
+        out[row] = (((float)m[0] * at[0] + (float)m[1] * at[1]) + (float)m[2] * at[2]) + (float)m[3];
+    }
+}
+
+static const char *positions_fault(const subject *s, const expected *e, const tc_mesh_data *m) {
+    for (uint32_t n = 0; n < e->vertex_count; n++) {
+        const float *is = m->positions + 3 * (size_t)n;
+        float wanted[3];
+        position_make(s, e->ends[n], wanted);
+        if (is[0] == wanted[0] && is[1] == wanted[1] && is[2] == wanted[2]) continue;
+        snprintf(fault, sizeof fault, "vertex %u, between samples %u and %u, at %.9g, %.9g, %.9g, not %.9g, %.9g, %.9g",
+                 n, e->ends[n][0], e->ends[n][1], (double)is[0], (double)is[1], (double)is[2], (double)wanted[0],
+                 (double)wanted[1], (double)wanted[2]);
+        return fault;
+    }
+    return NULL;
+}
+
+/* How far a triangle's normal, of the length of twice its area, points from the outside end of a crossed edge to the
+ * inside one; *room: what rounding of positions may make of 0. */
+static double facing_back(const subject *s, const float *const p[3], const uint32_t ends[2], double *room) {
+    const bool first_inside = sample_is_inside(s, ends[0]);
+    double u[3], v[3], from[3], to[3], sum = 0, size = 0, extent = 0, length = 0;
+    subject_place(s, ends[first_inside], from);
+    subject_place(s, ends[!first_inside], to);
+    for (int axis = 0; axis < 3; axis++) {
+        u[axis] = (double)p[1][axis] - (double)p[0][axis];
+        v[axis] = (double)p[2][axis] - (double)p[0][axis];
+        extent = fmax(extent, fmax(fabs(u[axis]), fabs(v[axis])));
+        length = fmax(length, fabs(to[axis] - from[axis]));
+        for (int n = 0; n < 3; n++) size = fmax(size, fabs((double)p[n][axis]));
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        sum += (to[axis] - from[axis]) * (u[b] * v[c] - u[c] * v[b]);
+    }
+    *room = 64 * 0x1p-24 * (size + extent) * (extent + 0x1p-20 * size) * length;
+    return sum;
+}
+
+static const char *facing_fault(const subject *s, const expected *e, const tc_mesh_data *m) {
+    if (s->folded || s->how.method == TC_METHOD_HYBRID) return NULL; /* disks are not flat, or cells have two signs */
+    for (uint64_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *v = m->triangles + 3 * t;
+        const float *p[3];
+        for (int n = 0; n < 3; n++) p[n] = m->positions + 3 * (size_t)v[n];
+        for (int n = 0; n < 3; n++) {
+            double room;
+            if (facing_back(s, p, e->ends[v[n]], &room) <= room) continue;
+            snprintf(fault, sizeof fault, "triangle %llu faces the higher samples", (ull)t);
+            return fault;
+        }
+    }
+    return NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ whole */
+
+/* What is taken as a grid has to be one. */
+static const char *grid_fault(const subject *s, const expected *e) {
+    if (!e->conforming) return "the grid's cells do not fit together";
+    if (kind_is_structured(s->kind)) return NULL;
+    const complex_facts f = complex_facts_of(&s->complex, s->list.points, s->list.point_count);
+    if (f.bad_faces || f.bad_tetrahedra || f.not_positive) return "the complex is none";
+    if (s->complex.blanked_cell_count) return NULL;
+    if (f.boundary_faces != s->boundary_faces) return "the complex does not end in the faces of the block";
+    return fabs(f.volume - s->volume) > 1e-4 * s->volume ? "the complex does not fill the block" : NULL;
+}
+
+const char *surface_fault(const subject *s, const expected *e, const tc_mesh_data *mesh, unsigned checks) {
+    const char *found = NULL;
+    if (checks & CHECK_GRID) found = grid_fault(s, e);
+    if (!found && (checks & CHECK_COUNTS)) found = counts_fault(e, mesh);
+    if (!found && (checks & CHECK_TOPOLOGY)) found = topology_fault(s, e, mesh);
+    if (!found && (checks & CHECK_ARCS)) found = arcs_fault(s, e, mesh);
+    if (!found && (checks & CHECK_CELLS)) found = cells_fault(e, mesh);
+    if (!found && (checks & CHECK_PLACES)) found = positions_fault(s, e, mesh);
+    if (!found && (checks & CHECK_FACING)) found = facing_fault(s, e, mesh);
+    return found;
+}
