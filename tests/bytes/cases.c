@@ -130,7 +130,7 @@ static void blanks_fill(case_data *data, int64_t count, int64_t cell_count) {
 
 static void grid_fill(const bytes_case *c, bool small, case_data *data) {
     static const double matrix[3][4] = {{0.5, 0.1, 0, 7}, {0, -1.25, 0.3, -3}, {0.2, 0, 4, 100}};
-    const int64_t dims[2][3] = {{70, 19, 26}, {66, 9, 6}};
+    const int64_t dims[2][3] = {{70, 19, 26}, {66, 9, 5}};
     tc_grid_options *g = &data->grid;
     tc_grid_options_init(g);
     memcpy(g->dims, dims[small], sizeof g->dims);

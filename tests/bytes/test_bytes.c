@@ -89,7 +89,7 @@ static tc_context *variant_open(const variant *v, uint64_t memory) {
     options.tile_bricks = v->tile_bricks;
     options.spin_limit = v->spin_limit;
     options.division = v->division;
-    options.own_buffers = v->own_buffers;
+    options.own_buffers = v->own_buffers || getenv("TEST_BYTES_OWN_BUFFERS");
     options.max_memory_bytes = memory * v->memory / 100;
     return context_open(&options);
 }
