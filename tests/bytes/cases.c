@@ -28,6 +28,8 @@ const bytes_case cases[] = {
     {CASE_UNIFORM, TC_F64, CASE_MISSING | CASE_NORMALS, 0, false},
     {CASE_UNIFORM, TC_F32, CASE_NORMALS | CASE_EXTREMES, 1, true},
     {CASE_UNIFORM, TC_F64, CASE_EXTREMES, 0, false},
+    {CASE_UNIFORM, TC_U8, CASE_DEEP, 2, true},
+    {CASE_UNIFORM, TC_F32, CASE_DEEP | CASE_MISSING | CASE_NORMALS, 1, true},
     {CASE_UNIFORM, TC_F32, CASE_BLANKED | CASE_NORMALS, 1, false},
     {CASE_UNIFORM, TC_U8, CASE_HYBRID, 0, true},
     {CASE_UNIFORM, TC_F32, CASE_HYBRID | CASE_MISSING | CASE_NORMALS, 1, false},
@@ -54,10 +56,10 @@ const int case_count = sizeof cases / sizeof *cases;
 const char *case_name(const bytes_case *c) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear", "complex"};
     static char name[120];
-    snprintf(name, sizeof name, "%s %s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
-             c->flags & CASE_MISSING ? ", missing" : "", c->flags & CASE_BLANKED ? ", blanked" : "",
-             c->flags & CASE_EXTREMES ? ", extremes" : "", c->flags & CASE_NORMALS ? ", normals" : "",
-             c->flags & CASE_HYBRID ? ", hybrid" : "");
+    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+             c->flags & CASE_DEEP ? ", deep" : "", c->flags & CASE_MISSING ? ", missing" : "",
+             c->flags & CASE_BLANKED ? ", blanked" : "", c->flags & CASE_EXTREMES ? ", extremes" : "",
+             c->flags & CASE_NORMALS ? ", normals" : "", c->flags & CASE_HYBRID ? ", hybrid" : "");
     return name;
 }
 
@@ -83,14 +85,15 @@ static double extreme(tc_type type) {
     }
 }
 
-/* Waves around the isovalue, in whole numbers, so that many samples equal it; calm in the last layers, so that bricks
+/* Waves around the isovalue, in whole numbers, so that many samples equal it; calm in some layers, so that bricks
  * are skipped. Floating types have fractions as well. */
 static double sample_value(const bytes_case *c, double x, double y, double z) {
     double wave = sin(0.31 * x) * cos(0.57 * y) + sin(0.45 * z + 0.1 * x), value;
     if (c->flags & CASE_EXTREMES) return extreme(c->type);
     if (c->flags & CASE_MISSING && type_is_floating(c->type) && random_below(90) == 0) return (double)NAN;
+    if (c->flags & CASE_DEEP) wave = 0.2 * (x - 30) + 0.5 * wave;
     value = floor(fmin(126, fmax(0, ISOVALUE + 30 * wave + random_between(-4, 4))));
-    if (z > 15) value = ISOVALUE + 20;
+    if (z > 15 && z < 24) value = ISOVALUE + 20;
     return type_is_floating(c->type) && random_below(4) ? value + 0.01 * random_between(-1, 1) : value;
 }
 
@@ -130,10 +133,10 @@ static void blanks_fill(case_data *data, int64_t count, int64_t cell_count) {
 
 static void grid_fill(const bytes_case *c, bool small, case_data *data) {
     static const double matrix[3][4] = {{0.5, 0.1, 0, 7}, {0, -1.25, 0.3, -3}, {0.2, 0, 4, 100}};
-    const int64_t dims[2][3] = {{70, 19, 26}, {66, 9, 5}};
+    const int64_t dims[4][3] = {{70, 19, 26}, {66, 9, 5}, {67, 46, 97}, {64, 32, 145}};
     tc_grid_options *g = &data->grid;
     tc_grid_options_init(g);
-    memcpy(g->dims, dims[small], sizeof g->dims);
+    memcpy(g->dims, dims[(c->flags & CASE_DEEP ? 2 : 0) + small], sizeof g->dims);
     const int64_t *d = g->dims, count = d[0] * d[1] * d[2];
     memcpy(g->matrix, matrix, sizeof matrix);
     for (int axis = 0; axis < 3; axis++) g->first[axis] = 4 * axis - 5;

@@ -11,11 +11,12 @@
 #include <stdbool.h>
 
 enum {
-    CASE_MISSING = 1,  /* NaN, or the value of has_nodata */
-    CASE_NORMALS = 2,  /* not of complexes */
-    CASE_HYBRID = 4,   /* not of complexes */
-    CASE_BLANKED = 8,  /* samples and cells */
-    CASE_EXTREMES = 16 /* floats of all exponents */
+    CASE_MISSING = 1,   /* NaN, or the value of has_nodata */
+    CASE_NORMALS = 2,   /* not of complexes */
+    CASE_HYBRID = 4,    /* not of complexes */
+    CASE_BLANKED = 8,   /* samples and cells */
+    CASE_EXTREMES = 16, /* floats of all exponents */
+    CASE_DEEP = 32      /* many layers of bricks, for slabs */
 };
 
 typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_COMPLEX } case_kind;
