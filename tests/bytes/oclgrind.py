@@ -43,7 +43,8 @@ FAULTS = [  # fault, checks, what the log has to say
 
 # Of quick: what goes other ways through the kernels than the one before.
 QUICK_UNINITIALISED = ["f32 uniform, normals"]
-QUICK_RACES = ["u8 uniform, missing", "i32 uniform, missing", "curvilinear, blanked", "f32 complex"]
+QUICK_RACES = ["i32 uniform, missing", "u8 uniform, hybrid", "u8 uniform, deep", "f32 curvilinear, blanked",
+               "f32 complex"]
 
 
 def library_find():
