@@ -1,8 +1,8 @@
 """bytes.py - one hash per case over implementations of OpenCL, numbers of threads and all that test_bytes varies
 
-Each run of test_bytes compares the device with the reference; here the hashes of all runs are compared. Implementations:
-the one installed, Intel's runtime from the Python package index (second_opencl.py), Oclgrind on small grids. One that
-cannot be had is told, and left out.
+Each run of test_bytes compares the device with the reference; here the hashes of all runs are compared, too.
+Implementations: the one installed, and Intel's runtime from the Python package index (second_opencl.py); where that
+cannot be had it is told, and left out. A third, Oclgrind, compares small grids in oclgrind.py.
 
 Usage: bytes.py TEST_BYTES FOLDER, FOLDER for the second implementation and caches
 With TETRACUBES_RESULTS in the environment, a folder, the figures go to bytes.json in it.

@@ -174,7 +174,8 @@ static void complex_fill(const bytes_case *c, bool small, case_data *data) {
     o->tetrahedra = data->split.tetrahedra;
     for (uint64_t n = 0; n < list.point_count; n++) {
         const float *p = list.points + 3 * n;
-        sample_set(data->samples, c->type, (int64_t)n, sample_value(c, 2 * (double)p[0], (double)p[1], (double)p[2]));
+        sample_set(data->samples, c->type, (int64_t)n,
+                   sample_value(c, 5 * (double)p[0], 3 * (double)p[1], (double)p[2]));
     }
     list.points = NULL;
     cell_list_free(&list);

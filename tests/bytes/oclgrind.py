@@ -1,8 +1,9 @@
 """oclgrind.py - every kernel under Oclgrind: memory, data races, uninitialised values, calls of OpenCL
 
 Oclgrind simulates a device and writes what it finds to a log, wrong calls to standard error; its exit status is the
-program's, so these are what is judged: they have to be empty, but for what EXCLUDED explains. Work on small grids of every kind is test_bytes' (small), so
-the bytes are compared as well. Kernels with planted faults (faults.c) show that each check reports.
+program's, so these are what is judged: they have to be empty, but for what EXCLUDED explains. Work on small grids of
+every kind is test_bytes' (small), so the bytes are compared as well. Kernels with planted faults (faults.c) show that
+each check reports. Triangle soups are the writers' work: no kernel makes them.
 
 Usage: oclgrind.py quick|long TEST_BYTES FAULTS WRITE_LAYER
 With TETRACUBES_RESULTS in the environment, a folder, the figures go to oclgrind.json in it.
@@ -55,7 +56,8 @@ QUICK_RACES = ["i32 uniform, missing", "u8 uniform, hybrid", "u8 uniform, deep",
 
 
 def library_find():
-    found = glob.glob("/usr/lib/oclgrind/liboclgrind-rt-icd.so") + glob.glob("/usr/lib/*/oclgrind/liboclgrind-rt-icd.so")
+    places = ("/usr/lib/oclgrind", "/usr/lib/*/oclgrind")
+    found = [path for place in places for path in glob.glob(place + "/liboclgrind-rt-icd.so")]
     if not found:
         print("skipped: no Oclgrind (Debian: apt install oclgrind)")
         sys.exit(77)
@@ -96,7 +98,8 @@ def cases_check(program, tier, text, checks, layer, figures):
     output, log = simulate([program, tier, text], checks, layer)
     found = findings(log)
     if found:
-        sys.exit(f"test_bytes {tier} {text!r}, {sorted(checks)}: {len(found)} findings\n\n" + "\n\n".join(found[:10]))
+        sys.exit(f"test_bytes {tier} {text!r}, {sorted(checks)}: {len(found)} findings\n\n" +
+                 "\n\n".join(found[:10]))
     device = re.search(r"^device .*driver (.*)$", output, re.M)
     numbers = re.search(r"^figures (\d+) cases, \d+ variants, (\d+) meshes", output, re.M)
     if not device or not numbers or "Oclgrind" not in device[1]:
@@ -131,8 +134,8 @@ def main():
         cases_check(program, "small", text, RACES, None, races)
     for text in QUICK_UNINITIALISED if tier == "quick" else [""]:
         cases_check(program, "groups", text, UNINITIALISED, layer, uninitialised)
-    print(f"{races['meshes']} meshes without races or faults of memory, {uninitialised['meshes']} without uninitialised "
-          "values")
+    print(f"{races['meshes']} meshes without races or faults of memory, {uninitialised['meshes']} without "
+          "uninitialised values")
     results_write(races, uninitialised, time.time() - start)
 
 
