@@ -37,6 +37,10 @@ EXCLUDED = [
     # Its own mistake: the upper half of a vector (shufflevector to fewer elements) counts as uninitialised.
     re.compile(r"^Controlflow depends on uninitialized value\n.*\n.*\n.* call spir_func <\d+ x i\d+> "
                r"@_Z3(?:min|max)Dv"),
+    # Likewise a sum of vectors of which one lane is: kernel 2 makes the numbers of all vertices of a cube side by side,
+    # also of those that are not there and begin nowhere, which no triangle takes. The bytes of triangles are compared.
+    re.compile(r"^Uninitialized value written to global memory .*\n\tKernel: emit\n.*\n.* store i32 .*\n"
+               r".* of emit_rows.cl:"),
 ]
 
 FAULTS = [  # fault, checks, what the log has to say
