@@ -277,7 +277,7 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
             if (lid < BRICKS_AT_ONCE && n + lid < count) {
                 brick_range range = found[lid];
                 brick_sign_store(number, range_sign(s, range), bricks);
-                ranges[s->range_offset + number] = range;
+                if (!s->ranges_known) ranges[s->range_offset + number] = range; /* else other groups read it */
 #if FLOATING && !MISSING
                 *nonfinite |= !range_finite(range);
 #endif

@@ -27,6 +27,11 @@
 #define LANES 8
 typedef ulong8 lanes;
 
+/* A work-item alone leaves nothing to vectorise across work-items; Intel's compiler for CPUs tries for minutes. */
+#ifdef cl_intel_vec_len_hint
+#define kernel __kernel __attribute__((intel_vec_len_hint(1)))
+#endif
+
 /* Asks for the cache line at an address, which need not be one of the buffer's. Tools may define it empty, too. */
 #ifndef line_prefetch
 #define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))

@@ -1,0 +1,183 @@
+/*
+ * test_bytes.c - one hash per case, however a device is told to work
+ *
+ * Every case (cases.h) is extracted by the scalar reference, then by the device in every variant: work-items, groups,
+ * tiles, the scan's fallback, ways to divide, slabs, buffers of its own, and a second visit that knows the ranges of
+ * bricks. Hashes are of positions, normals and triangles. What else must not matter, number of threads and OpenCL
+ * implementation, is the environment's: bytes.py runs this under several and compares what is printed.
+ *
+ * Usage: test_bytes [whole|sample|small|groups [TEXT]]: sample: some of the cases; small: all, of small grids, in the
+ * variants that take other ways through the kernels, for devices that simulate; groups: likewise, of structured grids,
+ * only variants of many work-items per group; planted: one case, in one variant of which a sample is changed, which has
+ * to fail; TEXT: only cases that have it in their names. Prints a line "case NAME: HASH" for each; a difference names
+ * case and variant. Seeds are fixed.
+ */
+#include "cases.h"
+
+#include "../engines.h"
+#include "../random.h"
+
+#include <inttypes.h>
+
+typedef struct variant {
+    const char *name;
+    uint32_t work_items, work_groups, tile_bricks, spin_limit;
+    int division, own_buffers;
+    bool again;      /* another isovalue has been before */
+    unsigned memory; /* bound on buffers, in percent of what is used without one, and more if need be; 0: none */
+    bool small;      /* is one of those for small grids */
+} variant;
+
+static const variant variants[] = {
+    {"defaults", 1, 0, 0, 0, 0, 0, false, 0, true},
+    {"one group, tiles of one brick", 1, 1, 1, 0, 0, 0, false, 0, false},
+    {"16 groups, tiles of one brick", 1, 16, 1, 0, 0, 0, false, 0, true},
+    {"3 groups, tiles of 7 bricks", 1, 3, 7, 0, 0, 0, false, 0, false},
+    {"every tile before recounted", 1, 16, 1, 1, 0, 0, false, 0, true},
+    {"second visit", 1, 2, 1, 0, 0, 0, true, 0, true},
+    {"second visit, one tile", 1, 1, 1000, 0, 0, 0, true, 0, false},
+    {"buffers of its own", 1, 0, 0, 0, 0, 1, false, 0, false},
+    {"some memory", 1, 2, 2, 0, 0, 0, false, 31, false},
+    {"least memory", 1, 2, 1, 0, 0, 0, false, 7, true},
+    {"least memory, buffers of its own", 1, 2, 1, 0, 0, 1, true, 7, false},
+    {"division through fp64", 1, 0, 0, 0, 2, 0, false, 0, false},
+    {"division in integers", 1, 0, 0, 0, 3, 0, false, 0, false},
+    {"32 work-items", 32, 0, 0, 0, 0, 0, false, 0, true},
+    {"32 work-items, 16 groups, tiles of one brick", 32, 16, 1, 0, 0, 0, false, 0, false},
+    {"32 work-items, every tile before recounted", 32, 16, 1, 1, 0, 0, false, 0, true},
+    {"32 work-items, second visit", 32, 2, 1, 0, 0, 0, true, 0, true},
+    {"32 work-items, least memory", 32, 2, 1, 0, 0, 0, false, 7, false},
+    {"64 work-items", 64, 0, 0, 0, 0, 0, false, 0, false},
+    {"64 work-items, 3 groups, tiles of one brick", 64, 3, 1, 0, 0, 0, true, 0, false},
+    {"256 work-items, 3 groups", 256, 3, 0, 0, 0, 0, false, 0, false},
+    {"256 work-items, tiles of one brick", 256, 16, 1, 1, 0, 0, true, 0, false},
+};
+
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
+typedef enum tier { WHOLE, SAMPLE, SMALL, GROUPS, PLANTED } tier;
+
+static const char *const tier_names[] = {"whole", "sample", "small", "groups", "planted"};
+
+static struct {
+    long cases, meshes, slab_meshes;
+    bool used[VARIANTS];
+} done;
+
+/* Positions, normals and triangles; 0 where a memory bound does not suffice. */
+static uint64_t hash_of(tc_context *context, const case_data *data, bool again, uint32_t *slabs, const char *what) {
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data made = {.struct_size = sizeof made};
+    tc_extract_options how = data->how;
+    tc_status status = data->complex.points ? tc_complex_create(context, &data->complex, &grid)
+                                            : tc_grid_create(context, &data->grid, &grid);
+    how.isovalue += 2.5;
+    if (!status && again) status = tc_extract(grid, &how, &mesh);
+    if (!status) status = tc_extract(grid, &data->how, &mesh);
+    if (!status) status = tc_mesh_get(mesh, &made);
+    EXPECT(!status || (status == TC_ERROR_MEMORY && slabs), "%s: %s", what, tc_message());
+    uint64_t hash = status ? 0 : mesh_bytes_hash(&made);
+    if (slabs) *slabs = made.slab_count;
+    EXPECT(status || made.triangle_count, "%s: nothing comes out", what);
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    return hash;
+}
+
+static tc_context *variant_open(const variant *v, uint64_t memory) {
+    tc_context_options options;
+    tc_context_options_init(&options);
+    options.work_items = v->work_items;
+    options.work_groups = v->work_groups;
+    options.tile_bricks = v->tile_bricks;
+    options.spin_limit = v->spin_limit;
+    options.division = v->division;
+    options.own_buffers = v->own_buffers || getenv("TEST_BYTES_OWN_BUFFERS");
+    options.max_memory_bytes = memory;
+    return context_open(&options);
+}
+
+static bool case_wanted(const bytes_case *c, tier t) {
+    return t == SAMPLE   ? c->sampled
+           : t == GROUPS ? c->groups & 1 && c->kind != CASE_COMPLEX
+                         : t != PLANTED || c == cases;
+}
+
+static bool variant_wanted(const bytes_case *c, const variant *v, tier t) {
+    if (v->memory && !(c->flags & CASE_DEEP)) return false;
+    if (t >= SMALL && c->flags & CASE_DEEP && !v->memory && v != variants) return false;
+    if (v->division && (c->kind == CASE_COMPLEX || c->type != TC_F32 || t != WHOLE)) return false;
+    if (t >= SMALL && !v->small) return false;
+    if (t == GROUPS && v->work_items == 1) return false;
+    return v->work_items == 1 || (c->groups * 32 & v->work_items);
+}
+
+/* The least difference: a sample that equals the isovalue is lowered by one, or put back. */
+static void tie_add(case_data *data, int step) {
+    static uint8_t *tie;
+    if (step < 0)
+        for (tie = data->samples; *tie != data->how.isovalue;) tie++;
+    *tie = (uint8_t)(*tie + step);
+}
+
+/* The hash in a variant. A bound on memory that does not suffice is raised until it does. */
+static uint64_t variant_run(const variant *v, const case_data *data, uint64_t *memory, const char *what) {
+    uint64_t hash = 0;
+    for (unsigned percent = v->memory; !hash && percent < 100; percent += 4) {
+        uint32_t slabs = 0;
+        tc_context *device = variant_open(v, *memory * percent / 100);
+        hash = hash_of(device, data, v->again, percent ? &slabs : NULL, what);
+        if (!*memory) tc_context_device_bytes(device, memory);
+        tc_context_destroy(device);
+        done.slab_meshes += slabs > 1;
+        if (!percent) break;
+    }
+    done.meshes += hash != 0;
+    return hash;
+}
+
+static void case_run(const bytes_case *c, tc_context *reference, tier t) {
+    case_data data;
+    char name[120];
+    uint64_t memory = 0;
+    snprintf(name, sizeof name, "%s", case_name(c));
+    case_fill(c, t >= SMALL, &data);
+    uint64_t wanted = hash_of(reference, &data, false, NULL, name);
+    for (int n = 0; n < VARIANTS; n++) {
+        char what[240];
+        const variant *v = &variants[n];
+        if (!variant_wanted(c, v, t)) continue;
+        snprintf(what, sizeof what, "%s, %s", name, v->name);
+        if (t == PLANTED && v->spin_limit) tie_add(&data, -1);
+        uint64_t hash = variant_run(v, &data, &memory, what);
+        if (t == PLANTED && v->spin_limit) tie_add(&data, 1);
+        EXPECT(hash == wanted, "%s: hash %016" PRIx64 ", the reference's is %016" PRIx64, what, hash, wanted);
+        done.used[n] = true;
+    }
+    printf("case %s: %016" PRIx64 "\n", name, wanted);
+    fflush(stdout);
+    done.cases++;
+    case_free(&data);
+}
+
+int main(int argc, char **argv) {
+    tier t = PLANTED;
+    while (t > WHOLE && (argc < 2 || strcmp(argv[1], tier_names[t]) != 0)) t--;
+    const char *text = argc > 2 ? argv[2] : "";
+    tc_device_info info = {.struct_size = sizeof info};
+    int used = 0;
+    if (!device_exists()) return SKIPPED;
+    tc_context *reference = reference_open(), *device = variant_open(&variants[0], 0);
+    EXPECT(!tc_context_device(device, &info), "%s", tc_message());
+    printf("device %s, %s, driver %s\n", info.platform, info.name, info.driver);
+    tc_context_destroy(device);
+    for (int n = 0; n < case_count; n++)
+        if (case_wanted(&cases[n], t) && strstr(case_name(&cases[n]), text)) case_run(&cases[n], reference, t);
+    for (int n = 0; n < VARIANTS; n++) used += done.used[n];
+    EXPECT(done.slab_meshes > 2 || t >= GROUPS || *text, "%ld meshes made in slabs", done.slab_meshes);
+    printf("figures %ld cases, %d variants, %ld meshes, %ld in slabs\n", done.cases, used, done.meshes,
+           done.slab_meshes);
+    tc_context_destroy(reference);
+    return EXPECT_DONE();
+}
