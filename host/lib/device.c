@@ -1,5 +1,6 @@
 #include "device.h"
 
+#include "context.h"
 #include "failure.h"
 
 #include <stdbool.h>
@@ -176,18 +177,19 @@ tc_status tc_device_count(int *count) {
 
 tc_status tc_device_get(int index, tc_device_info *info) {
     device_list list;
-    if (!info || info->struct_size < sizeof *info)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_get needs info with its struct_size set");
+    tc_device_info found;
+    tc_status status = result_begin(info, sizeof *info, "tc_device_get: info");
+    if (status) return status;
     opencl_lock();
-    tc_status status = device_list_make(&list);
+    status = device_list_make(&list);
     if (!status && (index < 0 || index >= list.count))
         status =
             (tc_status)fail(TC_ERROR_ARGUMENT, "device %d: this machine has devices 0 to %d", index, list.count - 1);
-    if (!status) {
-        status = device_describe(list.devices[index].device, info);
-        info->platform_index = list.devices[index].platform_index;
-        info->device_index = list.devices[index].device_index;
-    }
+    if (!status) status = device_describe(list.devices[index].device, &found);
     opencl_unlock();
-    return status;
+    if (status) return status;
+    found.platform_index = list.devices[index].platform_index;
+    found.device_index = list.devices[index].device_index;
+    result_give(info, &found);
+    return TC_OK;
 }
