@@ -5,7 +5,7 @@
 
 static _Thread_local char text[1024];
 
-int fail(int status, const char *format, ...) {
+int(fail)(int status, const char *format, ...) { /* no macro here */
     char fresh[sizeof text]; /* arguments may point into the old text */
     va_list arguments;
     va_start(arguments, format);
