@@ -91,7 +91,7 @@ tc_status device_describe(cl_device_id device, tc_device_info *info) {
     text_get(device, CL_DEVICE_NAME, info->name, sizeof info->name);
     text_get(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
     text_get(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    strcpy(info->type, type_name(device));
+    snprintf(info->type, sizeof info->type, "%s", type_name(device));
     info->compute_units = (uint32_t)number_get(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
     info->max_work_group_size = number_get(device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
     info->global_memory_bytes = number_get(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));

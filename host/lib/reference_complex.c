@@ -173,10 +173,10 @@ tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const ca
 
 tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh) {
     reference r;
-    double start = clock_ms(), classified = start;
+    const double start = clock_ms();
     tc_status status = reference_begin(&r, grid, isovalue);
     if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
-    classified = clock_ms();
+    const double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
     r.mesh = mesh;
     if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);

@@ -116,7 +116,7 @@ tc_status tc_context_tuning_keep(const tc_context *context) {
 /* All or none: they were measured together. */
 static void kept_take(tc_context *context) {
     tc_context_options *o = &context->options;
-    tc_tuning kept;
+    tc_tuning kept = {0};
     if (o->work_items || o->work_groups || o->tile_bricks || !kept_find(context, &kept)) return;
     o->work_items = kept.work_items;
     o->work_groups = kept.work_groups;

@@ -133,7 +133,7 @@ static void notice_rest(const char *path, uint64_t rest, volume *out) {
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
                      volume *out) {
     mapping m;
-    uint64_t start;
+    uint64_t start = 0;
     int status = mapping_open(path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start)) ||
@@ -176,7 +176,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
 /* One raw file: nothing is copied where the samples can be used as they lie. */
 static int load_raw(const source *from, const char *path, const layout *l, volume *out) {
     mapping m;
-    uint64_t start;
+    uint64_t start = 0;
     int status = mapping_open(path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
