@@ -130,7 +130,7 @@ static tc_status tetrahedra_run(reference *r, const char *stage, double before, 
     const uint64_t count = c->tetrahedron_count, steps = 64;
     tc_status status = TC_OK;
     r->vertex_count = r->triangle_count = r->active_count = 0;
-    memset(r->table, 0, r->table_size * sizeof *r->table);
+    if (r->table_size) memset(r->table, 0, r->table_size * sizeof *r->table);
     for (uint64_t step = 0; step < steps && !status; step++) {
         for (uint64_t n = count * step / steps; n < count * (step + 1) / steps && !status; n++)
             status = tetrahedron_run(r, c->tetrahedra + 4 * n);
