@@ -217,6 +217,8 @@ static tc_status expect_status(const world *w, call_function *run, arguments *a,
 /* The reference has no device: what is asked of it is refused, whatever else is wrong. */
 static unsigned may_end_in(const world *w, const place *p, const bad *value) {
     bool opencl = w->engine == TC_ENGINE_OPENCL;
+    int devices;
+    if (!strcmp(p->call, "tc_device_get") && tc_device_count(&devices)) return value->may | DEVICE;
     if (!strcmp(p->call, "tc_emit")) return ARGUMENT;
     if (value->may & OK && !strcmp(p->call, "tc_context_create") && opencl) return value->may | ARGUMENT | MEMORY;
     return value->may;
@@ -336,6 +338,11 @@ static void test_cell_arrays(const world *w) {
                               "an array of cells");
             }
         }
+    static const int64_t beyond[] = {0, INT64_C(1) << 40, (INT64_C(1) << 40) + 4, 4};
+    static const uint8_t between_flat_ones[] = {1, 10, 1};
+    arguments_fill(w, &a);
+    a.cells.cell_count = 3, a.cells.offsets = beyond, a.cells.types = between_flat_ones;
+    expect_status(w, call_tc_tetrahedralize, &a, DATA, "a cell beyond the last offset");
     static const float coordinates[] = {NAN, INFINITY, -INFINITY, 0x1p127f, -0x1p127f};
     for (int at = 0; at < 3 * POINTS; at++)
         for (int n = 0; n < 5; n++) {
