@@ -44,7 +44,7 @@ def test(build_folder, folder, jobs, more):
 
 def measure(source, folder):
     """{file: gcovr's record} of the sources in host/"""
-    done = run(["gcovr", "--root", source, "--filter", "host/", "--object-directory", folder, "--json",
+    done = run(["gcovr", "--root", source, "--filter", re.escape(f"{source}/host/"), "--object-directory", folder, "--json",
                 "--exclude-unreachable-branches", "--exclude-throw-branches", folder])
     text = done.stdout[done.stdout.index("{"):]
     return {record["file"]: record for record in json.JSONDecoder().raw_decode(text)[0]["files"]}
