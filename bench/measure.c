@@ -131,7 +131,7 @@ static surface surface_of(const tc_extract_options *how, const tc_mesh_data *dat
 static int surfaces_make(const measurement *m, case_result *result) {
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data data;
+    tc_mesh_data data = {.struct_size = sizeof data};
     int status = grid_make(m, &grid);
     if (!status) status = extract(grid, &m->first, &mesh, &data);
     if (!status) status = reference_compare(m, &data, &result->reference_ms);
@@ -150,7 +150,7 @@ static int surfaces_make(const measurement *m, case_result *result) {
 static int second_compare(const measurement *m, const case_result *result) {
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data data;
+    tc_mesh_data data = {.struct_size = sizeof data};
     int status = grid_make(m, &grid);
     if (!status) status = extract(grid, &m->second, &mesh, &data);
     if (!status && surface_of(&m->second, &data).hash != result->second.hash)
@@ -172,7 +172,7 @@ int measure_verify(const measurement *m, case_result *result) {
 int measure_cold(const measurement *m, double *ms) {
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_mesh_data data;
+    tc_mesh_data data = {.struct_size = sizeof data};
     int status = grid_make(m, &grid);
     if (!status) status = extract(grid, &m->first, &mesh, &data);
     if (!status) *ms = data.timings.total_ms;
@@ -184,7 +184,7 @@ int measure_cold(const measurement *m, double *ms) {
 int measure_second(const measurement *m, double *ms) {
     tc_grid *grid = NULL;
     tc_mesh *first = NULL, *second = NULL;
-    tc_mesh_data data;
+    tc_mesh_data data = {.struct_size = sizeof data};
     int status = grid_make(m, &grid);
     if (!status) status = extract(grid, &m->first, &first, &data);
     if (!status) status = extract(grid, &m->second, &second, &data);
@@ -219,7 +219,7 @@ int measure_cold_times(const measurement *m, int repeat, double patience_ms, cas
 /* A first and a second warm extraction. */
 static int warm_pair(const measurement *m, tc_mesh **mesh, tc_timings *first, tc_timings *second) {
     tc_grid *grid = NULL;
-    tc_mesh_data data;
+    tc_mesh_data data = {.struct_size = sizeof data};
     int status = grid_make(m, &grid);
     if (!status) status = extract(grid, &m->first, mesh, &data);
     if (!status) *first = data.timings;

@@ -205,7 +205,7 @@ static inline void expect_volume(const char *what, const read_request *request, 
            v.dims[1], v.dims[2]);
     EXPECT(!e->format || !strcmp(v.format, e->format), "%s: format %s", what, v.format);
     EXPECT(!e->space || !strcmp(v.space, e->space), "%s: space '%s'", what, v.space);
-    EXPECT((uintptr_t)v.samples % stored_bytes(type) == 0, "%s: samples are not aligned", what);
+    EXPECT((uintptr_t)v.samples % stored_bytes((int)type) == 0, "%s: samples are not aligned", what);
     for (int i = 0; i < 12; i++) {
         double wanted = (e->matrix ? e->matrix : identity)[i];
         EXPECT(fabs(v.matrix[i / 4][i % 4] - wanted) <= 1e-6 * fabs(wanted), "%s: matrix[%d][%d] is %.9g, not %.9g",

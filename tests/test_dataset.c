@@ -119,7 +119,7 @@ static void open_choices_list_what_there_is(void) {
 }
 
 static void long_lists_are_cut(void) {
-    static char names[100][40];
+    static char names[100][48];
     dataset d = {0};
     scalar s;
     dataset_block *b = add_block(&d, 2, 2, 2);

@@ -5,8 +5,8 @@
 
 static _Thread_local char text[1024];
 
-int fail(int status, const char *format, ...) {
-    char fresh[sizeof text]; /* arguments may point into the old text */
+int(fail)(int status, const char *format, ...) { /* no macro here */
+    char fresh[sizeof text];                     /* arguments may point into the old text */
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(fresh, sizeof fresh, format, arguments);

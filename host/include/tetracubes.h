@@ -21,9 +21,17 @@
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
  * Conventions. Every call that can fail returns a tc_status; tc_message() then says, for the calling thread, what was
- * wrong and what to do. Outputs are zeroed on failure. Destroy functions accept NULL. The library never prints, exits
- * or aborts on data. A context, with its grids and meshes, is used by one thread at a time; different contexts may be
- * used at once by different threads.
+ * wrong and what to do. Outputs are zeroed on failure, but for what tc_carry and tc_emit were to fill. The library
+ * never prints, exits or aborts on data. A context, with its grids and meshes, is used by one thread at a time;
+ * different contexts may be used at once by different threads.
+ *
+ * Structs begin with struct_size, their size in the header that the caller was built with. A newer library takes and
+ * fills only that much of a struct, and what is not there has its default; a size that no header up to the library's
+ * can have given (0, one that is not a multiple of 8, one of a newer header) is TC_ERROR_ARGUMENT.
+ *
+ * Mistakes end in TC_ERROR_ARGUMENT, not in a crash, as far as they can be seen: NULL, and numbers, sizes, enumerators
+ * and alignments that cannot be. What cannot be seen is the caller's to keep: pointers lead to as much memory as the
+ * sizes beside them say, and nothing is used after it was destroyed. Destroy, release and init functions accept NULL.
  */
 #ifndef TETRACUBES_H
 #define TETRACUBES_H

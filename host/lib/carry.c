@@ -17,11 +17,12 @@ void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t
 }
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
-    if (!grid || !field || field->struct_size < sizeof *field || (!out && value_count))
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "tc_carry needs a grid, a field with its struct_size set, and a place for the values");
+    if (!grid || (!out && value_count))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_carry needs a grid, and a place for the values");
     if (!tc_type_bytes(field->type) || field->components < 1 || !field->values)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the field has no values, or their type or number is not valid");
+    if ((uintptr_t)field->values % tc_type_bytes(field->type) || (uintptr_t)out % sizeof *out)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the field's values, or the place for them, are not aligned");
     if (!grid->samples)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "fields are carried where samples are in the host's memory: this "
                                                   "grid has cl_samples");
@@ -31,11 +32,13 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
 tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
                    uint64_t value_count) {
     tc_extract_options o;
+    tc_field f = {0};
     uint64_t vertex_count = 0;
-    tc_status status = field_check(grid, field, out, value_count);
+    tc_status status = options_take(&f, sizeof f, field, "tc_carry: field");
+    if (!status) status = field_check(grid, &f, out, value_count);
     if (status) return status;
-    const uint64_t components = (uint64_t)field->components;
-    const carry c = {field, out, value_count / components};
+    const uint64_t components = (uint64_t)f.components;
+    const carry c = {&f, out, value_count / components};
     status = extract_options_take(&o, options);
     if (!status && grid->complex) status = complex_request_check(&o);
     if (!status)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 void tc_complex_options_init(tc_complex_options *options) {
+    if (!options) return;
     *options = (tc_complex_options){.struct_size = sizeof *options};
 }
 
@@ -45,9 +46,9 @@ static tc_status complex_describe(tc_grid *grid, const tc_complex_options *o) {
 
 tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
     tc_complex_options o;
+    if (out) *out = NULL;
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_complex_create needs a context and a place for the grid");
-    *out = NULL;
     tc_complex_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "complex options");
     if (!status) status = options_check(&o);

@@ -3,9 +3,11 @@
  */
 #include "tetrahedralize.h"
 
+#include "context.h"
 #include "failure.h"
 #include "parallel.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -133,9 +135,21 @@ double tetrahedron_volume(const float *points, const uint32_t tetrahedron[4]) {
            (e[0][0] * e[1][1] - e[0][1] * e[1][0]) * e[2][2];
 }
 
+/* A size that result_begin takes, with room for the arrays. */
+static bool size_fits(size_t bytes) {
+    return bytes >= offsetof(tc_complex, flat_cell_count) && bytes <= sizeof(tc_complex) && bytes % sizeof bytes == 0;
+}
+
+tc_status complex_begin(tc_complex *complex, const char *what) {
+    tc_status status = result_begin(complex, sizeof *complex, what);
+    if (status || size_fits(complex->struct_size)) return status;
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: of %llu bytes, and its arrays need more", what,
+                           (unsigned long long)complex->struct_size);
+}
+
 void tc_complex_release(tc_complex *complex) {
-    if (!complex) return;
+    if (!complex || !size_fits(complex->struct_size)) return;
     free((void *)(uintptr_t)complex->tetrahedra);
     free((void *)(uintptr_t)complex->cells);
-    *complex = (tc_complex){.struct_size = complex->struct_size};
+    result_give(complex, &(tc_complex){0});
 }

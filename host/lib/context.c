@@ -22,14 +22,22 @@ double clock_ms(void) {
     return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
+/* A size that a header of this library or of an older one gave the struct at `at`. Sizes end on the boundaries that
+ * pointers keep, so that none is ever cut. */
+static tc_status struct_size_get(const void *at, size_t known_bytes, const char *what, size_t *bytes) {
+    *bytes = 0;
+    if (at) memcpy(bytes, at, sizeof *bytes);
+    if (*bytes >= sizeof *bytes && *bytes % sizeof *bytes == 0 && *bytes <= known_bytes) return TC_OK;
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: %s", what,
+                           !at                    ? "none given"
+                           : *bytes > known_bytes ? "made for a newer library, or never initialised"
+                                                  : "never initialised: call its _init function, or set struct_size");
+}
+
 tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what) {
-    size_t bytes = 0;
-    if (from) memcpy(&bytes, from, sizeof bytes);
-    if (bytes < sizeof bytes || bytes > to_bytes)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: %s", what,
-                               !from              ? "no options given"
-                               : bytes > to_bytes ? "made for a newer library, or never initialised"
-                                                  : "never initialised: call its _init function first");
+    size_t bytes;
+    tc_status status = struct_size_get(from, to_bytes, what, &bytes);
+    if (status) return status;
     memcpy(to, from, bytes);
     memcpy(to, &to_bytes, sizeof to_bytes);
     return TC_OK;
@@ -40,6 +48,19 @@ tc_status context_fail(const tc_context *context, const char *what, cl_int error
     if (!context->info.name[0]) return opencl_fail(what, error);
     snprintf(whole, sizeof whole, "%s on %s", what, context->info.name);
     return opencl_fail(whole, error);
+}
+
+tc_status result_begin(void *out, size_t known_bytes, const char *what) {
+    size_t bytes;
+    tc_status status = struct_size_get(out, known_bytes, what, &bytes);
+    if (!status) memset((char *)out + sizeof bytes, 0, bytes - sizeof bytes);
+    return status;
+}
+
+void result_give(void *out, const void *from) {
+    size_t bytes;
+    memcpy(&bytes, out, sizeof bytes);
+    memcpy((char *)out + sizeof bytes, (const char *)from + sizeof bytes, bytes - sizeof bytes);
 }
 
 tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
@@ -109,6 +130,7 @@ void workspace_release(tc_context *context) {
 /* --------------------------------------------------------------------------------------------------------- context */
 
 void tc_context_options_init(tc_context_options *options) {
+    if (!options) return;
     *options = (tc_context_options){.struct_size = sizeof *options, .engine = TC_ENGINE_OPENCL};
 }
 
@@ -207,12 +229,12 @@ void tc_context_destroy(tc_context *context) {
 }
 
 tc_status tc_context_device(const tc_context *context, tc_device_info *info) {
-    if (!context || !info || info->struct_size < sizeof *info)
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "tc_context_device needs a context, and info with its struct_size set");
+    tc_status status = result_begin(info, sizeof *info, "tc_context_device: info");
+    if (status) return status;
+    if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_device needs a context");
     if (context->options.engine == TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device");
-    *info = context->info;
+    result_give(info, &context->info);
     return TC_OK;
 }
 

@@ -141,7 +141,7 @@ static bool cube_planes_allocate(const tc_grid *grid, cube_planes *planes) {
     size_t plane = (size_t)(grid->dims[0] * grid->dims[1]), cubes = (size_t)((grid->dims[0] + 1) * (grid->dims[1] + 1));
     bool done = true;
     for (int n = 0; n < 2; n++) {
-        planes->samples[n] = malloc(plane);
+        planes->samples[n] = calloc(plane, 1);
         planes->cubes[n] = malloc(cubes);
         done = done && planes->samples[n] && planes->cubes[n];
         if (planes->cubes[n]) memset(planes->cubes[n], 1, cubes);

@@ -1,5 +1,6 @@
 #include "device.h"
 
+#include "context.h"
 #include "failure.h"
 
 #include <stdbool.h>
@@ -134,7 +135,7 @@ tc_status device_describe(cl_device_id device, tc_device_info *info) {
     text_get(&q, CL_DEVICE_NAME, info->name, sizeof info->name);
     text_get(&q, CL_DEVICE_VERSION, info->version, sizeof info->version);
     text_get(&q, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    strcpy(info->type, type_name(&q));
+    snprintf(info->type, sizeof info->type, "%s", type_name(&q));
     info->compute_units = (uint32_t)number_get(&q, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
     info->max_work_group_size = number_get(&q, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t));
     info->global_memory_bytes = number_get(&q, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));
@@ -223,18 +224,19 @@ tc_status tc_device_count(int *count) {
 
 tc_status tc_device_get(int index, tc_device_info *info) {
     device_list list;
-    if (!info || info->struct_size < sizeof *info)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_get needs info with its struct_size set");
+    tc_device_info found;
+    tc_status status = result_begin(info, sizeof *info, "tc_device_get: info");
+    if (status) return status;
     opencl_lock();
-    tc_status status = device_list_make(&list);
+    status = device_list_make(&list);
     if (!status && (index < 0 || index >= list.count))
         status =
             (tc_status)fail(TC_ERROR_ARGUMENT, "device %d: this machine has devices 0 to %d", index, list.count - 1);
-    if (!status) {
-        status = device_describe(list.devices[index].device, info);
-        info->platform_index = list.devices[index].platform_index;
-        info->device_index = list.devices[index].device_index;
-    }
+    if (!status) status = device_describe(list.devices[index].device, &found);
     opencl_unlock();
-    return status;
+    if (status) return status;
+    found.platform_index = list.devices[index].platform_index;
+    found.device_index = list.devices[index].device_index;
+    result_give(info, &found);
+    return TC_OK;
 }

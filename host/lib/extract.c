@@ -12,14 +12,15 @@
 #include <stdlib.h>
 
 void tc_extract_options_init(tc_extract_options *options) {
+    if (!options) return;
     *options = (tc_extract_options){.struct_size = sizeof *options};
 }
 
 tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
     tc_grid_options o;
+    if (out) *out = NULL;
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
-    *out = NULL;
     tc_grid_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "grid options");
     if (status) return status;
@@ -67,32 +68,35 @@ static tc_status grid_extract(tc_grid *grid, const tc_extract_options *options, 
 
 tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     tc_extract_options o;
-    if (!grid || !counts || counts->struct_size < sizeof *counts)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid, and counts with its struct_size set");
-    *counts = (tc_counts){.struct_size = counts->struct_size};
-    tc_status status = extract_options_take(&o, options);
+    tc_counts found = {.struct_size = sizeof found};
+    tc_status status = result_begin(counts, sizeof *counts, "tc_count: counts");
+    if (!status && !grid) status = (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid");
+    if (!status) status = extract_options_take(&o, options);
     if (status) return status;
     do { /* again where missing samples were met, and other kernels took over */
+        found = (tc_counts){.struct_size = sizeof found};
         status = trial_run(grid, &o, false);
-        if (!status) status = grid_count(grid, &o, counts);
+        if (!status) status = grid_count(grid, &o, &found);
     } while (!status && trial_pending(grid, &o, false));
-    if (status) *counts = (tc_counts){.struct_size = counts->struct_size};
-    counts->mesh_bytes = counts->vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
-                         counts->triangle_count * MESH_BYTES_PER_TRIANGLE;
-    return status;
+    if (status) return status;
+    found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
+                       found.triangle_count * MESH_BYTES_PER_TRIANGLE;
+    result_give(counts, &found);
+    return TC_OK;
 }
 
 tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
                   struct _cl_event **done) {
     tc_extract_options o;
+    tc_device_mesh m = {0};
     if (done) *done = NULL;
-    if (!grid || !mesh || mesh->struct_size < sizeof *mesh)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid, and a mesh with its struct_size set");
-    tc_status status = extract_options_take(&o, options);
+    if (!grid) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid");
+    tc_status status = options_take(&m, sizeof m, mesh, "tc_emit: mesh");
+    if (!status) status = extract_options_take(&o, options);
     if (status) return status;
     if (grid->complex) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take complexes: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
-    return structured_emit(grid, &o, mesh, done);
+    return structured_emit(grid, &o, &m, done);
 }
 
 tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **out) {

@@ -17,6 +17,7 @@ size_t tc_type_bytes(tc_type type) { return (unsigned)type <= TC_F64 ? type_byte
 const char *tc_type_name(tc_type type) { return (unsigned)type <= TC_F64 ? type_names[type] : NULL; }
 
 void tc_grid_options_init(tc_grid_options *options) {
+    if (!options) return;
     *options = (tc_grid_options){.struct_size = sizeof *options, .type = TC_U8};
     for (int r = 0; r < 3; r++) options->matrix[r][r] = 1;
 }
@@ -49,8 +50,8 @@ static tc_status sizes_check(const tc_grid_options *o) {
         if (o->dims[axis] < 1)
             return (tc_status)fail(TC_ERROR_ARGUMENT, "%lld samples along %c: a grid needs two or more",
                                    (long long)o->dims[axis], 'x' + axis);
-        int64_t first = o->first[axis] < 0 ? -(o->first[axis] + 1) : o->first[axis];
-        if (o->dims[axis] > index_limit || first > index_limit - o->dims[axis])
+        const uint64_t first = o->first[axis] < 0 ? 0 - (uint64_t)o->first[axis] : (uint64_t)o->first[axis];
+        if (o->dims[axis] > index_limit || first > (uint64_t)(index_limit - o->dims[axis]))
             return (tc_status)fail(TC_ERROR_DATA,
                                    "%lld samples along %c from index %lld on: indices are limited to 2^24",
                                    (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);

@@ -1,5 +1,6 @@
 #include "mesh.h"
 
+#include "context.h"
 #include "failure.h"
 
 #include <stdlib.h>
@@ -28,17 +29,19 @@ void mesh_clear(tc_mesh *mesh) {
 }
 
 tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
-    if (!mesh || !data || data->struct_size < sizeof *data)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh and data with its struct_size set");
-    *data = (tc_mesh_data){.struct_size = data->struct_size,
-                           .vertex_count = mesh->vertex_count,
-                           .triangle_count = mesh->triangle_count,
-                           .active_cell_count = mesh->active_cell_count,
-                           .positions = mesh->vertex_count ? mesh->positions.memory : NULL,
-                           .normals = mesh->vertex_count && mesh->has_normals ? mesh->normals.memory : NULL,
-                           .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
-                           .slab_count = mesh->slab_count,
-                           .timings = mesh->timings};
+    tc_status status = result_begin(data, sizeof *data, "tc_mesh_get: data");
+    if (status) return status;
+    if (!mesh) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh");
+    const tc_mesh_data found = {.struct_size = sizeof found,
+                                .vertex_count = mesh->vertex_count,
+                                .triangle_count = mesh->triangle_count,
+                                .active_cell_count = mesh->active_cell_count,
+                                .positions = mesh->vertex_count ? mesh->positions.memory : NULL,
+                                .normals = mesh->vertex_count && mesh->has_normals ? mesh->normals.memory : NULL,
+                                .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
+                                .slab_count = mesh->slab_count,
+                                .timings = mesh->timings};
+    result_give(data, &found);
     return TC_OK;
 }
 

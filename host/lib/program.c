@@ -196,7 +196,7 @@ static tc_status complex_kernels_create(const tc_context *context, program *p) {
 
 tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, cl_kernel const **out) {
     char options[sizeof context->programs->options];
-    program *p;
+    program *p = NULL;
     emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
     strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
     tc_status status = program_get(context, options, complex_sources, NULL, false, &p);

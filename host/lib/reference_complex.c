@@ -130,7 +130,7 @@ static tc_status tetrahedra_run(reference *r, const char *stage, double before, 
     const uint64_t count = c->tetrahedron_count, steps = 64;
     tc_status status = TC_OK;
     r->vertex_count = r->triangle_count = r->active_count = 0;
-    memset(r->table, 0, r->table_size * sizeof *r->table);
+    if (r->table_size) memset(r->table, 0, r->table_size * sizeof *r->table);
     for (uint64_t step = 0; step < steps && !status; step++) {
         for (uint64_t n = count * step / steps; n < count * (step + 1) / steps && !status; n++)
             status = tetrahedron_run(r, c->tetrahedra + 4 * n);
@@ -173,10 +173,10 @@ tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const ca
 
 tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh) {
     reference r;
-    double start = clock_ms(), classified = start;
+    const double start = clock_ms();
     tc_status status = reference_begin(&r, grid, isovalue);
     if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
-    classified = clock_ms();
+    const double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
     r.mesh = mesh;
     if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);

@@ -208,11 +208,12 @@ void slab_describe(const run *r, slab_place place, slab *out) {
 tc_status slab_store_allocate(run *r) {
     if (r->plan->words_whole) return TC_OK;
     uint64_t bricks = r->plan->layer_count * plan_bricks_per_layer(r->plan), words = BRICK_WORDS * bricks;
+    const size_t brick_bytes = sizeof(brick_state);
     slab_store *s = &r->store;
     s->words = malloc(8 * words);
     s->offsets = malloc(8 * words);
     s->triangle_offsets = malloc(2 * words);
-    s->bricks = malloc(sizeof(brick_state) * bricks);
+    s->bricks = malloc(brick_bytes * bricks);
     s->active = malloc(4 * bricks);
     if (s->words && s->offsets && s->triangle_offsets && s->bricks && s->active) return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to keep the sign words of all slabs");

@@ -5,12 +5,19 @@
 #include "tetrahedralize.h"
 
 #include "cell_split.h"
+#include "context.h"
 #include "coordinates.h"
 #include "failure.h"
 
 #include <string.h>
 
 typedef enum cell_verdict { CELL_GOOD, CELL_SKIPPED, CELL_BAD } cell_verdict;
+
+/* No cell reaches beyond the last offset, where the connectivity ends. */
+static bool cell_offsets_rise(const tc_cells *cells, uint64_t c) {
+    const int64_t from = cells->offsets[c], to = cells->offsets[c + 1];
+    return from >= 0 && from <= to && to <= cells->offsets[cells->cell_count];
+}
 
 static bool points_in_range(const tc_cells *cells, const int64_t *points, int64_t count) {
     for (int64_t n = 0; n < count; n++)
@@ -37,7 +44,7 @@ static int unusable_corner(const tc_cells *cells, const uint32_t corners[], int 
 /* Looks at one cell; its corners are there where it is good. */
 static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tally, uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
-    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c]) return CELL_BAD;
+    if (!cell_offsets_rise(cells, c)) return CELL_BAD;
     int64_t first = cells->offsets[c], count = cells->offsets[c + 1] - first;
     if (type->shape == CELL_FLAT) {
         tally->flat++;
@@ -110,9 +117,11 @@ static tc_status cell_refuse(const tc_cells *cells, uint64_t c, const uint32_t c
     const cell_type *type = cell_type_get(cells->types[c]);
     const char *name = type->name ? type->name : "unknown";
     unsigned long long number = c;
-    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c])
-        return (tc_status)fail(TC_ERROR_DATA, "the offsets of cell %llu, %lld to %lld, do not rise", number,
-                               (long long)cells->offsets[c], (long long)cells->offsets[c + 1]);
+    if (!cell_offsets_rise(cells, c))
+        return (tc_status)fail(TC_ERROR_DATA,
+                               "the offsets of cell %llu, %lld to %lld, do not rise from 0 to the last one, %lld",
+                               number, (long long)cells->offsets[c], (long long)cells->offsets[c + 1],
+                               (long long)cells->offsets[cells->cell_count]);
     long long count = (long long)(cells->offsets[c + 1] - cells->offsets[c]);
     if (type->shape == CELL_OTHER)
         return (tc_status)fail(TC_ERROR_DATA,
@@ -143,6 +152,9 @@ static tc_status cells_check(const tc_cells *cells) {
                                (unsigned long)UINT32_MAX);
     if (cells->cell_count && (!cells->types || !cells->offsets))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "cells need their types and offsets");
+    if ((uintptr_t)cells->points % sizeof(float) || (uintptr_t)cells->offsets % sizeof(int64_t) ||
+        (uintptr_t)cells->connectivity % sizeof(int64_t))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "points, offsets or connectivity are not aligned to their type");
     if (cells->cell_count && cells->offsets[0] < 0)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the offsets of the cells begin below 0");
     if (cells->cell_count && cells->offsets[cells->cell_count] && (!cells->connectivity || !cells->points))
@@ -151,14 +163,14 @@ static tc_status cells_check(const tc_cells *cells) {
 }
 
 tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex) {
+    tc_cells c = {0};
+    tc_complex made = {.struct_size = sizeof made};
     uint64_t bad_cell;
-    if (!complex || complex->struct_size < sizeof *complex)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize needs a complex with its struct_size set");
-    *complex = (tc_complex){.struct_size = complex->struct_size};
-    if (!cells || cells->struct_size < sizeof *cells)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize needs cells with their struct_size set");
-    tc_status status = cells_check(cells);
+    tc_status status = complex_begin(complex, "tc_tetrahedralize: complex");
+    if (!status) status = options_take(&c, sizeof c, cells, "tc_tetrahedralize: cells");
+    if (!status) status = cells_check(&c);
     if (status) return status;
-    status = complex_make(cells_cut, cells, cells->cell_count, complex, &bad_cell);
-    return status == TC_ERROR_DATA ? bad_cell_refuse(cells, bad_cell) : status;
+    status = complex_make(cells_cut, &c, c.cell_count, &made, &bad_cell);
+    if (!status) result_give(complex, &made);
+    return status == TC_ERROR_DATA ? bad_cell_refuse(&c, bad_cell) : status;
 }

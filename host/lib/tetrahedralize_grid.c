@@ -74,11 +74,10 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *com
     grid_source s;
     tc_grid_options o;
     uint64_t bad_cell;
-    if (!complex || complex->struct_size < sizeof *complex)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize_grid needs a complex with its struct_size set");
-    *complex = (tc_complex){.struct_size = complex->struct_size};
+    tc_complex made = {.struct_size = sizeof made};
     tc_grid_options_init(&o);
-    tc_status status = options_take(&o, sizeof o, options, "grid options");
+    tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: complex");
+    if (!status) status = options_take(&o, sizeof o, options, "grid options");
     if (!status) status = grid_describe(&o, &s.grid);
     if (status) return status;
     if (!s.grid.samples)
@@ -88,5 +87,7 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *com
                                (long long)grid_sample_count(&s.grid), (unsigned long)UINT32_MAX);
     s.may_miss = s.grid.blanked_samples || s.grid.has_nodata || s.grid.type >= TC_F32;
     const uint64_t cubes = (uint64_t)((s.grid.dims[0] - 1) * (s.grid.dims[1] - 1) * (s.grid.dims[2] - 1));
-    return complex_make(cubes_cut, &s, cubes, complex, &bad_cell);
+    status = complex_make(cubes_cut, &s, cubes, &made, &bad_cell);
+    if (!status) result_give(complex, &made);
+    return status;
 }

@@ -116,7 +116,7 @@ tc_status tc_context_tuning_keep(const tc_context *context) {
 /* All or none: they were measured together. */
 static void kept_take(tc_context *context) {
     tc_context_options *o = &context->options;
-    tc_tuning kept;
+    tc_tuning kept = {0};
     if (o->work_items || o->work_groups || o->tile_bricks || !kept_find(context, &kept)) return;
     o->work_items = kept.work_items;
     o->work_groups = kept.work_groups;
@@ -150,13 +150,13 @@ tc_status tuning_choose(tc_context *context) {
 }
 
 tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
-    if (!context || !tuning || tuning->struct_size < sizeof *tuning)
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "tc_context_tuning needs a context, and a tuning with its struct_size set");
+    tc_status status = result_begin(tuning, sizeof *tuning, "tc_context_tuning: tuning");
+    if (status) return status;
+    if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tuning is that of a context: none given");
     if (context->options.engine == TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine launches nothing");
-    tuning->work_items = context->options.work_items;
-    tuning->work_groups = context->options.work_groups;
-    tuning->tile_bricks = context->options.tile_bricks;
+    const tc_context_options *o = &context->options;
+    const tc_tuning found = {sizeof found, o->work_items, o->work_groups, o->tile_bricks};
+    result_give(tuning, &found);
     return TC_OK;
 }

@@ -194,7 +194,7 @@ static int convert_elements(double *to, const unsigned char *from, int64_t n, si
 }
 
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples) {
-    size_t bytes = element_bytes(l->element), out_bytes = element_bytes(layout_type(l));
+    size_t bytes = element_bytes(l->element), out_bytes = element_bytes((int)layout_type(l));
     int converts = l->scaled || l->element > TC_F64;
     unsigned char *to = samples;
     for (int64_t z = 0; z < l->dims[2]; z++)

@@ -90,7 +90,7 @@ static void take_v2(nifti_header *h) {
 }
 
 static int read_header(const char *path, const mapping *file, nifti_header *h) {
-    int32_t size;
+    int32_t size = 0;
     int status = read_start(path, file, &size, sizeof size);
     if (status) return status;
     h->is_swapped = size != 348 && size != 540;

@@ -20,7 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SOLUTION_VARIABLES = 5, GAMMA_VARIABLE = 5, NAME_BYTES = 24, LINE_BYTES = 64, CHUNK_POINTS = 512 };
+enum { SOLUTION_VARIABLES = 5, GAMMA_VARIABLE = 5, NAME_BYTES = 32, LINE_BYTES = 64, CHUNK_POINTS = 512 };
 static const double GAMMA = 1.4;
 
 /* A form of each file; data is NULL where there is a grid only. */

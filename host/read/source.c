@@ -133,7 +133,7 @@ static void notice_rest(const char *path, uint64_t rest, volume *out) {
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
                      volume *out) {
     mapping m;
-    uint64_t start;
+    uint64_t start = 0;
     int status = mapping_open(path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start)) ||
@@ -161,7 +161,7 @@ static int no_memory(const char *path, uint64_t bytes) {
 /* Gathers the volume from the stored array into memory of its own. */
 static int gather(const source *from, const layout *l, const unsigned char *stored, volume *out) {
     uint64_t bytes = 0, count = (uint64_t)l->dims[0] * (uint64_t)l->dims[1] * (uint64_t)l->dims[2];
-    if (__builtin_mul_overflow(count, element_bytes(layout_type(l)), &bytes)) bytes = UINT64_MAX;
+    if (__builtin_mul_overflow(count, element_bytes((int)layout_type(l)), &bytes)) bytes = UINT64_MAX;
     void *samples = samples_allocate(bytes);
     if (!samples) return no_memory(from->header_path, bytes);
     int status = layout_gather(from->header_path, l, stored, samples);
@@ -176,7 +176,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
 /* One raw file: nothing is copied where the samples can be used as they lie. */
 static int load_raw(const source *from, const char *path, const layout *l, volume *out) {
     mapping m;
-    uint64_t start;
+    uint64_t start = 0;
     int status = mapping_open(path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||

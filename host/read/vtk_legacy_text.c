@@ -35,7 +35,7 @@ int legacy_word(legacy *r, char word[LEGACY_WORD]) {
                                "has a word longer than %d characters where a keyword, name or type must be; it is "
                                "damaged, or an array is longer than it says",
                                LEGACY_WORD - 1);
-        word[length++] = c < ' ' || c == 127 ? '?' : (char)c;
+        word[length++] = (char)(c < ' ' || c == 127 ? '?' : c);
     }
     word[length] = 0;
     return 0;

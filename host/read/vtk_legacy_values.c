@@ -106,7 +106,7 @@ static int decode_words(legacy *r, const char *what, int type, uint64_t count, u
         char shown[40];
         size_t length = 0;
         for (; word < end && length < sizeof shown - 1; word++)
-            shown[length++] = *word > ' ' && *word < 127 ? *word : '?';
+            shown[length++] = (char)(*word > ' ' && *word < 127 ? *word : '?');
         shown[length] = 0;
         return legacy_fail(r, "has '%s' among the values of %s, which is no number of its type", shown, what);
     }

@@ -131,7 +131,7 @@ static void convert_to_integers(int64_t *to, const unsigned char *from, uint64_t
 
 /* Coordinates, from any type of number. */
 static int load_floats(xml_reader *r, const xml_array *array, uint64_t count, const float **values) {
-    const unsigned char *stored;
+    const unsigned char *stored = NULL;
     void *owned, *memory;
     if (array->element == TC_F32) return load_stored(r, array, count, (const void **)values);
     int status = load_briefly(r, array, count, &stored, &owned);
@@ -146,7 +146,7 @@ static int load_floats(xml_reader *r, const xml_array *array, uint64_t count, co
 
 /* Writes `count` integers, stored in any type of integer. */
 static int load_integers(xml_reader *r, const xml_array *array, uint64_t count, int64_t *to) {
-    const unsigned char *stored;
+    const unsigned char *stored = NULL;
     void *owned;
     if (array->element == TC_F32 || array->element == TC_F64)
         return fail(STATUS_INPUT, "%s: its array '%.60s' is of floating point; it must be of integers", r->doc.path,
@@ -205,7 +205,7 @@ static int load_points(xml_reader *r, const xml_piece *piece, dataset_block *blo
 
 static int load_cell_types(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
     if (array->element == TC_U8) return load_stored(r, array, count, (const void **)&block->cell_types);
-    const unsigned char *stored;
+    const unsigned char *stored = NULL;
     void *owned;
     uint8_t *types = NULL;
     int status = load_briefly(r, array, count, &stored, &owned);
@@ -296,7 +296,7 @@ static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, d
     int on_cells = array->section == SECTION_CELL_DATA, any = 0;
     int64_t bits = on_cells ? DUPLICATE_CELL | HIDDEN_CELL : HIDDEN_POINT;
     if (strcmp(r->doc.names + array->name, "vtkGhostLevels") == 0) bits = on_cells ? UINT8_MAX : 0;
-    const unsigned char *stored;
+    const unsigned char *stored = NULL;
     void *owned;
     uint8_t *blanked = NULL;
     int status = load_briefly(r, array, count, &stored, &owned);

@@ -43,7 +43,7 @@ int input_request(const options *o, read_request *request) {
 }
 
 int input_read(const options *o, dataset *d) {
-    read_request request;
+    read_request request = {0};
     *d = (dataset){0};
     int status = input_request(o, &request);
     if (!status) status = dataset_read(&request, d);

@@ -36,12 +36,15 @@ static void name_property(const mesh_field *field, int component, property_name 
     size_t length = 0;
     for (const char *c = field->name; *c && length < NAME_KEPT; c++) {
         int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
-        name[length++] = is_word ? *c : '_';
+        name[length++] = (char)(is_word ? *c : '_');
     }
     name[length] = 0;
     if (!length) length = (size_t)sprintf(name, "field");
     if (field->components > 1) length += (size_t)sprintf(name + length, "_%d", component);
-    while (is_taken(name, names, count) && length < NAME_BYTES - 1) strcpy(name + length++, "_");
+    while (is_taken(name, names, count) && length < NAME_BYTES - 1) {
+        name[length++] = '_';
+        name[length] = 0;
+    }
 }
 
 static int value_count(const shown_mesh *s) {

@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Static and dynamic analysis of all that runs on the host.
+
+    hygiene.py SOURCE BUILD [STAGE...]
+
+warnings     gcc and clang compile everything without a warning
+tidy         clang-tidy over host/, with the checks of .clang-tidy
+cppcheck     over host/, with the suppressions of cppcheck.txt
+readers      readers, writers, reference and public functions under the address and undefined-behaviour sanitizers
+sanitizers   all tests under them
+threads      a context per thread under the thread sanitizer, the library's own threads included
+valgrind     memcheck over tests without a device, and over the tool with the reference engine
+
+Without a stage: all but readers, which is a part of sanitizers. Builds go to BUILD/hygiene, where they are kept; BUILD
+is a finished build, whose compile commands, tool and cache of kernels are used. Prints what was found, and writes
+hygiene.json where TETRACUBES_RESULTS names a folder. Exit status 77: a program that a stage needs is not installed.
+"""
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from results import Part, run, tool_version
+
+FILE_TESTS = ["test_read", "test_read_hostile", "test_vtk_legacy", "test_vtk_xml", "test_vtk_xml_hostile", "test_plot3d",
+              "test_dataset", "test_write", "test_write_vtk", "test_write_vtk_wide"]
+QUICK_TESTS = ["test_read_hostile", "test_vtk_xml", "test_vtk_xml_hostile", "test_dataset", "test_write_vtk", "test_misuse",
+               "test_order", "test_api"]
+SANITIZED = "address,undefined"
+LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1",
+         "UBSAN_OPTIONS": "print_stacktrace=1"}
+FAULTS = r"(?:AddressSanitizer|LeakSanitizer|ThreadSanitizer)|runtime error:"
+
+
+class Hygiene:
+    """The stages; each returns the number of faults, having printed them."""
+
+    def __init__(self, arguments, part):
+        self.source, self.build, self.part = arguments.source, arguments.build, part
+        self.work = self.build / "hygiene"
+        self.jobs = str(len(os.sched_getaffinity(0)))
+        self.no_device = tempfile.mkdtemp(prefix="tetracubes-no-vendors-")
+
+    def configure(self, name, *options, compiler="gcc"):
+        folder = self.work / name
+        run(["cmake", "-S", self.source, "-B", folder, "-G", "Ninja", f"-DCMAKE_C_COMPILER={compiler}", *options])
+        return folder
+
+    def compile(self, folder, targets=()):
+        """The compiler's output; None where it fails."""
+        command = ["cmake", "--build", folder, "--parallel", self.jobs]
+        for target in targets:
+            command += ["--target", target]
+        return run(command, check=False)
+
+    def environment(self, device=False, **more):
+        """Of a test program: no caches of the user's; without a device unless asked for."""
+        values = {**os.environ, "TETRACUBES_CACHE_DIR": "", **more}
+        if not device:
+            values["OCL_ICD_VENDORS"] = self.no_device
+        return values
+
+    def run_tests(self, folder, names, wrapper=(), device=False, arguments=(), **variables):
+        """Faults of the programs, one by one; 77 is a test that had no device, and ran without one."""
+        faults = 0
+        for name in names:
+            program = next(folder.glob(f"tests/**/{name}"))
+            done = run([*wrapper, program, *arguments], check=False, env=self.environment(device, **variables))
+            if done.returncode not in (0, 77) or re.search(FAULTS, done.stdout):
+                print(f"{name}: exit status {done.returncode}\n{done.stdout[-4000:]}")
+                faults += 1
+        return faults
+
+    # ------------------------------------------------------------------------------------------------------ static
+
+    def warnings(self):
+        count = 0
+        for compiler in ("gcc", "clang"):
+            folder = self.configure(f"warnings-{compiler}", "-DCMAKE_BUILD_TYPE=Release", compiler=compiler)
+            self.compile(folder, ["clean"])
+            done = self.compile(folder)
+            found = re.findall(r"^.*(?:warning|error):.*$", done.stdout, re.MULTILINE)
+            print("\n".join(found))
+            count += len(found) + (done.returncode != 0 and not found)
+        self.part.figure("compiler warnings, gcc and clang", count)
+        return count
+
+    def tidy(self):
+        folder = self.configure("warnings-clang", "-DCMAKE_BUILD_TYPE=Release", compiler="clang")
+        self.compile(folder)
+        tidy = shutil.which("run-clang-tidy") or shutil.which("run-clang-tidy-14")
+        done = run([tidy, "-p", folder, "-j", self.jobs, "-quiet", f"^{re.escape(str(self.source))}/host/.*"],
+                   check=False)
+        text = re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
+        found = sorted(set(re.findall(r"^.*(?:warning|error):.*$", text, re.MULTILINE)))
+        print("\n".join(found))
+        self.part.figure("clang-tidy findings", len(found))
+        return len(found) + (done.returncode != 0 and not found)
+
+    def cppcheck(self):
+        commands = json.loads((self.build / "compile_commands.json").read_text(encoding="utf-8"))
+        own = [entry for entry in commands if entry["file"].startswith(f"{self.source}/host/")]
+        with tempfile.TemporaryDirectory(prefix="tetracubes-cppcheck-") as folder:
+            project = Path(folder) / "compile_commands.json"
+            project.write_text(json.dumps(own), encoding="utf-8")
+            suppressions = self.source / "tests" / "hygiene" / "cppcheck.txt"
+            done = run(["cppcheck", f"--project={project}", "--enable=warning,performance,portability", "--quiet",
+                        "-j", self.jobs, f"--suppressions-list={suppressions}", "--error-exitcode=1",
+                        "--template={file}:{line}: {severity}: {id}: {message}"], check=False)
+        found = sorted(set(re.findall(r"^.*: (?:error|warning|performance|portability): .*$", done.stdout, re.MULTILINE)))
+        print("\n".join(found) if found else done.stdout)
+        self.part.figure("cppcheck findings", len(found))
+        return len(found) + (done.returncode != 0 and not found)
+
+    # ----------------------------------------------------------------------------------------------------- dynamic
+
+    def sanitized(self, name, kinds, targets):
+        folder = self.configure(name, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF",
+                                f"-DTETRACUBES_SANITIZE={kinds}")
+        done = self.compile(folder, targets)
+        if done.returncode:
+            raise RuntimeError(done.stdout[-4000:])
+        return folder
+
+    def readers(self):
+        names = QUICK_TESTS
+        return self.run_tests(self.sanitized("sanitizers", SANITIZED, names), names, **LEAKS)
+
+    def sanitizers(self):
+        """The whole ctest, with the kernels that the build at hand has compiled."""
+        folder = self.sanitized("sanitizers", SANITIZED, [])
+        for part in (self.build / "tests" / "kernel_cache").glob("*"):
+            shutil.copytree(part, folder / "tests" / "kernel_cache" / part.name, dirs_exist_ok=True)
+        done = run(["ctest", "--test-dir", folder, "--output-on-failure", "-j", self.jobs, "--timeout", "1800",
+                    "-E", "^(test_install|test_readme|test_sanitized|test_static|test_data)$"], check=False,
+                   env={**os.environ, **LEAKS})
+        failed = re.findall(r"^\s+\d+ - \w+ \(\w+\)$", done.stdout, re.MULTILINE)
+        ran = re.search(r"tests failed out of (\d+)", done.stdout)
+        faults = len(re.findall(FAULTS, done.stdout))
+        if failed or faults or not ran:
+            print(done.stdout[-20000:])
+        self.part.figure("tests under address and undefined-behaviour sanitizers", int(ran[1]) if ran else 0)
+        self.part.figure("faults that these sanitizers found", len(failed))
+        return len(failed) + faults + (ran is None)
+
+    def threads(self):
+        folder = self.sanitized("threads", "thread", ["test_threads", "test_contexts", "test_tetrahedralize", "test_order"])
+        with tempfile.TemporaryDirectory(prefix="tetracubes-kernels-") as cache:
+            options = {"TSAN_OPTIONS": "halt_on_error=0", "POCL_CACHE_DIR": cache}
+            faults = self.run_tests(folder, ["test_tetrahedralize", "test_order"], **options)
+            faults += self.run_tests(folder, ["test_threads"], arguments=["4"], **options)
+            faults += self.run_tests(folder, ["test_threads", "test_contexts"], device=True, **options)
+        self.part.figure("data races found", faults)
+        return faults
+
+    def valgrind(self):
+        folder = self.configure("valgrind", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF")
+        self.compile(folder)
+        checker = ["valgrind", "--quiet", "--error-exitcode=99", "--leak-check=full",
+                   "--errors-for-leak-kinds=definite,indirect,possible", "--track-fds=no"]
+        names = [*FILE_TESTS, "test_inside", "test_cancel", "test_order", "test_threads", "test_misuse"]
+        faults = self.run_tests(folder, names, wrapper=checker)
+        runs = 0
+        with tempfile.TemporaryDirectory(prefix="tetracubes-valgrind-") as here:
+            for command in tool_commands():
+                done = run([*checker, folder / "host" / "tool" / "tetracubes", *command.split()], check=False, cwd=here,
+                           env=self.environment())
+                runs += 1
+                if done.returncode:
+                    print(f"tetracubes {command}: exit status {done.returncode}\n{done.stdout[-4000:]}")
+                    faults += 1
+        self.part.figure("programs run under valgrind", len(names) + runs)
+        self.part.figure("faults that valgrind found", faults)
+        return faults
+
+
+def tool_commands():
+    """Small runs of the tool by the reference: every type, kind of grid, output format and command."""
+    commands = []
+    for sample in ("u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"):
+        commands.append(f"generate gyroid --dims 21,18,15 --type {sample} -o {sample}.nrrd")
+        commands.append(f"extract {sample}.nrrd --iso 99.5 --engine reference --check --json -o {sample}.ply")
+    extract = "extract f32.nrrd --iso 99.5,127.5 --engine reference"
+    commands += [f"{extract} -o %.{ending}" for ending in ("ply", "stl", "obj", "vtp")]
+    commands += [f"{extract} --method hybrid --normals --check", f"{extract} --soup -o %.stl", f"{extract} --count",
+                 f"{extract} --nodata 0 --check", "info f32.nrrd --json", "tetrahedralize f32.nrrd -o cells.vtu",
+                 "info cells.vtu", "extract cells.vtu --iso 99.5 --engine reference --check -o cells.vtp", "--version"]
+    return commands
+
+
+NEEDS = {"warnings": ["clang"], "tidy": ["clang", "clang-tidy"], "cppcheck": ["cppcheck"], "valgrind": ["valgrind"]}
+ALL = ["warnings", "tidy", "cppcheck", "sanitizers", "threads", "valgrind"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("source", type=Path)
+    parser.add_argument("build", type=Path)
+    parser.add_argument("stages", nargs="*", default=ALL)
+    arguments = parser.parse_args()
+    arguments.source, arguments.build = arguments.source.resolve(), arguments.build.resolve()
+    missing = {name for stage in arguments.stages for name in NEEDS.get(stage, []) if not shutil.which(name)}
+    if missing:
+        print(f"skipped: not installed: {', '.join(sorted(missing))}")
+        return 77
+    part = Part("hygiene", [tool_version(name) for name in ("gcc", "clang", "cppcheck", "valgrind")])
+    hygiene = Hygiene(arguments, part)
+    faults = 0
+    for stage in arguments.stages:
+        found = getattr(hygiene, stage)()
+        print(f"{stage}: {found} faults", flush=True)
+        faults += found
+    os.rmdir(hygiene.no_device)
+    if set(ALL) <= set(arguments.stages):
+        part.write()
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

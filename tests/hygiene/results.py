@@ -1,0 +1,46 @@
+"""results.py - what the long tests of this folder share: commands run, and figures kept"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+
+def run(command, check=True, **more):
+    """A finished process with both streams as one text."""
+    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          encoding="utf-8", errors="replace", check=False, **more)
+    if check and done.returncode:
+        sys.exit(f"{' '.join(map(str, command))}: exit status {done.returncode}\n{done.stdout[-4000:]}")
+    return done
+
+
+def tool_version(name):
+    """(name, version) of a program that may not be there."""
+    if not shutil.which(name):
+        return (name, "not installed")
+    found = re.search(r"\d+\.\d+(?:\.\d+)?", run([name, "--version"], check=False).stdout)
+    return (name, found[0] if found else "unknown")
+
+
+class Part:
+    """PART.json in the folder that TETRACUBES_RESULTS names, if it names one."""
+
+    def __init__(self, name, versions):
+        self.name, self.versions, self.figures, self.start = name, dict(versions), [], time.monotonic()
+
+    def figure(self, what, value):
+        print(f"{what}: {value}", flush=True)
+        self.figures.append({"what": what, "value": value})
+
+    def write(self, **details):
+        folder = os.environ.get("TETRACUBES_RESULTS")
+        if not folder:
+            return
+        text = {"part": self.name, "date": time.strftime("%Y-%m-%d"), "versions": self.versions,
+                "seconds": round(time.monotonic() - self.start), "figures": self.figures, **details}
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        (Path(folder) / f"{self.name}.json").write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")

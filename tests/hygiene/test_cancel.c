@@ -1,0 +1,212 @@
+/*
+ * test_cancel.c - cancelled at any call of the progress callback, everything can be used again
+ *
+ * For every kind of grid, on each engine, whole, in slabs and on a device with memory of its own: tc_count, tc_extract
+ * into a new mesh and into a kept one, at a first and at a repeated isovalue, and tc_carry are cancelled at each call
+ * of the callback in turn. Each time the status is TC_ERROR_CANCELLED, what was to be made is empty, and then the same
+ * grid gives the right bytes. What was counted before a cancelled call is not emitted; what is counted after it is.
+ */
+#include "kinds.h"
+
+typedef struct watch {
+    int calls, cancel_at;
+} watch;
+
+static int watch_progress(void *user, const char *stage, double fraction) {
+    watch *w = user;
+    return stage && fraction >= 0 && ++w->calls == w->cancel_at;
+}
+
+typedef struct subject {
+    const char *name;
+    enum kind kind;
+    watch *watch;
+    tc_grid *grid;
+    tc_mesh *kept;
+    const tc_mesh_data *expected; /* of each isovalue */
+    float *carried;
+    bool opencl;
+} subject;
+
+typedef tc_status action(const subject *s, const tc_extract_options *how);
+
+static void expect_cancelled(const subject *s, tc_status status, bool empty, const char *what) {
+    EXPECT(status == TC_ERROR_CANCELLED, "%s, %s, cancelled at call %d: status %d (%s)", s->name, what,
+           s->watch->cancel_at, (int)status, tc_message());
+    EXPECT(empty, "%s, %s, cancelled at call %d: not empty", s->name, what, s->watch->cancel_at);
+    EXPECT(s->watch->calls == s->watch->cancel_at, "%s, %s: called %d times, cancelled at %d", s->name, what,
+           s->watch->calls, s->watch->cancel_at);
+}
+
+static tc_status count(const subject *s, const tc_extract_options *how) {
+    tc_counts counts = {.struct_size = sizeof counts, .vertex_count = 9, .triangle_count = 9, .mesh_bytes = 9};
+    tc_status status = tc_count(s->grid, how, &counts);
+    if (s->watch->cancel_at)
+        expect_cancelled(s, status, !counts.vertex_count && !counts.triangle_count && !counts.mesh_bytes, "count");
+    return status;
+}
+
+static tc_status extract_new(const subject *s, const tc_extract_options *how) {
+    tc_mesh *mesh = NULL;
+    tc_status status = tc_extract(s->grid, how, &mesh);
+    if (s->watch->cancel_at) expect_cancelled(s, status, !mesh, "a new mesh");
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
+static tc_status extract_kept(const subject *s, const tc_extract_options *how) {
+    tc_mesh *mesh = s->kept;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_status status = tc_extract(s->grid, how, &mesh);
+    const bool there = mesh == s->kept && tc_mesh_get(mesh, &data) == TC_OK;
+    if (s->watch->cancel_at)
+        expect_cancelled(s, status, there && !data.vertex_count && !data.triangle_count, "a kept mesh");
+    return status;
+}
+
+static tc_status carry(const subject *s, const tc_extract_options *how) {
+    const tc_field field = {sizeof field, TC_F64, 1, kind_f64};
+    const tc_mesh_data *mesh = &s->expected[how->isovalue < 100];
+    tc_status status = tc_carry(s->grid, how, &field, s->carried, mesh->vertex_count);
+    if (s->watch->cancel_at) expect_cancelled(s, status, true, "carry");
+    return status;
+}
+
+/* The repeated isovalue, of which the grid remembers something, then the first. */
+static void expect_usable(const subject *s) {
+    *s->watch = (watch){0};
+    for (int isovalue = 1; isovalue >= 0; isovalue--) {
+        tc_extract_options how;
+        tc_mesh *mesh = s->kept;
+        tc_mesh_data data = {.struct_size = sizeof data};
+        kind_how(s->kind, isovalue, &how);
+        const bool done = tc_extract(s->grid, &how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK;
+        const char *difference = done ? mesh_difference(&s->expected[isovalue], &data) : tc_message();
+        EXPECT(!difference, "%s, after cancelling: %s", s->name, difference);
+    }
+}
+
+/* A count that was cancelled, or overtaken by a call that was, is none: tc_emit tells so by asking for a count, and one
+ * that stands by asking for buffers. */
+static void expect_count_stands(const subject *s, bool stands) {
+    const tc_device_mesh no_buffers = {.struct_size = sizeof no_buffers};
+    tc_extract_options how;
+    if (!s->opencl || s->kind == KIND_COMPLEX) return;
+    kind_how(s->kind, 0, &how);
+    EXPECT(tc_emit(s->grid, &how, &no_buffers, NULL) == TC_ERROR_ARGUMENT, "emitted into no buffers");
+    EXPECT(stands == !strstr(tc_message(), "tc_count"), "%s: a count that %s: %s", s->name,
+           stands ? "stands" : "is none", tc_message());
+}
+
+/* Cancels at every call, or at the first, the last and every step-th. */
+static void test_action(const subject *s, action *act, int isovalue, int step) {
+    tc_extract_options how;
+    kind_how(s->kind, isovalue, &how);
+    *s->watch = (watch){0};
+    EXPECT(act(s, &how) == TC_OK, "%s: %s", s->name, tc_message());
+    const int calls = s->watch->calls;
+    EXPECT(calls > 0, "%s: progress is never told", s->name);
+    for (int n = 1; n <= calls; n += n + step > calls && n < calls ? calls - n : step) {
+        *s->watch = (watch){0};
+        count(s, &how);
+        *s->watch = (watch){.cancel_at = n};
+        act(s, &how);
+        if (act != carry) expect_count_stands(s, false);
+        expect_usable(s);
+    }
+    kind_how(s->kind, 0, &how);
+    EXPECT(count(s, &how) == TC_OK, "%s: %s", s->name, tc_message());
+    if (!strstr(s->name, "slabs")) expect_count_stands(s, true); /* which may be too large for tc_emit */
+}
+
+static void test_kind(tc_context *context, watch *w, enum kind kind, const tc_mesh_data expected[2], const char *mode,
+                      int step) {
+    static float carried[1 << 17];
+    static action *const actions[] = {count, extract_new, extract_kept, carry};
+    tc_extract_options how;
+    char name[64];
+    snprintf(name, sizeof name, "%s, %s", mode, kind_names[kind]);
+    subject s = {name, kind, w, NULL, NULL, expected, carried, strstr(mode, "reference") == NULL};
+    kind_how(kind, 0, &how);
+    if (expected[0].vertex_count > sizeof carried / sizeof *carried) exit(EXIT_FAILURE);
+    for (size_t n = 0; n < sizeof actions / sizeof *actions; n++)
+        for (int isovalue = 0; isovalue < 2; isovalue++) {
+            *w = (watch){0};
+            EXPECT(kind_open(context, kind, &s.grid) == TC_OK, "%s: %s", name, tc_message());
+            if (isovalue) EXPECT(tc_extract(s.grid, &how, &s.kept) == TC_OK, "%s: %s", name, tc_message());
+            if (!s.kept) EXPECT(tc_extract(s.grid, &how, &s.kept) == TC_OK, "%s: %s", name, tc_message());
+            test_action(&s, actions[n], isovalue, step);
+            tc_grid_destroy(s.grid);
+            s.grid = NULL;
+        }
+    tc_mesh_destroy(s.kept);
+}
+
+static const struct {
+    const char *name;
+    tc_engine engine;
+    uint64_t memory;
+    int own_buffers;
+} modes[] = {{"reference", TC_ENGINE_REFERENCE, 0, 0},
+             {"whole", TC_ENGINE_OPENCL, 0, 0},
+             {"slabs", TC_ENGINE_OPENCL, 1, 0},
+             {"own buffers", TC_ENGINE_OPENCL, 0, 1},
+             {"own buffers, slabs", TC_ENGINE_OPENCL, 1, 1}};
+
+/* The least memory, of some, in which the kind can be extracted, so that slabs are many; 0: of a complex. */
+static uint64_t least_memory(enum kind kind, int own_buffers) {
+    for (uint64_t bytes = 64 << 10; kind != KIND_COMPLEX && bytes < 64 << 20; bytes += bytes / 8) {
+        tc_context_options options;
+        tc_extract_options how;
+        tc_grid *grid = NULL;
+        tc_mesh *mesh = NULL;
+        tc_context_options_init(&options);
+        options.max_memory_bytes = bytes;
+        options.own_buffers = own_buffers;
+        tc_context *context = context_open(&options);
+        bool done = kind_open(context, kind, &grid) == TC_OK;
+        for (int isovalue = 0; isovalue < 2 && done; isovalue++) {
+            kind_how(kind, isovalue, &how);
+            done = tc_extract(grid, &how, &mesh) == TC_OK;
+        }
+        tc_mesh_destroy(mesh);
+        tc_grid_destroy(grid);
+        tc_context_destroy(context);
+        if (done) return bytes;
+    }
+    return 0;
+}
+
+static void test_mode(size_t mode, enum kind kind, const tc_mesh_data expected[2], int step) {
+    watch w = {0};
+    tc_context_options options;
+    tc_context_options_init(&options);
+    options.engine = modes[mode].engine;
+    options.own_buffers = modes[mode].own_buffers;
+    options.max_memory_bytes = modes[mode].memory ? least_memory(kind, modes[mode].own_buffers) : 0;
+    options.progress = watch_progress;
+    options.progress_user = &w;
+    if (modes[mode].memory && !options.max_memory_bytes) return;
+    tc_context *context = context_open(&options);
+    test_kind(context, &w, kind, expected, modes[mode].name, step);
+    tc_context_destroy(context);
+}
+
+int main(int argc, char **argv) {
+    const int step = argc > 1 && !strcmp(argv[1], "all") ? 1 : 7;
+    kinds_fill();
+    tc_context *reference = reference_open();
+    const bool device = device_exists();
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        tc_mesh_data expected[2];
+        tc_mesh *meshes[2];
+        for (int n = 0; n < 2; n++) meshes[n] = kind_expected(reference, kind, n, &expected[n]);
+        for (size_t mode = 0; mode < sizeof modes / sizeof *modes; mode++)
+            if (device || modes[mode].engine == TC_ENGINE_REFERENCE) test_mode(mode, kind, expected, step);
+        for (int n = 0; n < 2; n++) tc_mesh_destroy(meshes[n]);
+    }
+    tc_context_destroy(reference);
+    kinds_release();
+    const int failed = EXPECT_DONE();
+    return failed || device ? failed : SKIPPED;
+}

@@ -1,0 +1,480 @@
+/*
+ * test_misuse.c - every public function with every argument and every field of a struct that cannot be
+ *
+ * All that calls take stands in one struct of arguments, good ones. The table names a call, one place in that struct,
+ * and the values to be written there, each with the statuses that it may end in; test_abi.py sees to it that no
+ * function of the header and no field of a struct that the caller fills is left out. The sizes of structs are tried one
+ * and all, and so are contents of the arrays of cells. After each call the outputs are zero or usable, and a good
+ * extraction has the right bytes. Under a sanitizer this also shows that nothing beyond the arrays is read.
+ */
+#include "misuse_calls.h"
+
+/* ----------------------------------------------------------------------------------------------------------- table */
+
+/* The bits of a value, and the statuses that a call with it may end in. */
+typedef struct bad {
+    uint64_t bits;
+    unsigned may;
+} bad;
+
+enum {
+    OK = 1 << TC_OK,
+    ARGUMENT = 1 << TC_ERROR_ARGUMENT,
+    DATA = 1 << TC_ERROR_DATA,
+    DEVICE = 1 << TC_ERROR_DEVICE,
+    MEMORY = 1 << TC_ERROR_MEMORY,
+    LIMIT = 1 << TC_ERROR_LIMIT,
+    NO_FILE = 1 << TC_ERROR_FILE,
+    REFERENCE_HAS_NONE = ARGUMENT, /* the reference engine has no device to ask or to emit on */
+    ENDS = 0                       /* of a list */
+};
+
+#define F64_NAN   UINT64_C(0x7ff8000000000000)
+#define F64_INF   UINT64_C(0x7ff0000000000000)
+#define F64_MOST  UINT64_C(0x7fefffffffffffff)
+#define F64_LEAST UINT64_C(1)
+#define F64_SIGN  (UINT64_C(1) << 63)
+#define LISTED(...)                                                                                                    \
+    (const bad[]) {                                                                                                    \
+        __VA_ARGS__, { 0, ENDS }                                                                                       \
+    }
+#define I64(n) ((uint64_t)(int64_t)(n))
+
+static const bad null[] = {{0, ARGUMENT}, {0, ENDS}};
+static const bad absent[] = {{0, OK}, {0, ENDS}};
+static const bad dims[] = {{0, ARGUMENT},
+                           {I64(-1), ARGUMENT},
+                           {I64(INT64_MIN), ARGUMENT},
+                           {1, DATA},
+                           {(1 << 24) + 1, DATA},
+                           {UINT64_C(1) << 31, DATA},
+                           {UINT64_C(1) << 32, DATA},
+                           {INT64_MAX, DATA},
+                           {0, ENDS}};
+static const bad first[] = {{(1 << 24) - SIZE, OK},
+                            {(1 << 24) - SIZE + 1, DATA},
+                            {I64(SIZE - (1 << 24)), OK},
+                            {I64(SIZE - (1 << 24) - 1), DATA},
+                            {INT64_MAX, DATA},
+                            {I64(INT64_MIN), DATA},
+                            {0, ENDS}};
+static const bad matrix[] = {{F64_NAN, ARGUMENT},
+                             {F64_INF, ARGUMENT},
+                             {F64_INF | F64_SIGN, ARGUMENT},
+                             {F64_MOST, ARGUMENT},
+                             {F64_LEAST, OK | ARGUMENT},
+                             {0, OK | ARGUMENT},
+                             {0, ENDS}};
+static const bad any_f64[] = {{F64_NAN, OK}, {F64_INF, OK}, {F64_MOST, OK}, {F64_LEAST | F64_SIGN, OK}, {0, ENDS}};
+static const bad isovalues[] = {{F64_NAN, ARGUMENT},
+                                {F64_INF, ARGUMENT},
+                                {F64_INF | F64_SIGN, ARGUMENT},
+                                {F64_MOST, OK | ARGUMENT},
+                                {F64_LEAST, OK | ARGUMENT},
+                                {F64_SIGN, OK | ARGUMENT},
+                                {0, ENDS}};
+static const bad any_i32[] = {{1, OK}, {I64(-1), OK}, {0x80000000, OK}, {0x7fffffff, OK}, {0, ENDS}};
+static const bad any_u32[] = {{1, OK}, {1u << 31, OK}, {UINT32_MAX, OK}, {0, ENDS}};
+static const bad no_enumerator[] = {
+    {8, ARGUMENT}, {I64(-1), ARGUMENT}, {0x7fffffff, ARGUMENT}, {0x80000000, ARGUMENT}, {0, ENDS}};
+static const bad too_many[] = {{UINT64_C(1) << 32, LIMIT}, {UINT64_C(1) << 63, LIMIT}, {UINT64_MAX, LIMIT}, {0, ENDS}};
+
+typedef struct place {
+    const char *call;
+    call_function *run;
+    const char *name;
+    size_t at, bytes;
+    const bad *values;
+} place;
+
+#define AT(call, where, ...)                                                                                           \
+    { #call, call_##call, #where, offsetof(arguments, where), sizeof(((arguments *)0)->where), __VA_ARGS__ }
+
+#define OPTIONS_OF_GRIDS(call)                                                                                         \
+    AT(call, grid_options_at, null), AT(call, grid_options.dims[0], dims), AT(call, grid_options.dims[1], dims),       \
+        AT(call, grid_options.dims[2], dims), AT(call, grid_options.first[0], first),                                  \
+        AT(call, grid_options.first[1], first), AT(call, grid_options.first[2], first),                                \
+        AT(call, grid_options.type, no_enumerator), AT(call, grid_options.samples, null),                              \
+        AT(call, grid_options.matrix[0][0], matrix), AT(call, grid_options.matrix[1][2], matrix),                      \
+        AT(call, grid_options.matrix[2][3], matrix), AT(call, grid_options.has_nodata, any_i32),                       \
+        AT(call, grid_options.nodata, any_f64), AT(call, grid_options.cl_samples, LISTED({8, ARGUMENT})),              \
+        AT(call, grid_options.cl_samples_offset, LISTED({UINT64_MAX, OK})), AT(call, grid_options.axes[0], absent),    \
+        AT(call, grid_options.points, absent), AT(call, grid_options.blanked_samples, absent),                         \
+        AT(call, grid_options.blanked_cells, absent)
+
+#define OPTIONS_OF_EXTRACTION(call)                                                                                    \
+    AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \
+        AT(call, extract_options.method, no_enumerator)
+
+static const place places[] = {
+    AT(tc_device_count, count_at, null),
+    AT(tc_device_get, index, LISTED({I64(-1), ARGUMENT}, {0x7fffffff, ARGUMENT}, {0x80000000, ARGUMENT})),
+    AT(tc_device_get, info_at, null),
+    AT(tc_context_create, context_place, null),
+    AT(tc_context_create, context_options_at, null),
+    AT(tc_context_create, context_options.engine, no_enumerator),
+    AT(tc_context_create, context_options.device, absent),
+    AT(tc_context_create, context_options.cl_context, absent),
+    AT(tc_context_create, context_options.cl_queue, LISTED({8, OK})), /* not looked at without a cl_context */
+    AT(tc_context_create, context_options.max_memory_bytes, LISTED({1, OK}, {UINT64_MAX, OK})),
+    AT(tc_context_create, context_options.work_items, LISTED({2, OK | ARGUMENT}, {1u << 31, OK | ARGUMENT})),
+    AT(tc_context_create, context_options.work_groups, any_u32),
+    AT(tc_context_create, context_options.tile_bricks, any_u32),
+    AT(tc_context_create, context_options.spin_limit, any_u32),
+    AT(tc_context_create, context_options.division, LISTED({I64(-1), OK | ARGUMENT}, {4, OK | ARGUMENT})),
+    AT(tc_context_create, context_options.progress, absent),
+    AT(tc_context_create, context_options.progress_user, LISTED({8, OK})),
+    AT(tc_context_create, context_options.own_buffers, any_i32),
+    AT(tc_context_device, context, null),
+    AT(tc_context_device, info_at, null),
+    AT(tc_context_tuning, context, null),
+    AT(tc_context_tuning, tuning_at, null),
+    AT(tc_context_tuning_keep, context, null),
+    AT(tc_grid_create, context, null),
+    AT(tc_grid_create, grid_place, null),
+    OPTIONS_OF_GRIDS(tc_grid_create),
+    AT(tc_complex_create, context, null),
+    AT(tc_complex_create, grid_place, null),
+    AT(tc_complex_create, complex_options_at, null),
+    AT(tc_complex_create, complex_options.point_count, LISTED({0, DATA})),
+    AT(tc_complex_create, complex_options.point_count, too_many),
+    AT(tc_complex_create, complex_options.points, null),
+    AT(tc_complex_create, complex_options.points, NULL),
+    AT(tc_complex_create, complex_options.type, no_enumerator),
+    AT(tc_complex_create, complex_options.samples, null),
+    AT(tc_complex_create, complex_options.samples, NULL),
+    AT(tc_complex_create, complex_options.tetrahedron_count, LISTED({0, OK}, {(1 << 28) + 1, LIMIT})),
+    AT(tc_complex_create, complex_options.tetrahedron_count, too_many),
+    AT(tc_complex_create, complex_options.tetrahedra, null),
+    AT(tc_complex_create, complex_options.tetrahedra, NULL),
+    OPTIONS_OF_EXTRACTION(tc_count),
+    AT(tc_count, extract_options.normals, any_i32),
+    AT(tc_count, counts_at, null),
+    OPTIONS_OF_EXTRACTION(tc_extract),
+    AT(tc_extract, mesh_place, null),
+    OPTIONS_OF_EXTRACTION(tc_emit),
+    AT(tc_emit, device_mesh_at, null),
+    AT(tc_emit, device_mesh.positions, null),
+    AT(tc_emit, device_mesh.normals, null),
+    AT(tc_emit, device_mesh.triangles, null),
+    AT(tc_mesh_get, mesh, null),
+    AT(tc_mesh_get, mesh_data_at, null),
+    OPTIONS_OF_EXTRACTION(tc_carry),
+    AT(tc_carry, field_at, null),
+    AT(tc_carry, field.type, no_enumerator),
+    AT(tc_carry, field.components, LISTED({0, ARGUMENT}, {I64(-1), ARGUMENT}, {0x80000000, ARGUMENT})),
+    AT(tc_carry, field.components, LISTED({0x7fffffff, ARGUMENT})),
+    AT(tc_carry, field.values, null),
+    AT(tc_carry, field.values, NULL),
+    AT(tc_carry, values, null),
+    AT(tc_carry, values, NULL),
+    AT(tc_carry, value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
+    AT(tc_tetrahedralize, complex_at, null),
+    AT(tc_tetrahedralize, cells_at, null),
+    AT(tc_tetrahedralize, cells.point_count, LISTED({0, DATA}, {POINTS - 1, DATA})),
+    AT(tc_tetrahedralize, cells.point_count, too_many),
+    AT(tc_tetrahedralize, cells.points, null),
+    AT(tc_tetrahedralize, cells.points, NULL),
+    AT(tc_tetrahedralize, cells.cell_count, LISTED({0, OK})),
+    AT(tc_tetrahedralize, cells.cell_count, too_many),
+    AT(tc_tetrahedralize, cells.types, null),
+    AT(tc_tetrahedralize, cells.offsets, null),
+    AT(tc_tetrahedralize, cells.offsets, NULL),
+    AT(tc_tetrahedralize, cells.connectivity, null),
+    AT(tc_tetrahedralize, cells.connectivity, NULL),
+    AT(tc_tetrahedralize, cells.blanked_points, absent),
+    AT(tc_tetrahedralize, cells.blanked_cells, absent),
+    AT(tc_tetrahedralize_grid, complex_at, null),
+    OPTIONS_OF_GRIDS(tc_tetrahedralize_grid),
+};
+
+/* --------------------------------------------------------------------------------------------------------- machinery
+ */
+
+static void expect_good(const world *w, const char *what) {
+    tc_extract_options how;
+    tc_mesh *mesh = w->kept;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_extract_options_init(&how);
+    how.isovalue = 127.5;
+    bool done = tc_extract(w->grid, &how, &mesh) == TC_OK && mesh == w->kept && tc_mesh_get(mesh, &data) == TC_OK;
+    EXPECT(done, "after %s: %s", what, tc_message());
+    const char *difference = done ? mesh_difference(&w->expected, &data) : NULL;
+    EXPECT(!difference, "after %s: %s", what, difference);
+}
+
+/* Runs the call with what it is to be given; it ends in one of the statuses. */
+static tc_status expect_status(const world *w, call_function *run, arguments *a, unsigned may, const char *what) {
+    bool zero = false;
+    tc_status status = run(a, &zero);
+    EXPECT(may >> status & 1, "%s: status %d (%s)", what, (int)status, tc_message());
+    EXPECT(!status || (zero && *tc_message()), "%s: status %d without a message, or output not zero", what,
+           (int)status);
+    expect_good(w, what);
+    return status;
+}
+
+/* The reference has no device: what is asked of it is refused, whatever else is wrong. */
+static unsigned may_end_in(const world *w, const place *p, const bad *value) {
+    bool opencl = w->engine == TC_ENGINE_OPENCL;
+    int devices;
+    if (!strcmp(p->call, "tc_device_get") && tc_device_count(&devices)) return value->may | DEVICE;
+    if (!strcmp(p->call, "tc_emit")) return ARGUMENT;
+    if (value->may & OK && !strcmp(p->call, "tc_context_create") && opencl) return value->may | ARGUMENT | MEMORY;
+    return value->may;
+}
+
+static void test_place(const world *w, const place *p) {
+    static const bad misaligned[] = {{0, ARGUMENT}, {0, ENDS}};
+    for (const bad *value = p->values ? p->values : misaligned; value->may; value++) {
+        arguments a;
+        char what[160];
+        arguments_fill(w, &a);
+        char *at = (char *)&a + p->at;
+        if (p->values)
+            memcpy(at, &value->bits, p->bytes);
+        else
+            *(uintptr_t *)at += 1;
+        snprintf(what, sizeof what, "%s with %s %s0x%llx", p->call, p->name, p->values ? "= " : "misaligned, + ",
+                 p->values ? (unsigned long long)value->bits : 1ull);
+        expect_status(w, p->run, &a, may_end_in(w, p, value), what);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- sizes of structs */
+
+typedef struct sized {
+    const char *name;
+    call_function *run;
+    size_t at, bytes;
+    bool is_result;
+} sized;
+
+#define SIZED(call, where, is_result)                                                                                  \
+    { #call ": " #where, call_##call, offsetof(arguments, where), sizeof(((arguments *)0)->where), is_result }
+
+static const sized sizes[] = {
+    SIZED(tc_device_get, info, true),
+    SIZED(tc_context_device, info, true),
+    SIZED(tc_context_tuning, tuning, true),
+    SIZED(tc_context_create, context_options, false),
+    SIZED(tc_grid_create, grid_options, false),
+    SIZED(tc_complex_create, complex_options, false),
+    SIZED(tc_count, extract_options, false),
+    SIZED(tc_count, counts, true),
+    SIZED(tc_extract, extract_options, false),
+    SIZED(tc_emit, device_mesh, false),
+    SIZED(tc_mesh_get, mesh_data, true),
+    SIZED(tc_carry, field, false),
+    SIZED(tc_tetrahedralize, cells, false),
+    SIZED(tc_tetrahedralize, complex, true),
+    SIZED(tc_tetrahedralize_grid, complex, true),
+};
+
+/* What lies beyond the size is neither read, but has its default, nor written, here 0xee; of a size that cannot be
+ * nothing is written. */
+static void test_size(const world *w, const sized *s, size_t size) {
+    arguments a, good, defaults;
+    bool zero, legitimate = size >= sizeof size && size <= s->bytes && size % sizeof size == 0;
+    char what[128];
+    arguments_fill(w, &a);
+    arguments_fill(w, &good);
+    arguments_fill(w, &defaults);
+    defaults_fill(&defaults);
+    char *at = (char *)&a + s->at, *at_good = (char *)&good + s->at;
+    memcpy(at, &size, sizeof size);
+    if (legitimate) memset(at + size, 0xee, s->bytes - size);
+    if (legitimate && !s->is_result) memcpy(at_good + size, (char *)&defaults + s->at + size, s->bytes - size);
+    tc_status status = s->run(&a, &zero), good_status = s->run(&good, &zero);
+    snprintf(what, sizeof what, "%s of %zu bytes", s->name, size);
+    EXPECT(legitimate || status == TC_ERROR_ARGUMENT, "%s: status %d", what, (int)status);
+    for (size_t n = s->is_result && legitimate ? size : sizeof size; n < s->bytes && s->is_result; n++)
+        if ((unsigned char)at[n] != 0xee) {
+            EXPECT(false, "%s: byte %zu is written", what, n);
+            break;
+        }
+    if (legitimate && !s->is_result)
+        EXPECT(status == good_status && !memcmp(&a.counts, &good.counts, sizeof a.counts),
+               "%s: status %d, and %d with defaults", what, (int)status, (int)good_status);
+    if (s->is_result && !status && s->run != call_tc_tetrahedralize && s->run != call_tc_tetrahedralize_grid)
+        EXPECT(good_status == TC_OK && !memcmp(at + sizeof size, at_good + sizeof size, size - sizeof size),
+               "%s: not what a caller of today gets", what);
+    expect_good(w, what);
+}
+
+static void test_sizes(const world *w) {
+    for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
+        for (size_t size = 0; size <= sizes[n].bytes + 16; size++) test_size(w, &sizes[n], size);
+        test_size(w, &sizes[n], SIZE_MAX);
+        test_size(w, &sizes[n], SIZE_MAX / 2 + 1);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- contents of arrays
+ */
+
+static const int64_t numbers[] = {
+    -1, INT64_MIN, INT64_MAX, INT64_C(1) << 31, INT64_C(1) << 32, POINTS, POINTS + 1, 0, 1, 7, 8, 9};
+enum { NUMBERS = sizeof numbers / sizeof *numbers };
+
+/* Offsets but for the last, which says how long the connectivity is. */
+static void test_cell_arrays(const world *w) {
+    int64_t o[CELLS + 1], c[CORNERS];
+    uint8_t t[CELLS];
+    float p[3 * POINTS];
+    arguments a;
+    for (int at = 0; at < CELLS + CORNERS; at++)
+        for (int n = 0; n < NUMBERS; n++) {
+            memcpy(o, offsets, sizeof o);
+            memcpy(c, connectivity, sizeof c);
+            *(at < CELLS ? &o[at] : &c[at - CELLS]) = numbers[n];
+            for (int type = 0; type < 256; type += at < CELLS ? 1 : 256) {
+                memcpy(t, types, sizeof t);
+                if (at < CELLS) t[0] = (uint8_t)type;
+                arguments_fill(w, &a);
+                a.cells.offsets = o, a.cells.connectivity = c, a.cells.types = t;
+                bool outside = at >= CELLS && (numbers[n] < 0 || numbers[n] >= POINTS);
+                expect_status(w, call_tc_tetrahedralize, &a, outside ? DATA : OK | DATA | ARGUMENT,
+                              "an array of cells");
+            }
+        }
+    static const int64_t beyond[] = {0, INT64_C(1) << 40, (INT64_C(1) << 40) + 4, 4};
+    static const uint8_t between_flat_ones[] = {1, 10, 1};
+    arguments_fill(w, &a);
+    a.cells.cell_count = 3, a.cells.offsets = beyond, a.cells.types = between_flat_ones;
+    expect_status(w, call_tc_tetrahedralize, &a, DATA, "a cell beyond the last offset");
+    static const float coordinates[] = {NAN, INFINITY, -INFINITY, 0x1p127f, -0x1p127f};
+    for (int at = 0; at < 3 * POINTS; at++)
+        for (int n = 0; n < 5; n++) {
+            memcpy(p, points, sizeof p);
+            p[at] = coordinates[n];
+            arguments_fill(w, &a);
+            a.cells.points = p;
+            expect_status(w, call_tc_tetrahedralize, &a, DATA, "a coordinate");
+        }
+}
+
+static void test_tetrahedra(const world *w) {
+    static const uint32_t bad_points[] = {POINTS, 1u << 31, UINT32_MAX};
+    uint32_t t[4 * TETRAHEDRA];
+    for (int at = 0; at < 4 * TETRAHEDRA; at++)
+        for (int n = 0; n < 3; n++) {
+            arguments a;
+            memcpy(t, tetrahedra, sizeof t);
+            t[at] = bad_points[n];
+            arguments_fill(w, &a);
+            a.complex_options.tetrahedra = t;
+            a.extract_options.isovalue = 0.5;
+            tc_grid *grid = NULL;
+            tc_mesh *mesh = NULL;
+            EXPECT(tc_complex_create(w->context, &a.complex_options, &grid) == TC_OK, "%s", tc_message());
+            EXPECT_REFUSED(tc_count(grid, &a.extract_options, &a.counts), TC_ERROR_DATA, "a point that is not there");
+            EXPECT_REFUSED(tc_extract(grid, &a.extract_options, &mesh), TC_ERROR_DATA, "a point that is not there");
+            EXPECT(!mesh, "a mesh of a complex that has no such point");
+            tc_grid_destroy(grid);
+        }
+    expect_good(w, "tetrahedra without their points");
+}
+
+/* Coordinates of structured grids: which arrays, and what is in them. */
+static void test_coordinates(const world *w) {
+    static call_function *const calls[] = {call_tc_grid_create, call_tc_tetrahedralize_grid};
+    static const float wrong[] = {NAN, INFINITY, -INFINITY, 0x1p127f};
+    for (int n = 0; n < 2; n++) {
+        arguments a;
+        for (int axes = 1; axes < 7; axes++) {
+            arguments_fill(w, &a);
+            for (int d = 0; d < 3; d++) a.grid_options.axes[d] = axes >> d & 1 ? axis : NULL;
+            expect_status(w, calls[n], &a, ARGUMENT, "one or two axes");
+        }
+        arguments_fill(w, &a);
+        for (int d = 0; d < 3; d++) a.grid_options.axes[d] = axis;
+        a.grid_options.points = lattice;
+        expect_status(w, calls[n], &a, ARGUMENT, "axes and points");
+        a.grid_options.points = NULL;
+        expect_status(w, calls[n], &a, OK, "axes");
+        a.grid_options.axes[1] = (const float *)((const char *)axis + 1);
+        expect_status(w, calls[n], &a, ARGUMENT, "axes that are not aligned");
+        arguments_fill(w, &a);
+        a.grid_options.points = (const float *)((const char *)lattice + 2);
+        expect_status(w, calls[n], &a, ARGUMENT, "points that are not aligned");
+        a.grid_options.points = lattice;
+        expect_status(w, calls[n], &a, OK, "points");
+        for (int m = 0; m < 4; m++) {
+            const float right = lattice[SAMPLES];
+            lattice[SAMPLES] = wrong[m];
+            expect_status(w, calls[n], &a, DATA, "a point that is not finite");
+            lattice[SAMPLES] = right;
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- all of it */
+
+/* What returns no status. */
+static void test_others(const world *w) {
+    uint64_t peak = 1;
+    tc_context_options_init(NULL);
+    tc_grid_options_init(NULL);
+    tc_extract_options_init(NULL);
+    tc_complex_options_init(NULL);
+    tc_context_destroy(NULL);
+    tc_grid_destroy(NULL);
+    tc_mesh_destroy(NULL);
+    tc_complex_release(NULL);
+    tc_complex zeroed = {0}, made = {.struct_size = sizeof made};
+    tc_cells cells = {sizeof cells, POINTS, points, CELLS, types, offsets, connectivity, NULL, NULL};
+    tc_complex_release(&zeroed);
+    EXPECT(tc_tetrahedralize(&cells, &made) == TC_OK && made.tetrahedron_count > 1, "%s", tc_message());
+    tc_complex_release(&made);
+    tc_complex_release(&made);
+    EXPECT(made.tetrahedron_count == 0 && !made.tetrahedra && !made.cells, "a complex after its release");
+    EXPECT(!tc_context_cl_context(NULL) && !tc_context_cl_queue(NULL), "OpenCL objects of no context");
+    EXPECT(tc_context_device_bytes(NULL, NULL) == 0 && tc_context_device_bytes(NULL, &peak) == 0 && peak == 0,
+           "device bytes of no context");
+    for (unsigned n = 8; n; n <<= 1)
+        EXPECT(tc_type_bytes((tc_type)n) == 0 && !tc_type_name((tc_type)n), "%u is a type", n);
+    EXPECT(tc_version() && tc_message(), "no text");
+    expect_good(w, "calls for nothing");
+}
+
+static void world_open(world *w, tc_engine engine) {
+    arguments a;
+    *w = (world){.engine = engine, .expected.struct_size = sizeof w->expected};
+    arguments_fill(w, &a);
+    w->context = context_open(&a.context_options);
+    EXPECT(tc_grid_create(w->context, &a.grid_options, &w->grid) == TC_OK &&
+               tc_extract(w->grid, &a.extract_options, &w->mesh) == TC_OK &&
+               tc_extract(w->grid, &a.extract_options, &w->kept) == TC_OK &&
+               tc_mesh_get(w->mesh, &w->expected) == TC_OK,
+           "%s", tc_message());
+    if (!w->expected.vertex_count || w->expected.vertex_count > CARRIED_MOST - 1) exit(EXIT_FAILURE);
+}
+
+static void world_close(world *w) {
+    tc_mesh_destroy(w->kept);
+    tc_mesh_destroy(w->mesh);
+    tc_grid_destroy(w->grid);
+    tc_context_destroy(w->context);
+}
+
+static void test_engine(tc_engine engine) {
+    world w;
+    world_open(&w, engine);
+    for (size_t n = 0; n < sizeof places / sizeof *places; n++) test_place(&w, &places[n]);
+    test_sizes(&w);
+    test_tetrahedra(&w);
+    test_coordinates(&w);
+    if (engine == TC_ENGINE_REFERENCE) test_cell_arrays(&w);
+    test_others(&w);
+    world_close(&w);
+}
+
+int main(void) {
+    arrays_fill();
+    test_engine(TC_ENGINE_REFERENCE);
+    bool device = device_exists();
+    if (device) test_engine(TC_ENGINE_OPENCL);
+    int failed = EXPECT_DONE();
+    return failed || device ? failed : SKIPPED;
+}
