@@ -34,10 +34,16 @@ static int unusable_corner(const tc_cells *cells, const uint32_t corners[], int 
     return count;
 }
 
+/* Whether they rise, within the connectivity: its length is the last one. */
+static bool offsets_good(const tc_cells *cells, uint64_t c) {
+    const int64_t *offsets = cells->offsets;
+    return offsets[c] >= 0 && offsets[c + 1] >= offsets[c] && offsets[c + 1] <= offsets[cells->cell_count];
+}
+
 /* Looks at one cell; its corners are there where it is good. */
 static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tally, uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
-    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c]) return CELL_BAD;
+    if (!offsets_good(cells, c)) return CELL_BAD;
     int64_t first = cells->offsets[c], count = cells->offsets[c + 1] - first;
     if (type->shape == CELL_FLAT) {
         tally->flat++;
@@ -110,9 +116,10 @@ static tc_status cell_refuse(const tc_cells *cells, uint64_t c, const uint32_t c
     const cell_type *type = cell_type_get(cells->types[c]);
     const char *name = type->name ? type->name : "unknown";
     unsigned long long number = c;
-    if (cells->offsets[c] < 0 || cells->offsets[c + 1] < cells->offsets[c])
-        return (tc_status)fail(TC_ERROR_DATA, "the offsets of cell %llu, %lld to %lld, do not rise", number,
-                               (long long)cells->offsets[c], (long long)cells->offsets[c + 1]);
+    if (!offsets_good(cells, c))
+        return (tc_status)fail(TC_ERROR_DATA, "the offsets of cell %llu, %lld to %lld, do not rise to the last, %lld",
+                               number, (long long)cells->offsets[c], (long long)cells->offsets[c + 1],
+                               (long long)cells->offsets[cells->cell_count]);
     long long count = (long long)(cells->offsets[c + 1] - cells->offsets[c]);
     if (type->shape == CELL_OTHER)
         return (tc_status)fail(TC_ERROR_DATA,
