@@ -5,6 +5,7 @@
  */
 #include "bytes.h"
 #include "check.h"
+#include "hang.h"
 #include "surface.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -75,6 +76,7 @@ static void extract(bytes *b, uint64_t point_count, const float *points, uint64_
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    hang_watch();
     bytes in = {data, size};
     uint8_t flags = bytes_u8(&in);
     uint64_t point_count = bytes_u8(&in), cell_count = bytes_u8(&in);

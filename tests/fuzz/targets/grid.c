@@ -7,6 +7,7 @@
  */
 #include "bytes.h"
 #include "check.h"
+#include "hang.h"
 #include "surface.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -112,6 +113,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     arrays made = {0};
     tc_grid_options o;
     tc_grid *grid = NULL;
+    hang_watch();
     tc_grid_options_init(&o);
     uint8_t flags = bytes_u8(&in), how = bytes_u8(&in);
     o.type = (tc_type)(bytes_u8(&in) % (TC_F64 + 2));

@@ -7,6 +7,7 @@
  */
 #include "check.h"
 #include "files.h"
+#include "hang.h"
 
 #include "exit_status.h"
 #include "failure.h"
@@ -188,6 +189,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     uint8_t options[OPTION_BYTES];
     read_request request;
     dataset d;
+    hang_watch();
     read_request_init(&request, "");
     if (FORMAT == RAW) describe_raw(&data, &size, &request);
     uint8_t choice = size > 1 ? data[size - 2] : 0;
