@@ -141,7 +141,7 @@ static void check_image(const volume *v) {
     uint64_t count = 1;
     for (int a = 0; a < 3; a++) {
         CHECK(v->dims[a] >= 1);
-        count *= (uint64_t)v->dims[a];
+        CHECK(!__builtin_mul_overflow(count, (uint64_t)v->dims[a], &count));
     }
     check_type(v->type, v->samples);
     touch(v->samples, count * tc_type_bytes(v->type));

@@ -5,6 +5,8 @@
  */
 #include "seeds.h"
 
+#include "../limit_cases.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +37,24 @@ void seed_file(const char *target, const char *name, const void *data, size_t si
     free(all);
 }
 
+static const char *target_of(const char *name) {
+    static const char *const endings[][2] = {{".nrrd", "nrrd"},   {".mha", "metaimage"}, {".vtk", "vtk_legacy"},
+                                             {".vtu", "vtk_xml"}, {".vti", "vtk_xml"},   {".xyz", "plot3d"}};
+    for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
+        if (strstr(name, endings[n][0])) return endings[n][1];
+    return "raw";
+}
+
+/* Sizes at their limits, which mutation seldom makes. Plot3D: without a second file. */
+static void seeds_limits(const char *kind, const limit_case *cases, size_t count) {
+    static const char options[4] = {-1, -1, 4, 0};
+    for (size_t n = 0; n < count; n++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s-%zu", kind, n);
+        seed_file(target_of(cases[n].name), name, cases[n].text, strlen(cases[n].text), NULL, 0, options);
+    }
+}
+
 int main(int argc, char **argv) {
     if (argc != 2) {
         fprintf(stderr, "usage: make_seeds FOLDER\n");
@@ -46,5 +66,7 @@ int main(int argc, char **argv) {
     seeds_vtk();
     seeds_plot3d();
     seeds_grids();
+    seeds_limits("size", size_cases, sizeof size_cases / sizeof *size_cases);
+    seeds_limits("distance", distance_cases, sizeof distance_cases / sizeof *distance_cases);
     return 0;
 }

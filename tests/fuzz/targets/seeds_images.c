@@ -157,7 +157,34 @@ static void add_nifti(int version, int big, int packed, int is_pair) {
     }
 }
 
+/* Headers that ask for a thousand million bytes, of eight packed ones. */
+static void add_bombs(void) {
+    bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
+          bzip2 = bzipped((const unsigned char *)"12345678", 8);
+    nifti_fields f = nifti_plain(1, 2, 8, 32767, 32767, 1);
+    bytes header = nifti_header_bytes(&f), nifti = gzipped(header.data, header.size, AS_GZIP), file = {0};
+    for (int n = 0; n < 2; n++) {
+        const bytes *data = n ? &bzip2 : &gzip;
+        bytes_text(&file, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1000 1000 1000\nencoding: %s\n\n",
+                   n ? "bzip2" : "gzip");
+        bytes_add(&file, data->data, data->size);
+        seed_file("nrrd", n ? "bomb-bzip2" : "bomb-gzip", file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+    }
+    bytes_text(&file, "NDims = 3\nDimSize = 1000 1000 1000\nElementType = MET_UCHAR\nCompressedData = True\n"
+                      "ElementDataFile = LOCAL\n");
+    bytes_add(&file, gzip.data, gzip.size);
+    seed_file("metaimage", "bomb", file.data, file.size, NULL, 0, plain);
+    seed_file("nifti", "bomb", nifti.data, nifti.size, NULL, 0, plain);
+    bytes_free(&file);
+    bytes_free(&nifti);
+    bytes_free(&header);
+    bytes_free(&gzip);
+    bytes_free(&bzip2);
+}
+
 void seeds_images(void) {
+    add_bombs();
     add_raw();
     add_nrrd_types();
     add_nrrd_encodings();
