@@ -306,6 +306,18 @@ static void one_cell_refused(uint8_t type, int64_t count, int64_t odd_point, con
     refused(&cells, TC_ERROR_DATA, word);
 }
 
+/* The last offset is the length of the connectivity, which others may not go beyond. */
+static void offsets_beyond(void) {
+    static const uint8_t types[2] = {10, 10};
+    static const int64_t cases[][3] = {{1000000, 1000004, 8}, {4, 12, 8}, {INT64_MAX - 4, INT64_MAX, 8}};
+    const float points[24] = {0};
+    const int64_t connectivity[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        tc_cells cells = {sizeof cells, 8, points, 2, types, cases[n], connectivity, NULL, NULL};
+        refused(&cells, TC_ERROR_DATA, "do not rise to the last, 8");
+    }
+}
+
 /* Corners have to be somewhere; points of cells that are left out, midpoints of curved ones and others need not. */
 static void positions(void) {
     const float odd[] = {NAN, INFINITY, -INFINITY, 0x1p127f, -FLT_MAX};
@@ -388,6 +400,7 @@ int main(void) {
     blanked();
     for (int n = 0; n < 8; n++) grid_check(n & 1, n & 2, n & 4);
     positions();
+    offsets_beyond();
     refusals();
     return EXPECT_DONE();
 }

@@ -321,7 +321,8 @@ typedef struct tc_cells {
     const float *points; /* x, y, z each; at the corners of cells that are not left out finite and below 2^127 */
     uint64_t cell_count;
     const uint8_t *types;
-    const int64_t *offsets; /* cell_count + 1: where in `connectivity` the points of a cell begin */
+    const int64_t
+        *offsets; /* cell_count + 1: where in `connectivity` the points of a cell begin; the last: its length */
     const int64_t *connectivity;
     const uint8_t *blanked_points; /* nonzero: missing; cells that contain one are left out whole. NULL: none */
     const uint8_t *blanked_cells;  /* nonzero: left out; NULL: none */

@@ -40,10 +40,9 @@ tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_fi
     const uint64_t components = (uint64_t)f.components;
     const carry c = {&f, out, value_count / components};
     status = extract_options_take(&o, options);
-    if (!status && grid->complex) status = complex_request_check(&o);
     if (!status)
-        status = grid->complex ? reference_complex_carry(grid, o.isovalue, &c, &vertex_count)
-                               : reference_carry(grid, &o, &c, &vertex_count);
+        status =
+            grid->complex ? complex_carry(grid, &o, &c, &vertex_count) : reference_carry(grid, &o, &c, &vertex_count);
     if (!status && (vertex_count != c.room || value_count % components))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "room for %llu values, but %llu vertices of %llu each",
                                  (unsigned long long)value_count, (unsigned long long)vertex_count,

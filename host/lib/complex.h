@@ -31,13 +31,11 @@ typedef struct complex_grid {
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
 } complex_grid;
 
-/* As tc_count and tc_extract; the struct of options is complete. */
+/* As tc_count, tc_extract and tc_carry; the struct of options is complete. */
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
 void complex_grid_destroy(tc_grid *grid);
-
-/* TC_ERROR_ARGUMENT for what complexes cannot do. */
-tc_status complex_request_check(const tc_extract_options *options);
 
 /* The sentence for a tetrahedron with a point that is not there. */
 tc_status complex_point_fail(const complex_grid *c);

@@ -83,7 +83,8 @@ tc_status complex_point_fail(const complex_grid *c) {
     return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the complex was made");
 }
 
-tc_status complex_request_check(const tc_extract_options *options) {
+/* TC_ERROR_ARGUMENT for what complexes cannot do. */
+static tc_status complex_request_check(const tc_extract_options *options) {
     if (options->normals)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "normals are made on structured grids only, not on complexes");
     if (options->method != TC_METHOD_TETRA)
@@ -117,4 +118,10 @@ tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_m
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_extract(grid, options->isovalue, mesh);
     return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
+}
+
+tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
+    tc_status status = complex_request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    return reference_complex_carry(grid, options->isovalue, c, vertex_count);
 }

@@ -110,6 +110,33 @@ int data_names_pattern(data_names *names, const char *header_path, const char *t
     return 0;
 }
 
+/* Whether a real path is the folder of the path given, or lies below. */
+static int is_in_folder_of(const char *file, const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    if (!folder) return 0;
+    char *real = realpath(folder, NULL);
+    free(folder);
+    size_t length = real ? strlen(real) : 0;
+    int is_in = real && strncmp(file, real, length) == 0 && (!file[length] || file[length] == '/' || length == 1);
+    free(real);
+    return is_in;
+}
+
+int data_names_open(const char *header_path, const char *path, mapping *m) {
+    *m = (mapping){0};
+    int status = 0;
+    char *file = realpath(path, NULL), *header = realpath(header_path, NULL); /* NULL: cannot be opened either */
+    if (file && !is_in_folder_of(file, header_path) && !(header && is_in_folder_of(file, header)))
+        status = fail(STATUS_INPUT,
+                      "%s: a symbolic link leads it to %s, out of the folder of its header %s; only files in the "
+                      "header's own folder or below are read: put the data itself there",
+                      path, file, header_path);
+    free(file);
+    free(header);
+    return status ? status : mapping_open(path, m);
+}
+
 void data_names_release(data_names *names) {
     for (int64_t i = 0; i < names->count; i++) free(names->paths[i]);
     free(names->paths);

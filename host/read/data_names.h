@@ -1,12 +1,14 @@
 /*
  * data_names.h - the files that a detached header names: one, a list, or a numbered pattern
  *
- * Only names in the header's own folder or below are accepted: no absolute path, no "..".
+ * Only names in the header's own folder or below are accepted: no absolute path, no "..", no symbolic link that leads
+ * elsewhere.
  */
 #ifndef DATA_NAMES_H
 #define DATA_NAMES_H
 
 #include "header_text.h"
+#include "mapping.h"
 
 typedef struct data_names {
     char **paths; /* the header's folder put before each */
@@ -25,6 +27,10 @@ int data_names_is_pattern(const char *text);
 /* Adds the names of "PATTERN FIRST LAST [STEP [AXES]]"; one %d in the pattern, with optional 0 and width.
  * *axes_per_file is left alone where not given. */
 int data_names_pattern(data_names *names, const char *header_path, const char *text, int64_t *axes_per_file);
+
+/* Opens one of the names. 0, or STATUS_INPUT where it cannot be, or where links lead out of the folders that the header
+ * is named in and lies in. */
+int data_names_open(const char *header_path, const char *path, mapping *m);
 
 /* Frees and zeroes. */
 void data_names_release(data_names *names);

@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <nifti2_io.h>
 
@@ -218,11 +219,7 @@ static int find_partner(const char *path, const char *own, const char *wanted, c
     if (length < 4 || strncasecmp(path + length - 4, own, 4)) return 0;
     for (int gz = 0; gz < 2; gz++) {
         int written = snprintf(partner, size, "%.*s%s%s", (int)length - 4, path, wanted, gz ? ".gz" : "");
-        FILE *file = written > 0 && (size_t)written < size ? fopen(partner, "rb") : NULL;
-        if (file) {
-            fclose(file);
-            return 1;
-        }
+        if (written > 0 && (size_t)written < size && access(partner, F_OK) == 0) return 1;
     }
     return 0;
 }

@@ -129,12 +129,16 @@ static void notice_rest(const char *path, uint64_t rest, volume *out) {
                  "%.160s holds more data than its header asks for; the rest is not used", path);
 }
 
+static int open_part(const source *from, const char *path, mapping *m) {
+    return from->files.count ? data_names_open(from->header_path, path, m) : mapping_open(path, m);
+}
+
 /* Checks one file and, where `to` is given, brings its part of the stored array. */
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
                      volume *out) {
     mapping m;
     uint64_t start = 0;
-    int status = mapping_open(path, &m);
+    int status = open_part(from, path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start)) ||
         (status = check_size(from, path, m.size - start, bytes, element_bytes(l->element))) || !to)
@@ -177,7 +181,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
 static int load_raw(const source *from, const char *path, const layout *l, volume *out) {
     mapping m;
     uint64_t start = 0;
-    int status = mapping_open(path, &m);
+    int status = open_part(from, path, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))

@@ -21,7 +21,7 @@ int legacy_fail(const legacy *r, const char *format, ...) {
     va_end(arguments);
     if (r->is_binary) return fail(STATUS_INPUT, "%s: %s (at byte %zu)", r->path, text, r->at);
     int64_t line = 1;
-    for (const unsigned char *p = r->bytes, *end = r->bytes + r->at; p < end; p++) line += *p == '\n';
+    for (size_t n = 0; n < r->at; n++) line += r->bytes[n] == '\n';
     return fail(STATUS_INPUT, "%s: %s (at line %" PRId64 ")", r->path, text, line);
 }
 

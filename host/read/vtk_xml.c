@@ -21,7 +21,10 @@
 /* Bits of vtkGhostType (vtkDataSetAttributes.h). */
 enum { HIDDEN_POINT = 2, DUPLICATE_CELL = 1, HIDDEN_CELL = 32 };
 
-enum { SMALL_BYTES = 16 << 10, CHUNK_BYTES = 128 << 10, ALIGNMENT = 64 };
+#ifndef SMALL_BYTES /* larger arrays have memory of their own */
+#define SMALL_BYTES (16 << 10)
+#endif
+enum { CHUNK_BYTES = 128 << 10, ALIGNMENT = 64 };
 
 typedef struct xml_reader {
     xml_document doc;

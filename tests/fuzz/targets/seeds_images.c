@@ -1,0 +1,194 @@
+/* seeds_images.c - raw, NRRD, MetaImage and NIfTI files; see seeds.h */
+#include "seeds.h"
+
+#include "read_files.h"
+
+static const char plain[4] = {-1, -1, 0, 0}, detached[4] = {-1, -1, 1, 0}, second_value[4] = {1, -1, 0, 0},
+                  second_frame[4] = {-1, 1, 0, 0}, second_of_both[4] = {1, 1, 0, 0};
+
+static void add_raw(void) {
+    for (int type = TC_U8; type <= TC_F64; type++) {
+        bytes file = {0}, samples = test_samples(type, 24, type & 1);
+        char name[32];
+        static const double steps[6] = {1, 2, -3, 10, -20, 0.5};
+        for (int a = 0; a < 3; a++) bytes_put(&file, (uint64_t)(4 - a), 8, 0);
+        bytes_add(&file, steps, sizeof steps);
+        bytes_put(&file, 0, 8, 0);
+        bytes_put(&file, (uint64_t)type, 1, 0);
+        bytes_put(&file, (uint64_t)type & 1, 1, 0);
+        bytes_add(&file, samples.data, samples.size);
+        snprintf(name, sizeof name, "type-%d", type);
+        seed_file("raw", name, file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+        bytes_free(&samples);
+    }
+}
+
+static const char nrrd_common[] = "NRRD0005\n# a comment\ncontent: a test\ndimension: 3\nsizes: 4 3 2\nendian: big\n"
+                                  "labels: \"x\" \"y\" \"z\"\nkey:=value\n";
+
+static void add_nrrd_types(void) {
+    static const char *const types[] = {"uchar",      "int8",  "ushort", "int16_t",   "uint",
+                                        "signed int", "float", "double", "long long", "uint64"};
+    for (int type = 0; type < 10; type++) {
+        bytes samples = test_samples(type, 24, 1), file = {0};
+        char name[32];
+        snprintf(name, sizeof name, "type-%d", type);
+        bytes_text(&file, "%stype: %s\nencoding: raw\nspacings: 1 0.5 2\naxis mins: 1 2 3\ncenters: cell node cell\n\n",
+                   nrrd_common, types[type]);
+        bytes_add(&file, samples.data, samples.size);
+        seed_file("nrrd", name, file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+        bytes_free(&samples);
+    }
+}
+
+static void add_nrrd_encodings(void) {
+    bytes samples = test_samples(TC_I16, 24, 1);
+    bytes gzip = gzipped(samples.data, samples.size, AS_GZIP), bzip2 = bzipped(samples.data, samples.size), text = {0};
+    for (uint64_t i = 0; i < 24; i++) bytes_text(&text, "%.0f ", test_value(TC_I16, i));
+    const bytes *parts[] = {&samples, &gzip, &bzip2, &text};
+    static const char *const names[] = {"raw", "gzip", "bzip2", "ascii"};
+    for (int n = 0; n < 4; n++) {
+        bytes file = {0};
+        char name[32];
+        bytes_text(&file,
+                   "%stype: short\nencoding: %s\nspace: left-posterior-superior\nspace directions: (1,0,0) (0,-1,0.5) "
+                   "(0,0,2)\nspace origin: (10,-20,1e3)\nkinds: domain domain domain\n%s\n",
+                   nrrd_common, names[n], n == 0 ? "byte skip: -1\n" : "");
+        bytes_add(&file, parts[n]->data, parts[n]->size);
+        seed_file("nrrd", names[n], file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+        bytes_text(&file, "%stype: short\nencoding: %s\nline skip: 0\nbyte skip: 0\ndata file: %s\n", nrrd_common,
+                   names[n], n == 3 ? "part%d.raw 1 1 1" : "samples.raw");
+        snprintf(name, sizeof name, "detached-%s", names[n]);
+        seed_file("nrrd", name, file.data, file.size, parts[n]->data, parts[n]->size, detached);
+        bytes_free(&file);
+    }
+    bytes_free(&samples);
+    bytes_free(&gzip);
+    bytes_free(&bzip2);
+    bytes_free(&text);
+}
+
+static void add_nrrd_axes(void) {
+    static const char list[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: LIST 2\n"
+                               "a1.raw\nsub/a1.raw\n",
+                      pattern[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                                  "data file: slice.%03d.raw 1 11 10 2\n",
+                      vector[] = "NRRD0003\ntype: uchar\ndimension: 4\nsizes: 2 2 2 1\nencoding: raw\nkinds: vector "
+                                 "domain domain domain\nspace dimension: 3\nspace directions: none (1,0,0) (0,1,0) "
+                                 "(0,0,1)\n\n12345678",
+                      time[] =
+                          "NRRD0002\ntype: uchar\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\nkinds: domain domain "
+                          "domain time\nspace: 3D-right-handed-time\nspace origin: (0,0,0,1)\n"
+                          "axis maxs: 1 2 3 4\nthicknesses: nan nan 1 nan\nunits: \"mm\" \"mm\" \"mm\" \"s\"\n"
+                          "\n0123456789abcdef";
+    seed_file("nrrd", "list", list, strlen(list), "1234", 4, detached);
+    seed_file("nrrd", "pattern", pattern, strlen(pattern), "1234", 4, detached);
+    seed_file("nrrd", "vector", vector, strlen(vector), NULL, 0, second_value);
+    seed_file("nrrd", "time", time, strlen(time), NULL, 0, second_frame);
+}
+
+static void add_metaimage(void) {
+    static const char common[] = "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementSpacing = 1 0.5 2\n"
+                                 "Offset = 1 -2 1e3\nTransformMatrix = 1 0 0 0 0 1 0 -1 0\nCenterOfRotation = 0 0 0\n"
+                                 "AnatomicalOrientation = RAI\n";
+    static const char *const types[] = {"MET_UCHAR", "MET_CHAR",  "MET_USHORT", "MET_SHORT",     "MET_UINT",
+                                        "MET_INT",   "MET_FLOAT", "MET_DOUBLE", "MET_LONG_LONG", "MET_ULONG_LONG"};
+    for (int n = 0; n < 30; n++) {
+        int type = n % 10, form = n / 10; /* attached, compressed, in a file of its own */
+        bytes samples = test_samples(type, 24, type & 1), packed = gzipped(samples.data, samples.size, AS_ZLIB),
+              file = {0};
+        const bytes *data = form == 1 ? &packed : &samples;
+        char name[32];
+        snprintf(name, sizeof name, "form-%d-type-%d", form, type);
+        bytes_text(&file,
+                   "%sElementType = %s\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n%sElementDataFile = %s\n",
+                   common, types[type], type & 1 ? "True" : "False",
+                   form == 1 ? "CompressedData = True\nCompressedDataSize = 9\n" : "HeaderSize = 0\n",
+                   form == 2 ? "samples.raw" : "LOCAL");
+        if (form < 2) bytes_add(&file, data->data, data->size);
+        seed_file("metaimage", name, file.data, file.size, form == 2 ? data->data : NULL, data->size,
+                  form == 2 ? detached : plain);
+        bytes_free(&file);
+        bytes_free(&packed);
+        bytes_free(&samples);
+    }
+    static const char list[] = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementSize = 1 1 1\n"
+                               "ElementDataFile = LIST 2D\n1.raw\n1.raw\n",
+                      pattern[] = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                                  "ElementDataFile = s%d.raw 1 11 10\n",
+                      text[] =
+                          "NDims = 4\nDimSize = 2 2 2 2\nElementNumberOfChannels = 2\nElementType = MET_CHAR_ARRAY\n"
+                          "BinaryData = False\nPosition = 1 2 3 4\nElementDataFile = LOCAL\n1 2 3 4 5 6 7 8 9 10 "
+                          "11 12 13 14 15 16 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 -1";
+    seed_file("metaimage", "list", list, strlen(list), "1234", 4, detached);
+    seed_file("metaimage", "pattern", pattern, strlen(pattern), "1234", 4, detached);
+    seed_file("metaimage", "text", text, strlen(text), NULL, 0, second_of_both);
+}
+
+static void add_nifti(int version, int big, int packed, int is_pair) {
+    static const int codes[] = {2, 256, 512, 4, 768, 8, 16, 64, 1024, 1280};
+    for (int type = 0; type < 10; type++) {
+        char name[64];
+        nifti_fields f = nifti_plain(version, codes[type], (int)stored_bytes(type) * 8, 4, 3, 2);
+        f.big = big;
+        f.qform = type & 1;
+        f.sform = type >> 1 & 1;
+        f.quatern[1] = 0.5;
+        for (int n = 0; n < 3; n++) f.srow[5 * n] = n + 1;
+        f.slope = type & 1 ? 2 : 0;
+        if (is_pair) f.magic = "ni";
+        if (is_pair) f.vox_offset = 0;
+        bytes samples = test_samples(type, 24, big), header = nifti_header_bytes(&f);
+        if (!is_pair) bytes_add(&header, samples.data, samples.size);
+        bytes *last = is_pair ? &samples : &header, gzip = gzipped(last->data, last->size, AS_GZIP);
+        snprintf(name, sizeof name, "version-%d-big-%d-packed-%d-pair-%d-type-%d", version, big, packed, is_pair, type);
+        const char options[4] = {-1, -1, (char)(is_pair ? 2 : packed), 0};
+        const bytes *stored = packed ? &gzip : last;
+        if (is_pair)
+            seed_file("nifti", name, header.data, version == 1 ? 348 : 540, stored->data, stored->size, options);
+        else
+            seed_file("nifti", name, stored->data, stored->size, NULL, 0, options);
+        bytes_free(&samples);
+        bytes_free(&header);
+        bytes_free(&gzip);
+    }
+}
+
+/* Headers that ask for a thousand million bytes, of eight packed ones. */
+static void add_bombs(void) {
+    bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
+          bzip2 = bzipped((const unsigned char *)"12345678", 8);
+    nifti_fields f = nifti_plain(1, 2, 8, 32767, 32767, 1);
+    bytes header = nifti_header_bytes(&f), nifti = gzipped(header.data, header.size, AS_GZIP), file = {0};
+    for (int n = 0; n < 2; n++) {
+        const bytes *data = n ? &bzip2 : &gzip;
+        bytes_text(&file, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1000 1000 1000\nencoding: %s\n\n",
+                   n ? "bzip2" : "gzip");
+        bytes_add(&file, data->data, data->size);
+        seed_file("nrrd", n ? "bomb-bzip2" : "bomb-gzip", file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+    }
+    bytes_text(&file, "NDims = 3\nDimSize = 1000 1000 1000\nElementType = MET_UCHAR\nCompressedData = True\n"
+                      "ElementDataFile = LOCAL\n");
+    bytes_add(&file, gzip.data, gzip.size);
+    seed_file("metaimage", "bomb", file.data, file.size, NULL, 0, plain);
+    seed_file("nifti", "bomb", nifti.data, nifti.size, NULL, 0, plain);
+    bytes_free(&file);
+    bytes_free(&nifti);
+    bytes_free(&header);
+    bytes_free(&gzip);
+    bytes_free(&bzip2);
+}
+
+void seeds_images(void) {
+    add_bombs();
+    add_raw();
+    add_nrrd_types();
+    add_nrrd_encodings();
+    add_nrrd_axes();
+    add_metaimage();
+    for (int n = 0; n < 16; n++) add_nifti(1 + (n & 1), n >> 1 & 1, n >> 2 & 1, n >> 3);
+}

@@ -1,0 +1,159 @@
+/* seeds_vtk.c - VTK legacy and VTK XML files of every kind of grid and in every encoding; see seeds.h */
+#include "seeds.h"
+
+#include "vtk_xml_files.h"
+
+static const char plain[4] = {-1, -1, 0, 0};
+static const double cube_links[] = {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 10, 11}, ends[] = {8, 12}, types[] = {12, 10};
+
+/* ---------------------------------------------------------------------------------------------------------------- XML
+ */
+
+static void xml_section(vtk_writer *w, const char *element, int type, const char *name, int components, int count) {
+    double values[64];
+    for (int i = 0; i < count; i++) values[i] = test_value(type, (uint64_t)i);
+    bytes_text(&w->text, "<%s>\n", element);
+    array_add(w, type, name, components, values, (uint64_t)count);
+    bytes_text(&w->text, "</%s>\n", element);
+}
+
+static void xml_coordinates(vtk_writer *w, enum grid_kind kind) {
+    static const double axis[] = {0, 1, 3, 4.5};
+    double points[36];
+    for (int i = 0; i < 36; i++) points[i] = i * 29 % 97;
+    if (kind == GRID_RECTILINEAR) {
+        bytes_text(&w->text, "<Coordinates>\n");
+        array_add(w, TC_F32, "x", 1, axis, 3);
+        array_add(w, TC_F64, "y", 1, axis, 2);
+        array_add(w, TC_I16, "z", 1, axis, 2);
+        bytes_text(&w->text, "</Coordinates>\n");
+    } else if (kind != GRID_UNIFORM) {
+        bytes_text(&w->text, "<Points>\n");
+        array_add(w, TC_F32, "Points", 3, points, 36);
+        bytes_text(&w->text, "</Points>\n");
+    }
+    if (kind != GRID_UNSTRUCTURED) return;
+    bytes_text(&w->text, "<Cells>\n");
+    array_add(w, STORED_I64, "connectivity", 1, cube_links, 12);
+    array_add(w, TC_I32, "offsets", 1, ends, 2);
+    array_add(w, TC_U8, "types", 1, types, 2);
+    bytes_text(&w->text, "</Cells>\n");
+}
+
+/* 3 x 2 x 2 points, or 12 of two cells. */
+static void add_xml(enum grid_kind kind, const vtk_shape *shape) {
+    static const char *const names[] = {"ImageData", "RectilinearGrid", "StructuredGrid", "UnstructuredGrid"};
+    char name[64];
+    vtk_writer w;
+    vtk_xml_begin(&w, shape, names[kind]);
+    bytes_text(&w.text, "<%s WholeExtent=\"-1 1 0 1 0 1\" Origin=\"1 2 3\" Spacing=\"1 0.5 2\">\n", names[kind]);
+    if (kind == GRID_UNSTRUCTURED)
+        bytes_text(&w.text, "<Piece NumberOfPoints=\"12\" NumberOfCells=\"2\">\n");
+    else
+        bytes_text(&w.text, "<Piece Extent=\"-1 1 0 1 0 1\">\n");
+    xml_section(&w, "PointData", kind == GRID_UNIFORM ? TC_U8 : TC_F32, "a", 1, 12);
+    xml_section(&w, "PointData", TC_U8, "vtkGhostType", 1, 12);
+    xml_section(&w, "CellData", TC_F64, "b", 3, 6);
+    xml_coordinates(&w, kind);
+    bytes_text(&w.text, "</Piece></%s>\n", names[kind]);
+    bytes file = vtk_xml_finish(&w);
+    snprintf(name, sizeof name, "kind-%d-encoding-%d-header-%d-big-%d-packed-%d", (int)kind, shape->encoding,
+             shape->header_bytes, shape->big, shape->is_compressed);
+    seed_file("vtk_xml", name, file.data, file.size, NULL, 0, plain);
+    bytes_free(&file);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- legacy
+ */
+
+static void legacy_values(bytes *b, int binary, int stored, uint64_t count) {
+    for (uint64_t i = 0; i < count; i++)
+        if (binary)
+            bytes_value(b, stored, test_value(stored, i), 1);
+        else
+            bytes_text(b, "%.9g ", test_value(stored, i));
+    bytes_text(b, "\n");
+}
+
+static void legacy_integers(bytes *b, int binary, size_t size, const double *values, int count) {
+    for (int i = 0; i < count; i++)
+        if (binary)
+            bytes_put(b, (uint64_t)values[i], size, 1);
+        else
+            bytes_text(b, "%.0f ", values[i]);
+    bytes_text(b, "\n");
+}
+
+static void legacy_cells(bytes *b, int binary, int version) {
+    static const double offsets[] = {0, 8, 12}, lists[] = {8, 0, 1, 3, 2, 4, 5, 7, 6, 4, 8, 9, 10, 11};
+    if (version == 5) {
+        bytes_text(b, "CELLS 3 12\nOFFSETS vtktypeint64\n");
+        legacy_integers(b, binary, 8, offsets, 3);
+        bytes_text(b, "CONNECTIVITY vtktypeint64\n");
+        legacy_integers(b, binary, 8, cube_links, 12);
+    } else {
+        bytes_text(b, "CELLS 2 14\n");
+        legacy_integers(b, binary, 4, lists, 14);
+    }
+    bytes_text(b, "CELL_TYPES 2\n");
+    legacy_integers(b, binary, 4, types, 2);
+}
+
+static void legacy_geometry(bytes *b, enum grid_kind kind, int binary, int version) {
+    static const char *const names[] = {"STRUCTURED_POINTS", "RECTILINEAR_GRID", "STRUCTURED_GRID",
+                                        "UNSTRUCTURED_GRID"};
+    bytes_text(b, "# vtk DataFile Version %d.%d\na title\n%s\nDATASET %s\n", version, version == 5,
+               binary ? "BINARY" : "ASCII", names[kind]);
+    if (kind != GRID_UNSTRUCTURED) bytes_text(b, "DIMENSIONS 3 2 2\n");
+    if (kind == GRID_UNIFORM)
+        bytes_text(b, "ORIGIN 10 20 -30\n%s 0.5 2 3\n", version == 5 ? "SPACING" : "ASPECT_RATIO");
+    for (int a = 0; a < 3 && kind == GRID_RECTILINEAR; a++) {
+        bytes_text(b, "%c_COORDINATES %d float\n", 'X' + a, a ? 2 : 3);
+        legacy_values(b, binary, TC_F32, a ? 2 : 3);
+    }
+    if (kind >= GRID_CURVILINEAR) {
+        bytes_text(b, "POINTS 12 double\n");
+        legacy_values(b, binary, TC_F64, 36);
+    }
+    if (kind == GRID_UNSTRUCTURED) legacy_cells(b, binary, version);
+}
+
+static void legacy_attributes(bytes *b, int binary) {
+    bytes_text(b, "CELL_DATA 2\nSCALARS c bit 1\nLOOKUP_TABLE default\n");
+    bytes_text(b, binary ? "\200\n" : "1 0\n");
+    bytes_text(b, "POINT_DATA 12\nSCALARS a short\nLOOKUP_TABLE t\n");
+    legacy_values(b, binary, TC_I16, 12);
+    bytes_text(b, "METADATA\nINFORMATION 0\n\n");
+    bytes_text(b, "LOOKUP_TABLE t 2\n");
+    bytes_text(b, binary ? "12345678\n" : "0 0 0 1 1 1 1 1\n");
+    bytes_text(b, "VECTORS v float\n");
+    legacy_values(b, binary, TC_F32, 36);
+    bytes_text(b, "FIELD FieldData 2\nf%%20g 2 12 double\n");
+    legacy_values(b, binary, TC_F64, 24);
+    bytes_text(b, "h 1 12 vtkIdType\n");
+    legacy_values(b, binary, TC_I32, 12);
+}
+
+static void add_legacy(enum grid_kind kind, int binary, int version) {
+    char name[64];
+    bytes file = {0};
+    legacy_geometry(&file, kind, binary, version);
+    legacy_attributes(&file, binary);
+    snprintf(name, sizeof name, "kind-%d-binary-%d-version-%d", (int)kind, binary, version);
+    seed_file("vtk_legacy", name, file.data, file.size, NULL, 0, plain);
+    bytes_free(&file);
+}
+
+void seeds_vtk(void) {
+    for (int kind = GRID_UNIFORM; kind <= GRID_UNSTRUCTURED; kind++) {
+        for (int n = 0; n < 32; n++) {
+            const vtk_shape shape = {.encoding = n & 3,
+                                     .header_bytes = n & 4 ? 8 : 4,
+                                     .big = n >> 3 & 1,
+                                     .is_compressed = n >> 4,
+                                     .block_bytes = 32};
+            if (shape.encoding != AS_TEXT || n < 4) add_xml((enum grid_kind)kind, &shape);
+        }
+        for (int n = 0; n < 4; n++) add_legacy((enum grid_kind)kind, n & 1, n & 2 ? 5 : 3);
+    }
+}
