@@ -53,6 +53,9 @@ TABLES = {
 # Entries that nothing reads, or that mean the same, by their names: why.
 SAME = {}
 
+# For the quick run.
+SAMPLE = ("tetrahedron_cases[5][1][1][2]",)
+
 # A string, a comment, a designator, a brace, a comma; else an entry.
 TOKEN = re.compile(r'"[^"]*"|/\*.*?\*/|\[(\w+)\] = |[{},]|\w+|\s+|.', re.S)
 
@@ -84,8 +87,10 @@ def mutants(file, text, tables):
         if start < 0 or text.count(beginning) != 1:
             raise ValueError(f"{file}: no table begins with {beginning!r}")
         name = re.sub(r"#define |cell_type |\[.*| *= *$", "", beginning).strip()
+        shape = None  # of the row of types[]; of cells that are not cut nothing else is read
         for at, path, entry in entries_of(text, start + len(beginning)):
-            if entry.startswith(("HEXAHEDRON", "VOXEL", "WEDGE")):
+            shape = entry if entry in SHAPES else shape
+            if entry.startswith(("HEXAHEDRON", "VOXEL", "WEDGE")) or (entry != shape and shape in SHAPES[:2]):
                 continue
             what = name + "".join(f"[{n}]" for n in path)
-            yield Mutant(file, entry, change(path, entry), what, at=at, same=SAME.get(what))
+            yield Mutant(file, entry, change(path, entry), what, at=at, same=SAME.get(what), sample=what in SAMPLE)

@@ -4,8 +4,8 @@
 Usage: mutants.py SOURCE WORK [--only WORD]... [--sample] [--workers N] [--list]
 
 SOURCE is never changed: each of N workers has a copy of it and a build folder under WORK, which a later run uses again.
-First every test that is needed has to pass without a fault. Then the mutants of table.py and entries.py are planted one
-at a time, what the next test needs is built, and tests are run, the cheapest first, until one fails. A crash is a
+The mutants of table.py and entries.py are planted one at a time, what the next test needs is built, and tests are run,
+the cheapest first, until one fails; before it is used for the first time, each has to pass without a fault. A crash is a
 failure, and so is more processor time than ten times what the test needs otherwise and three seconds.
 
 A mutant that no test catches is an error, unless the table says why it is the same program; one that the table calls
@@ -58,6 +58,11 @@ def target_of(test):
     return "tetracubes_tool" if test.program.endswith(".py") else test.program
 
 
+def write_text(path, text):
+    with open(path, "w", encoding="utf-8") as f:
+        f.write(text)
+
+
 def write_if_changed(path, content):
     try:
         with open(path, "rb") as f:
@@ -82,7 +87,8 @@ def files_below(folder):
 class Worker:
     """A copy of the tree with a build folder of its own."""
 
-    def __init__(self, source, work, number):
+    def __init__(self, source, work, number, jobs):
+        self.jobs = jobs
         self.folder = os.path.join(work, str(number))
         self.source = os.path.join(self.folder, "source")
         self.build_folder = os.path.join(self.folder, "build")
@@ -105,7 +111,7 @@ class Worker:
             raise TableError(f"{' '.join(command)}:\n{done.stdout[-3000:]}")
 
     def build(self, targets):
-        self.must(["cmake", "--build", self.build_folder, "-j1", "--target", *targets])
+        self.must(["cmake", "--build", self.build_folder, f"-j{self.jobs}", "--target", *targets])
 
     def cache(self, name):
         """Kernels of a mutant are never found in another's cache, and those without a fault are built once."""
@@ -142,14 +148,14 @@ class Worker:
         passed = status == 0 or (status == SKIPPED and not test.device)
         return passed, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
-    def check_without_fault(self, names):
-        """All tests in turn pass: kernels that they need are built twice, so that both costs are known."""
-        self.build(sorted({target_of(table.TESTS[name]) for name in names}))
-        for name in names:
-            passed, cost = self.run(table.TESTS[name], self.cache("none"), 3600)
-            if not passed:
-                raise TableError(f"{name} fails without a fault; in {self.folder}")
-            self.usual[name] = cost
+    def check_without_fault(self, name):
+        """The test passes, once: its first run builds its kernels, as that of a mutated kernel has to."""
+        if name in self.usual:
+            return
+        self.build([target_of(table.TESTS[name])])
+        passed, self.usual[name] = self.run(table.TESTS[name], self.cache("none"), 3600)
+        if not passed:
+            raise TableError(f"{name} fails without a fault; in {self.folder}")
 
     def plant(self, mutant):
         """The mutant's fate: a Result."""
@@ -159,19 +165,19 @@ class Worker:
         changed, line = planted(text, mutant)
         start = time.monotonic()
         caught = None
-        try:
-            with open(path, "w", encoding="utf-8") as f:
-                f.write(changed)
-            cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "none")
-            for name in table.tests_of(mutant):
-                test = table.TESTS[name]
+        cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "none")
+        for name in table.tests_of(mutant):
+            self.check_without_fault(name)
+            test = table.TESTS[name]
+            try:
+                write_text(path, changed)
                 self.build([target_of(test)])
-                if not self.run(test, cache, int(10 * self.usual[name]) + 3)[0]:
-                    caught = name
-                    break
-        finally:
-            with open(path, "w", encoding="utf-8") as f:
-                f.write(text)
+                passed, _ = self.run(test, cache, int(10 * self.usual[name]) + 3)
+            finally:
+                write_text(path, text)
+            if not passed:
+                caught = name
+                break
         if mutant.same:
             verdict = "wrongly called the same" if caught else "the same"
         else:
@@ -209,12 +215,10 @@ def run_all(source, work, mutants, worker_count):
     results, errors, waiting = [], [], queue.Queue()
     for mutant in mutants:
         waiting.put(mutant)
-    needed = sorted({name for m in mutants for name in table.tests_of(m)}, key=list(table.TESTS).index)
 
     def work_through(number):
         try:
-            worker = Worker(source, work, number)
-            worker.check_without_fault(needed)
+            worker = Worker(source, work, number, 2 if worker_count == 1 else 1)
             while not errors:
                 r = worker.plant(waiting.get_nowait())
                 results.append(r)
@@ -266,6 +270,7 @@ def main():
         mutants = [m for m in mutants if any(w in m.file or w in m.what or w in m.old for w in arguments.only)]
     if arguments.sample:
         mutants = [m for m in mutants if m.sample]
+        arguments.workers = 1
     if arguments.list:
         for m in mutants:
             print(f"{m.file}: {m.what}: {m.old!r} -> {m.new!r}")

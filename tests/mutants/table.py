@@ -77,7 +77,7 @@ TESTS = {
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference"]
-DEVICE = ["test_patterns", "test_random, u8"]
+DEVICE = ["test_random, u8", "test_patterns"]
 READERS = ["test_read", "test_dataset", "test_read_hostile"]
 
 # Tests for the faults of a file, or of all in a folder, in the order in which they are run.
@@ -111,7 +111,6 @@ FILES = {
     "host/read/average.c": ["test_dataset", "test_vtk_legacy"],
     "host/read/": READERS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
-    "kernels/vertex.cl": ["test_patterns", "test_random, u8"],
     "kernels/cells.cl": ["test_random, u8 with missing"],
     "kernels/": DEVICE,
 }

@@ -2,7 +2,7 @@
 from mutant import group
 
 GROUPS = {"tests": ("test_device, 64 work-items",)}
-TILES = {"tests": ("test_patterns", "test_random, u8", "test_device, tiles")}
+TILES = {"tests": ("test_device, tiles",)}
 SLABS = {"tests": ("test_device, slabs", "test_device, copied slabs")}
 AGAIN = {"tests": ("test_again, u8", "test_again, u8 in slabs")}
 MISSING = {"tests": ("test_random, u8 with missing",)}
@@ -33,7 +33,7 @@ MUTANTS = [
     *group("kernels/sign.cl",
            ("return sign == SIGN_INSIDE ? ~0ul : 0;", "return 0;", "words of inside bricks"),
            ("<= (samples64)(BITS)s->inside_span, mask64)", "< (samples64)(BITS)s->inside_span, mask64)",
-            "inside: the greatest value is out", {"sample": True}),
+            "inside: the greatest value is out"),
            ("uint left = s->nx - 64 * w;\n    ulong start", "uint left = s->nx;\n    ulong start",
             "words: rows end where the grid does", {"same": "what is past the end of a row is masked in words, and makes "
                                                             "ranges wider than need be, never narrower"}),
@@ -142,8 +142,7 @@ MUTANTS = [
            ("cell_count += sums.cells;", "cell_count = sums.cells;", "active cells of the last tile", TILES),
            ("shared[0] = emitting;", "shared[0] = emitting - 1;", "bricks of a tile with one that emits", TILES)),
     *group("kernels/crossing.cl",
-           ("return (float)DIVIDE(iso - a, b - a);", "return (float)DIVIDE(b - iso, b - a);", "t runs the other way",
-            {"sample": True}),
+           ("return (float)DIVIDE(iso - a, b - a);", "return (float)DIVIDE(b - iso, b - a);", "t runs the other way"),
            ("REAL scale = isinf(b - a) ? (REAL)0.5f : (REAL)1;", "REAL scale = 1;", "differences overflow",
             {"tests": ("test_device, division 3", "test_random, f32")}),
            ("(inexact || (kept & 1))", "inexact", "division in integers: ties go down",
@@ -255,7 +254,7 @@ MUTANTS = [
     *group("kernels/complex_tile.cl",
            ("tiles[TILE_WORDS * (number - 1) + channel]", "tiles[TILE_WORDS * number + channel]", "tiles: off by one"),
            ("uint2 before = *running;\n    *running += value;\n    return before;", "*running += value;\n    return *running;",
-            "prefix sums: off by one", {"sample": True}),
+            "prefix sums: off by one"),
            ("prefix[channel] + scan_own_sum(k.tiles, number, channel)", "prefix[channel]", "tiles: prefixes end before them")),
     *group("kernels/complex_join.cl",
            ("return (uint2)(min(a, b), max(a, b));", "return (uint2)(a, b);", "edges of two orders are two edges"),
