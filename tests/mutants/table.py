@@ -41,11 +41,15 @@ TESTS = {
     "test_api, reference": test("test_api"),
     "test_patterns, reference": test("test_patterns"),
     "test_random, reference": test("test_random"),
+    "test_rare, reference": test("test_rare"),
     "test_curvilinear, reference": test("test_curvilinear"),
     "test_complex, reference": test("test_complex"),
     "test_hybrid, reference": test("test_hybrid"),
     "test_patterns": test("test_patterns", device=True),
     "test_random, u8": test("test_random", "* u8, *nodata 0 *normals 0", device=True),
+    "test_rare, alternating": test("test_rare", "alternating*", device=True),
+    "test_rare, one sample": test("test_rare", "one sample*", device=True),
+    "test_rare, zeros": test("test_rare", "*zeros missing", device=True),
     "test_again, u8": test("test_again", "u8, 1 work-items", device=True),
     "test_again, u8 in slabs": test("test_again", "u8, 1 work-items, slabs", device=True),
     "test_again, f32 with missing": test("test_again", "f32 with missing, 1 work-items", device=True),
@@ -77,7 +81,7 @@ TESTS = {
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference"]
-DEVICE = ["test_random, u8", "test_patterns"]
+DEVICE = ["test_random, u8", "test_patterns", "test_rare, one sample"]
 READERS = ["test_read", "test_dataset", "test_read_hostile"]
 
 # Tests for the faults of a file, or of all in a folder, in the order in which they are run.

@@ -4,6 +4,7 @@ from mutant import group
 GROUPS = {"tests": ("test_device, 64 work-items",)}
 TILES = {"tests": ("test_device, tiles",)}
 SLABS = {"tests": ("test_device, slabs", "test_device, copied slabs")}
+SINGLE = {"tests": ("test_rare, one sample",)}
 AGAIN = {"tests": ("test_again, u8", "test_again, u8 in slabs")}
 MISSING = {"tests": ("test_random, u8 with missing",)}
 F32 = {"tests": ("test_random, f32",)}
@@ -18,7 +19,7 @@ MUTANTS = [
            ("missing = convert_char16((bits & EXPONENT) == EXPONENT);", "missing = convert_char16(bits == EXPONENT);",
             "missing: infinity alone", F32),
            ("| convert_char16(bits == (BITS)s->nodata_bits[1]);", ";", "missing: minus zero is not 0",
-            {"tests": ("test_random, f32 with normals", "test_again, f32 with missing")}),
+            {"tests": ("test_rare, zeros",)}),
            ("bytes.x | bytes.y << 8", "bytes.x | bytes.y << 7", "masks: the second eight bits one too low",
             {"tests": ("test_complex, u8",)}),
            ("((ulong)(z - s->sample_z) * s->ny + y) * s->nx;", "((ulong)(z - s->sample_z) * s->ny + y) * s->ny;",
@@ -85,8 +86,10 @@ MUTANTS = [
            ("*vertex_count = yz + lanes_popcount(k->type[5]);", "*vertex_count = yz;", "vertices on diagonals in yz"),
            ("y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46", "y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 45",
             "offsets of edge types: packing"),
-           ("((uint)(packed >> 14) & 0x7f)", "((uint)(packed >> 14) & 0x3f)", "offsets of edge types: 64 crossed edges in x"),
-           ("((uint)(packed >> 21) & 0xff)", "((uint)(packed >> 21) & 0x7f)", "offsets of edge types: 128 crossed in x and y")),
+           ("((uint)(packed >> 14) & 0x7f)", "((uint)(packed >> 14) & 0x3f)", "offsets of edge types: 64 crossed edges in x",
+            {"tests": ("test_rare, alternating",)}),
+           ("((uint)(packed >> 21) & 0xff)", "((uint)(packed >> 21) & 0x7f)", "offsets of edge types: 128 crossed in x and y",
+            {"tests": ("test_rare, alternating",)})),
     *group("kernels/count.cl",
            ("t.z0 = s->z0 + n / groups_y * s->tile_layers * BRICK_PLANES;", "t.z0 = s->z0 + n / groups_y * BRICK_PLANES;",
             "tiles of several layers", TILES),
@@ -96,9 +99,9 @@ MUTANTS = [
            ("y < min(t.y1 + 1, s->ny); y += BRICK_ROWS", "y < t.y1; y += BRICK_ROWS", "halo: the next plane's last row",
             TILES),
            ("for (uint n = 1; n < 8; n++) {\n        const uint across", "for (uint n = 1; n < 7; n++) {\n        const uint across",
-            "uniform bricks: the last neighbour's corner", TILES),
+            "uniform bricks: the last neighbour's corner", SINGLE),
            ("(behind[up + across].sign ^ sign);\n    const bool halo", "0;\n    const bool halo",
-            "uniform bricks: the last neighbour's sign", TILES),
+            "uniform bricks: the last neighbour's sign", SINGLE),
            ("const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);",
             "const bool halo = !up && t.y1 < s->ny;", "uniform bricks: the halo in z", TILES),
            ("return x + (lanes)(0, 0, 0, 0, x.s0123);", "return x;", "rows of a brick: prefix sums"),
@@ -109,7 +112,7 @@ MUTANTS = [
             "bricks of a tile: sums"),
            ("*b = rows_shifted(lanes_up(at, last), lanes_up(next, last_next));",
             "*b = rows_shifted(lanes_up(at, last), lanes_up(next, last));", "the next brick's first row at x + 64"),
-           ("range_sign(s, here[up + deep + across]) == sign;", "true;", "later isovalues: a run's last neighbour", AGAIN),
+           ("range_sign(s, here[up + deep + across]) == sign;", "true;", "later isovalues: a run's last neighbour", SINGLE),
            ("if (!s->ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;", "",
             "first visit: runs at a tile's end go by ranges that are not there", TILES),
            ("sums.triangles += (uint)lanes_sum(c.triangles);", "sums.triangles += (uint)lanes_sum(c.triangles) + 1;",
