@@ -141,6 +141,7 @@ static tc_complex_options options_of(const tc_complex *complex, const cell_list 
 /* Few values, so that many are ties; or all that the type has. */
 static double random_value(tc_type type, bool few) {
     if (few) return (double)random_below(5) - (type_least(type) < 0 ? 2 : 0);
+    if (random_below(16) == 0) return random_below(2) ? type_most(type) : type_least(type);
     double share = random_between(0, 1), value = share * type_most(type) + (1 - share) * type_least(type);
     return type_is_floating(type) ? value : floor(value);
 }
