@@ -3,7 +3,7 @@
  *
  * EXPECT(condition, format, ...) prints file, line and text where the condition does not hold, and goes on. Tests of
  * many cases ask test_chosen(name) for each: TEST_ONLY in the environment, a pattern as of the shell's, leaves others
- * out.
+ * out. With TEST_STOP there the first failure is the last.
  */
 #ifndef EXPECT_H
 #define EXPECT_H
@@ -23,6 +23,7 @@ static long expect_checks, expect_failures;
             printf("%s:%d: ", __FILE__, __LINE__);                                                                     \
             printf(__VA_ARGS__);                                                                                       \
             printf("\n");                                                                                              \
+            if (getenv("TEST_STOP")) exit(EXIT_FAILURE);                                                               \
         }                                                                                                              \
     } while (0)
 

@@ -37,9 +37,10 @@ SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f6
 
 
 def chosen():
-    """Arguments for unittest: TEST_ONLY in the environment is a pattern for the names of the tests that are run."""
+    """Arguments for unittest, as expect.h has it: TEST_ONLY in the environment chooses tests, TEST_STOP ends with the
+    first failure."""
     only = os.environ.get("TEST_ONLY")
-    return ["-k", only] if only else []
+    return (["-k", only] if only else []) + (["-f"] if os.environ.get("TEST_STOP") else [])
 
 
 def tool(*arguments, env=None, stdout=subprocess.PIPE, cwd=None):

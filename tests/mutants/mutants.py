@@ -125,7 +125,7 @@ class Worker:
     def run(self, test, cache, processor_seconds):
         """Whether the test passes, and the processor time that it took."""
         environment = dict(os.environ, TETRACUBES_CACHE_DIR="", POCL_CACHE_DIR=cache, TEST_ONLY=test.only,
-                           POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
+                           TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
         if not test.device:
             environment["OCL_ICD_VENDORS"] = os.devnull
         command = [os.path.join(self.build_folder, "tests", test.program), *test.arguments]

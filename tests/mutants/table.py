@@ -80,7 +80,7 @@ TESTS = {
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
-             "test_hybrid, reference"]
+             "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
 DEVICE = ["test_random, u8", "test_patterns", "test_rare, one sample"]
 READERS = ["test_read", "test_dataset", "test_read_hostile"]
 
@@ -92,7 +92,7 @@ FILES = {
     "host/lib/reference.c": REFERENCE,
     "host/lib/reference_crossing.inc": REFERENCE,
     "host/lib/reference_vertex.inc": REFERENCE,
-    "host/lib/reference_complex.c": ["test_complex, reference"],
+    "host/lib/reference_complex.c": ["test_complex, reference", "test_complex, u8"],
     "host/lib/cell_split.c": ["test_tetrahedralize"],
     "host/lib/tetrahedralize.c": ["test_tetrahedralize"],
     "host/lib/complex_make.c": ["test_tetrahedralize"],
