@@ -36,6 +36,7 @@ COPIED = ("host", "kernels", "tests", "CMakeLists.txt")
 CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF"]
 MEMORY_MOST = 16 << 30
 QUICK_KERNELS = "-cl-opt-disable"  # built in a fifth of the time; what they compute is the same
+KERNELS_REFUSED = "does not build the kernels"  # as host/lib/program.c says it
 SKIPPED = 77  # what a test says of its part for a device
 Result = collections.namedtuple("Result", "mutant line verdict test seconds")
 
@@ -114,6 +115,13 @@ class Worker:
     def build(self, targets):
         self.must(["cmake", "--build", self.build_folder, f"-j{self.jobs}", "--target", *targets])
 
+    def builds(self, targets):
+        try:
+            self.build(targets)
+            return True
+        except TableError:
+            return False
+
     def cache(self, name):
         """Kernels of a mutant are never found in another's cache, and those without a fault are built once."""
         path = os.path.join(self.folder, "cache-" + name)
@@ -123,7 +131,7 @@ class Worker:
         return path
 
     def run(self, test, cache, processor_seconds):
-        """Whether the test passes, and the processor time that it took."""
+        """Whether the test passes, the processor time that it took, and what it said."""
         environment = dict(os.environ, TETRACUBES_CACHE_DIR="", POCL_CACHE_DIR=cache, TEST_ONLY=test.only,
                            TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
         if not test.device:
@@ -139,8 +147,9 @@ class Worker:
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        with subprocess.Popen(command, env=environment, cwd=self.folder, preexec_fn=limit,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as child:
+        said = os.path.join(self.folder, "output.log")
+        with open(said, "wb") as output, subprocess.Popen(command, env=environment, cwd=self.folder, preexec_fn=limit,
+                                                          stdout=output, stderr=output) as child:
             try:
                 status = child.wait(timeout=60 + 10 * processor_seconds)
             except subprocess.TimeoutExpired:
@@ -148,16 +157,17 @@ class Worker:
                 status = -1
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         passed = status == 0 or (status == SKIPPED and not test.device)
-        return passed, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        with open(said, encoding="utf-8", errors="replace") as output:
+            return passed, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, output.read(1 << 16)
 
     def check_without_fault(self, name):
         """The test passes, once: its first run builds its kernels, as that of a mutated kernel has to."""
         if name in self.usual:
             return
         self.build([target_of(table.TESTS[name])])
-        passed, self.usual[name] = self.run(table.TESTS[name], self.cache("none"), 3600)
+        passed, self.usual[name], said = self.run(table.TESTS[name], self.cache("none"), 3600)
         if not passed:
-            raise TableError(f"{name} fails without a fault; in {self.folder}")
+            raise TableError(f"{name} fails without a fault, in {self.folder}: {said[-2000:]}")
 
     def plant(self, mutant):
         """The mutant's fate: a Result."""
@@ -166,21 +176,24 @@ class Worker:
             text = f.read()
         changed, line = planted(text, mutant)
         start = time.monotonic()
-        caught = None
+        caught, compiles = None, True
         cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "none")
         for name in table.tests_of(mutant):
             self.check_without_fault(name)
             test = table.TESTS[name]
             try:
                 write_text(path, changed)
-                self.build([target_of(test)])
-                passed, _ = self.run(test, cache, int(10 * self.usual[name]) + 3)
+                compiles = self.builds([target_of(test)])
+                passed, _, said = self.run(test, cache, int(10 * self.usual[name]) + 3) if compiles else (False, 0, "")
+                compiles = compiles and KERNELS_REFUSED not in said
             finally:
                 write_text(path, text)
             if not passed:
                 caught = name
                 break
-        if mutant.same:
+        if not compiles:
+            verdict = "DOES NOT COMPILE"
+        elif mutant.same:
             verdict = "wrongly called the same" if caught else "the same"
         else:
             verdict = "caught" if caught else "SURVIVED"
