@@ -81,7 +81,7 @@ TESTS = {
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
-DEVICE = ["test_random, u8", "test_patterns", "test_rare, one sample"]
+DEVICE = ["test_random, u8", "test_rare, one sample"]
 READERS = ["test_read", "test_dataset", "test_read_hostile"]
 
 # Tests for the faults of a file, or of all in a folder, in the order in which they are run.
