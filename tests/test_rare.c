@@ -5,7 +5,8 @@
  * Samples that alternate along one axis, two or all three: whole rows of crossed edges, the most that a row of 64 may
  * have of each type. One sample on the other side than all others, at every place around the point where eight bricks
  * of 64 x 8 x 4 samples meet, at two isovalues one after the other: bricks that have nothing to emit but for a far
- * neighbour. Zeros of both signs, where zero stands for missing.
+ * neighbour. Slopes along ten bricks, at several isovalues: runs of eight bricks whose range is looked at as a whole.
+ * Zeros of both signs, where zero stands for missing.
  */
 #include "engines.h"
 
@@ -54,8 +55,7 @@ static void bytes_fill(tc_grid_options *grid, const int64_t dims[3], int (*value
             for (p[0] = 0; p[0] < dims[0]; p[0]++) *bytes++ = (uint8_t)value(p);
 }
 
-/* -------------------------------------------------------------------------------------------------------- alternating
- */
+/* ------------------------------------------------------------------------------------------------------ alternating */
 
 static int alternating_axes;
 
@@ -78,8 +78,7 @@ static void test_alternating(void) {
         }
 }
 
-/* --------------------------------------------------------------------------------------------------------- one sample
- */
+/* ------------------------------------------------------------------------------------------------------- one sample */
 
 static int64_t single_place[3];
 static int single_value;
@@ -102,8 +101,28 @@ static void test_single_samples(void) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------------- zeros
- */
+/* ----------------------------------------------------------------------------------------------------------- slopes */
+
+static int slope_kind;
+
+/* Rising, falling, highest or lowest in the middle. */
+static int slope(const int64_t p[3]) {
+    const int64_t x = slope_kind & 1 ? 579 - p[0] : p[0], height = slope_kind < 2 ? x / 3 : (x < 290 ? x : 579 - x) / 2;
+    return (int)(10 + (slope_kind < 3 ? height : 145 - height) + (p[1] + p[2]) % 3);
+}
+
+static void test_slopes(void) {
+    static const double isovalues[] = {100.5, 30.5, 150, 60.5, 11};
+    tc_grid_options grid;
+    for (slope_kind = 0; slope_kind < 4; slope_kind++) {
+        char name[80];
+        snprintf(name, sizeof name, "slope %d along ten bricks", slope_kind);
+        bytes_fill(&grid, (int64_t[3]){580, 9, 6}, slope);
+        expect_same(&grid, isovalues, 5, name);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ zeros */
 
 static void test_zeros_missing(void) {
     static const float values[] = {1, -1, 0, 2, -0.0f, -2, 3, 0.5f, -0.25f};
@@ -128,6 +147,7 @@ int main(void) {
     bool skipped = !contexts[1];
     test_alternating();
     test_single_samples();
+    test_slopes();
     test_zeros_missing();
     for (int n = 0; n < 2; n++) tc_context_destroy(contexts[n]);
     int failed = EXPECT_DONE();

@@ -49,6 +49,7 @@ TESTS = {
     "test_random, u8": test("test_random", "* u8, *nodata 0 *normals 0", device=True),
     "test_rare, alternating": test("test_rare", "alternating*", device=True),
     "test_rare, one sample": test("test_rare", "one sample*", device=True),
+    "test_rare, slopes": test("test_rare", "slope*", device=True),
     "test_rare, zeros": test("test_rare", "*zeros missing", device=True),
     "test_again, u8": test("test_again", "u8, 1 work-items", device=True),
     "test_again, u8 in slabs": test("test_again", "u8, 1 work-items, slabs", device=True),
