@@ -12,32 +12,38 @@
 
 enum { LOW = 50, HIGH = 200, SAMPLES_MAX = 140 * 20 * 12 };
 
-static tc_context *contexts[2]; /* reference; device, NULL where there is none */
+enum { CONTEXTS = 3 };
+
+/* Reference; device, and the same with all bricks in one tile: NULL where there is none. */
+static tc_context *contexts[CONTEXTS];
 static float memory[SAMPLES_MAX];
 
 /* The isovalues one after the other, on a grid of each engine that lives on. */
 static void expect_same(const tc_grid_options *options, const double *isovalues, int count, const char *name) {
-    tc_grid *grids[2] = {NULL, NULL};
-    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_grid *grids[CONTEXTS] = {NULL};
+    tc_mesh *meshes[CONTEXTS] = {NULL};
     if (!test_chosen(name)) return;
-    for (int n = 0; n < 2 && contexts[n]; n++)
+    for (int n = 0; n < CONTEXTS && contexts[n]; n++)
         EXPECT(!tc_grid_create(contexts[n], options, &grids[n]), "%s: %s", name, tc_message());
     for (int i = 0; i < count; i++) {
-        tc_mesh_data data[2] = {{.struct_size = sizeof data[0]}, {.struct_size = sizeof data[0]}};
+        tc_mesh_data data[CONTEXTS];
         tc_extract_options how;
         tc_extract_options_init(&how);
         how.isovalue = isovalues[i];
-        for (int n = 0; n < 2 && grids[n]; n++) {
+        for (int n = 0; n < CONTEXTS && grids[n]; n++) {
+            data[n] = (tc_mesh_data){.struct_size = sizeof data[n]};
             tc_status status = tc_extract(grids[n], &how, &meshes[n]);
             if (!status) status = tc_mesh_get(meshes[n], &data[n]);
             EXPECT(!status, "%s, isovalue %g: %s", name, how.isovalue, tc_message());
         }
         const char *fault = mesh_fault(options, how.isovalue, &data[0], NULL);
         EXPECT(!fault, "%s, isovalue %g: reference: %s", name, how.isovalue, fault);
-        const char *difference = grids[1] ? mesh_difference(&data[0], &data[1]) : NULL;
-        EXPECT(!difference, "%s, isovalue %g: device and reference: %s", name, how.isovalue, difference);
+        for (int n = 1; n < CONTEXTS && grids[n]; n++) {
+            const char *difference = mesh_difference(&data[0], &data[n]);
+            EXPECT(!difference, "%s, isovalue %g: device %d and reference: %s", name, how.isovalue, n, difference);
+        }
     }
-    for (int n = 0; n < 2; n++) {
+    for (int n = 0; n < CONTEXTS; n++) {
         tc_mesh_destroy(meshes[n]);
         tc_grid_destroy(grids[n]);
     }
@@ -143,13 +149,17 @@ int main(void) {
     tc_context_options options;
     tc_context_options_init(&options);
     contexts[0] = reference_open();
-    if (device_exists()) contexts[1] = context_open(&options);
+    if (device_exists()) {
+        contexts[1] = context_open(&options);
+        options.tile_bricks = 1000;
+        contexts[2] = context_open(&options);
+    }
     bool skipped = !contexts[1];
     test_alternating();
     test_single_samples();
     test_slopes();
     test_zeros_missing();
-    for (int n = 0; n < 2; n++) tc_context_destroy(contexts[n]);
+    for (int n = 0; n < CONTEXTS; n++) tc_context_destroy(contexts[n]);
     int failed = EXPECT_DONE();
     return failed || !skipped ? failed : SKIPPED;
 }
