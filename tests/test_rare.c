@@ -96,13 +96,14 @@ static int single(const int64_t p[3]) {
 static void test_single_samples(void) {
     static const double isovalues[] = {100, 150, 100.5};
     tc_grid_options grid;
-    for (int n = 0; n < 16; n++) {
+    for (int n = 0; n < 32; n++) {
+        const int64_t corner = n < 16 ? 64 : 512; /* of a brick; of a run of eight */
         char name[80];
-        for (int axis = 0; axis < 3; axis++) single_place[axis] = (64 >> (axis ? axis + 2 : 0)) - 1 + (n >> axis & 1);
-        single_value = n < 8 ? HIGH : LOW;
-        snprintf(name, sizeof name, "one sample %s at %d, %d, %d", n < 8 ? "inside" : "outside", (int)single_place[0],
+        for (int axis = 0; axis < 3; axis++) single_place[axis] = (axis ? 16 >> axis : corner) - 1 + (n >> axis & 1);
+        single_value = n & 8 ? LOW : HIGH;
+        snprintf(name, sizeof name, "one sample %s at %d, %d, %d", n & 8 ? "outside" : "inside", (int)single_place[0],
                  (int)single_place[1], (int)single_place[2]);
-        bytes_fill(&grid, (int64_t[3]){130, 17, 9}, single);
+        bytes_fill(&grid, (int64_t[3]){corner + 66, 17, 9}, single);
         expect_same(&grid, isovalues, 3, name);
     }
 }
