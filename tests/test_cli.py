@@ -36,6 +36,13 @@ DEVICE_KEYS = {"index", "spec", "name", "platform", "version", "driver", "type",
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
 
 
+def chosen():
+    """Arguments for unittest, as expect.h has it: TEST_ONLY in the environment chooses tests, TEST_STOP ends with the
+    first failure."""
+    only = os.environ.get("TEST_ONLY")
+    return (["-k", only] if only else []) + (["-f"] if os.environ.get("TEST_STOP") else [])
+
+
 def tool(*arguments, env=None, stdout=subprocess.PIPE, cwd=None):
     environment = dict(os.environ, **(env or {}))
     return subprocess.run([TOOL, *map(str, arguments)], stdout=stdout, stderr=subprocess.PIPE, text=True,
@@ -582,4 +589,4 @@ if __name__ == "__main__":
     HAS_DEVICE = "reference" not in sys.argv[2:]
     FAULT_LIBRARY = next((os.path.abspath(word[6:]) for word in sys.argv[2:] if word.startswith("fault=")), None)
     print("all checks" if HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *chosen()])

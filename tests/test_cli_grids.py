@@ -845,4 +845,4 @@ if __name__ == "__main__":
     test_cli.TOOL = os.path.abspath(sys.argv[1])
     test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]
     print("all checks" if test_cli.HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])

@@ -106,9 +106,10 @@ static void expect_variation(const tc_context_options *options, const subject *s
     char how[160];
     tc_mesh_data data;
     tc_mesh *mesh = NULL;
-    tc_context *context = context_open(options);
     snprintf(how, sizeof how, "%u work-items, %u groups, tiles of %u, %u polls, division %d", options->work_items,
              options->work_groups, options->tile_bricks, options->spin_limit, options->division);
+    if (!test_chosen(how)) return;
+    tc_context *context = context_open(options);
     for (uint32_t repeat = 0; repeat < (options->spin_limit ? 3 : 1); repeat++)
         if (extract(context, &s->grid, &s->how, &mesh, &data)) expect_mesh(s, &data, how);
     tc_mesh_destroy(mesh);
@@ -160,6 +161,7 @@ static void test_memory_budgets(const subject *s) {
     bool one = false, few = false;
     unsigned done = 0, refused = 0;
     tc_context_options options;
+    if (!test_chosen("memory budgets") && !test_chosen(s->name)) return;
     tc_context_options_init(&options);
     options.own_buffers = own_buffers;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
@@ -408,11 +410,11 @@ int main(int argc, char **argv) {
     test_divisions();
     test_memory_budgets(&subjects[GENTLE]);
     test_memory_budgets(&subjects[GENTLE_MISSING]);
-    test_world_space(reference, device);
-    test_reuse(device);
-    test_description(device);
-    test_sphere_converges(device);
-    test_memory_per_sample();
+    if (test_chosen("world space")) test_world_space(reference, device);
+    if (test_chosen("used again")) test_reuse(device);
+    if (test_chosen("description")) test_description(device);
+    if (test_chosen("convergence")) test_sphere_converges(device);
+    if (test_chosen("memory per sample")) test_memory_per_sample();
     tc_context_destroy(reference);
     tc_context_destroy(device);
     for (int n = 0; n < SUBJECTS; n++) subject_close(&subjects[n]);

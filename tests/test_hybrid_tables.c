@@ -4,8 +4,9 @@
  * Of every pattern, parity and winding: the patch is an oriented surface whose border, in the faces of the cube, joins
  * what the border of the five tetrahedra's surface joins (split.h), whose components have the same crossed edges, and
  * whose components are disks, as theirs are. No chord lies in a face, but in the twelve loops of which all
- * triangulations have one: there it lies in a low face. All pairs of neighbours fit together. Faults put into the table
- * are found.
+ * triangulations have one: there it lies in a low face. Chords are as short as they can be, and of equal triangulations
+ * the one is taken that all meshes have had so far. All pairs of neighbours fit together. Faults put into the table are
+ * found.
  */
 #include "expect.h"
 #include "random.h"
@@ -16,6 +17,8 @@
 
 /* Vertices are edges of the split, by two corners: 8 a + b, a < b. */
 enum { VERTICES = 64, LOOP_MOST = 12 };
+
+#define KNOWN_HASH UINT64_C(0xbf4718eb759c0723)
 
 static unsigned vertex_between(unsigned a, unsigned b) { return a < b ? 8 * a + b : 8 * b + a; }
 
@@ -203,19 +206,36 @@ static void chords_count(const patch *p, unsigned *in_faces, unsigned *in_high) 
         }
 }
 
-/* Fewest chords in faces that a triangulation of vertices first to last of a loop can have. */
-static unsigned chords_least(const unsigned *vertices, unsigned first, unsigned last, unsigned count) {
+/* What is counted of a chord. */
+typedef unsigned chord_cost(unsigned p, unsigned q);
+
+static unsigned cost_in_face(unsigned p, unsigned q) { return common_face(p, q) < 6; }
+
+/* Squared length, of chords in faces far more than of any others. */
+static unsigned cost_of_length(unsigned p, unsigned q) {
+    unsigned face = common_face(p, q), cost = face == 6 ? 0 : face < 3 ? 1000 : 1000000;
+    for (int axis = 0; axis < 3; axis++) {
+        int difference = middle(p, axis) - middle(q, axis);
+        cost += (unsigned)(difference * difference);
+    }
+    return cost;
+}
+
+/* The least that a triangulation of vertices first to last of a loop can have. */
+static unsigned chords_least(const unsigned *vertices, unsigned first, unsigned last, unsigned count,
+                             chord_cost *cost) {
     unsigned least = last - first < 2 ? 0 : ~0u;
     for (unsigned apex = first + 1; apex < last; apex++) {
-        unsigned chords = chords_least(vertices, first, apex, count) + chords_least(vertices, apex, last, count);
+        unsigned chords =
+            chords_least(vertices, first, apex, count, cost) + chords_least(vertices, apex, last, count, cost);
         if (chords < least) least = chords;
     }
     bool side = last - first == 1 || last - first == count - 1;
-    return least + (!side && common_face(vertices[first], vertices[last]) < 6);
+    return least + (side ? 0 : cost(vertices[first], vertices[last]));
 }
 
 /* The same of a whole pattern; *longest: its longest loop. */
-static unsigned chords_needed(const split_surface *s, unsigned *longest) {
+static unsigned chords_needed(const split_surface *s, chord_cost *cost, unsigned *longest) {
     bool seen[VERTICES] = {false};
     unsigned needed = 0;
     *longest = 0;
@@ -227,7 +247,7 @@ static unsigned chords_needed(const split_surface *s, unsigned *longest) {
             loop[count++] = at;
             for (next = 0; next < VERTICES && (!s->bordering[at][next] || seen[next]);) next++;
         }
-        if (count > 2) needed += chords_least(loop, 0, count - 1, count);
+        if (count > 2) needed += chords_least(loop, 0, count - 1, count, cost);
         if (count > *longest) *longest = count;
     }
     return needed;
@@ -245,7 +265,7 @@ static const char *case_fault(const cube_case *c, unsigned parity, unsigned patt
     if (fault) return fault;
     chords_count(&p, &in_faces, &in_high);
     if (in_high) return "a chord lies in a high face";
-    return in_faces != chords_needed(&s, &longest) ? "a chord lies in a face without need" : NULL;
+    return in_faces != chords_needed(&s, cost_in_face, &longest) ? "a chord lies in a face without need" : NULL;
 }
 
 static cube_case cases[2][2][256]; /* [mirrored] */
@@ -258,12 +278,37 @@ static void test_cases(void) {
         EXPECT(!fault, "parity %u, pattern %02x, mirrored %u: %s", parity, pattern, mirrored, fault);
         split_surface s;
         split_surface_of(parity, pattern, &s);
-        if (mirrored || !chords_needed(&s, &longest)) continue;
+        if (mirrored || !chords_needed(&s, cost_in_face, &longest)) continue;
         loops_with_chord++;
-        EXPECT(longest == 8 && chords_needed(&s, &longest) == 1, "parity %u, pattern %02x: a loop of %u needs chords",
-               parity, pattern, longest);
+        EXPECT(longest == 8 && chords_needed(&s, cost_in_face, &longest) == 1,
+               "parity %u, pattern %02x: a loop of %u needs chords", parity, pattern, longest);
     }
     EXPECT(loops_with_chord == 12, "%u loops need a chord in a face", loops_with_chord);
+}
+
+static void test_chords_are_short(void) {
+    static split_surface s;
+    static patch p;
+    for (unsigned n = 0; n < 512; n++) {
+        unsigned is = 0, longest;
+        split_surface_of(n / 256, n % 256, &s);
+        patch_of(&cases[0][n / 256][n % 256], n % 256, &p);
+        for (unsigned a = 0; a < VERTICES; a++)
+            for (unsigned b = 0; b < a; b++)
+                if (p.passed[a][b] && p.passed[b][a]) is += cost_of_length(a, b);
+        unsigned should = chords_needed(&s, cost_of_length, &longest);
+        EXPECT(is == should, "parity %u, pattern %02x: chords come to %u, not %u", n / 256, n % 256, is, should);
+    }
+}
+
+/* The order of triangles and which of equal triangulations is taken show in every mesh: FNV-1a of both tables. */
+static void test_tables_are_the_known_ones(void) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (unsigned n = 0; n < 512; n++) {
+        const cube_case *c = &cases[0][n / 256][n % 256];
+        for (unsigned m = 0; m < 3u * c->triangle_count; m++) hash = (hash ^ c->edges[m / 3][m % 3]) * 0x100000001b3u;
+    }
+    EXPECT(hash == KNOWN_HASH, "the tables have hash %llx", (unsigned long long)hash);
 }
 
 static void test_mirrored(void) {
@@ -379,6 +424,8 @@ int main(void) {
     random_state = 1996;
     for (int mirrored = 0; mirrored < 2; mirrored++) hybrid_cases_derive(cases[mirrored], mirrored);
     test_cases();
+    test_chords_are_short();
+    test_tables_are_the_known_ones();
     test_mirrored();
     test_pairs();
     test_faults_are_found();

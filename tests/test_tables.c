@@ -145,6 +145,9 @@ static void test_cases_use_the_crossed_edges(void) {
         for (unsigned e = 0; e < 6; e++) crossed |= (unsigned)edge_differs(pattern, e) << e;
         for (unsigned n = 0; n < c->triangle_count; n++)
             for (unsigned m = 0; m < 3; m++) used |= 1u << c->triangles[n][m];
+        for (unsigned n = c->triangle_count; n < 2; n++)
+            for (unsigned m = 0; m < 3; m++)
+                EXPECT(c->triangles[n][m] == 0, "case %u: triangle %u is not used, but not 0", pattern, n);
         EXPECT(c->triangle_count == split_triangle_count(inside), "case %u has %u triangles", pattern,
                c->triangle_count);
         EXPECT(used == crossed, "case %u uses edges %02x, crossed are %02x", pattern, used, crossed);

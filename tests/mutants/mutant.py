@@ -1,0 +1,12 @@
+"""mutant.py - one planted fault: in a file, a text and what stands there instead"""
+import collections
+
+# what: the fault in words. nth: which of several places with the text, from 0 on; None where there is one. at: the place
+# itself, of mutants that a program finds. tests: names of those that are run first. same: why no test can tell.
+Mutant = collections.namedtuple("Mutant", "file old new what nth at tests same sample")
+Mutant.__new__.__defaults__ = (None, None, (), None, False)
+
+
+def group(file, *mutants):
+    """The mutants of one file: text, what stands there instead, what that means, then what else a Mutant has."""
+    return [Mutant(file, m[0], m[1], m[2], **(m[3] if len(m) > 3 else {})) for m in mutants]

@@ -1,0 +1,306 @@
+#!/usr/bin/env python3
+"""mutants.py - negative controls: faults are planted in a copy of the tree, and every one has to be caught by a test
+
+Usage: mutants.py SOURCE WORK [--only WORD]... [--sample] [--workers N] [--list]
+
+SOURCE is never changed: each of N workers has a copy of it and a build folder under WORK, which a later run uses again.
+The mutants of table.py and entries.py are planted one at a time, what the next test needs is built, and tests are run,
+the cheapest first, until one fails; before it is used for the first time, each has to pass without a fault. A crash is a
+failure, and so is more processor time than ten times what the test needs otherwise and three seconds.
+
+A mutant that no test catches is an error, unless the table says why it is the same program; one that the table calls
+the same and that is caught is an error too, and so is one whose text is not in the source any more or does not compile.
+--only keeps the mutants whose file, text or description has one of the words; --sample a few of every kind.
+
+Prints one line per mutant. Where TETRACUBES_RESULTS names a folder, mutants.json there tells the same.
+"""
+import argparse
+import collections
+import datetime
+import json
+import os
+import queue
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import threading
+import time
+
+import entries
+import table
+from table import TableError
+
+COPIED = ("host", "kernels", "tests", "CMakeLists.txt")
+CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF"]
+MEMORY_MOST = 16 << 30
+QUICK_KERNELS = "-cl-opt-disable"  # built in a fifth of the time; what they compute is the same
+KERNELS_REFUSED = "does not build the kernels"  # as host/lib/program.c says it
+SKIPPED = 77  # what a test says of its part for a device
+Result = collections.namedtuple("Result", "mutant line verdict test seconds")
+
+
+def planted(text, mutant):
+    """The text of the file with the mutant in it, and the line where it is."""
+    found = [m.start() for m in re.finditer(re.escape(mutant.old), text)]
+    if mutant.at is not None and text.startswith(mutant.old, mutant.at):
+        at = mutant.at
+    elif mutant.nth is None and len(found) == 1:
+        at = found[0]
+    elif mutant.nth is not None and mutant.nth < len(found):
+        at = found[mutant.nth]
+    else:
+        raise TableError(f"{mutant.file}: {len(found)} times in the source: {mutant.old!r}")
+    return text[:at] + mutant.new + text[at + len(mutant.old):], text.count("\n", 0, at) + 1
+
+
+def target_of(test):
+    """What has to be built for it."""
+    return "tetracubes_tool" if test.program.endswith(".py") else test.program
+
+
+def write_text(path, text):
+    with open(path, "w", encoding="utf-8") as f:
+        f.write(text)
+
+
+def write_if_changed(path, content):
+    try:
+        with open(path, "rb") as f:
+            if f.read() == content:
+                return
+    except FileNotFoundError:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as f:
+        f.write(content)
+
+
+def files_below(folder):
+    for name in COPIED:
+        path = os.path.join(folder, name)
+        if os.path.isfile(path):
+            yield name
+        for parent, _, files in os.walk(path):
+            for file in files:
+                yield os.path.relpath(os.path.join(parent, file), folder)
+
+
+class Worker:
+    """A copy of the tree with a build folder of its own."""
+
+    def __init__(self, source, work, number, jobs):
+        self.jobs = jobs
+        self.folder = os.path.join(work, str(number))
+        self.source = os.path.join(self.folder, "source")
+        self.build_folder = os.path.join(self.folder, "build")
+        self.usual = {}  # test -> processor time without a fault
+        self.copy(source)
+        if not os.path.exists(os.path.join(self.build_folder, "build.ninja")):
+            self.must(["cmake", "-S", self.source, "-B", self.build_folder] + CONFIGURE)
+
+    def copy(self, source):
+        wanted = set(files_below(source))
+        for name in wanted:
+            with open(os.path.join(source, name), "rb") as f:
+                write_if_changed(os.path.join(self.source, name), f.read())
+        for name in set(files_below(self.source)) - wanted:
+            os.unlink(os.path.join(self.source, name))
+
+    def must(self, command):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode:
+            raise TableError(f"{' '.join(command)}:\n{done.stdout[-3000:]}")
+
+    def build(self, targets):
+        self.must(["cmake", "--build", self.build_folder, f"-j{self.jobs}", "--target", *targets])
+
+    def builds(self, targets):
+        try:
+            self.build(targets)
+            return True
+        except TableError:
+            return False
+
+    def cache(self, name):
+        """Kernels of a mutant are never found in another's cache, and those without a fault are built once."""
+        path = os.path.join(self.folder, "cache-" + name)
+        if name == "mutant":
+            shutil.rmtree(path, ignore_errors=True)
+        os.makedirs(path, exist_ok=True)
+        return path
+
+    def run(self, test, cache, processor_seconds):
+        """Whether the test passes, the processor time that it took, and what it said."""
+        environment = dict(os.environ, TETRACUBES_CACHE_DIR="", POCL_CACHE_DIR=cache, TEST_ONLY=test.only,
+                           TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
+        if not test.device:
+            environment["OCL_ICD_VENDORS"] = os.devnull
+        command = [os.path.join(self.build_folder, "tests", test.program), *test.arguments]
+        if test.program.endswith(".py"):
+            tool = os.path.join(self.build_folder, "host", "tool", "tetracubes")
+            command = [sys.executable, os.path.join(self.source, "tests", test.program), tool, *test.arguments]
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (processor_seconds, processor_seconds + 1))
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY_MOST, MEMORY_MOST))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        said = os.path.join(self.folder, "output.log")
+        with open(said, "wb") as output, subprocess.Popen(command, env=environment, cwd=self.folder, preexec_fn=limit,
+                                                          stdout=output, stderr=output) as child:
+            try:
+                status = child.wait(timeout=60 + 10 * processor_seconds)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                status = -1
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        passed = status == 0 or (status == SKIPPED and not test.device)
+        with open(said, encoding="utf-8", errors="replace") as output:
+            return passed, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, output.read(1 << 16)
+
+    def check_without_fault(self, name):
+        """The test passes, once: its first run builds its kernels, as that of a mutated kernel has to."""
+        if name in self.usual:
+            return
+        self.build([target_of(table.TESTS[name])])
+        passed, self.usual[name], said = self.run(table.TESTS[name], self.cache("none"), 3600)
+        if not passed:
+            raise TableError(f"{name} fails without a fault, in {self.folder}: {said[-2000:]}")
+
+    def plant(self, mutant):
+        """The mutant's fate: a Result."""
+        path = os.path.join(self.source, mutant.file)
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        changed, line = planted(text, mutant)
+        start = time.monotonic()
+        caught, compiles = None, True
+        cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "none")
+        for name in table.tests_of(mutant):
+            self.check_without_fault(name)
+            test = table.TESTS[name]
+            try:
+                write_text(path, changed)
+                compiles = self.builds([target_of(test)])
+                passed, _, said = self.run(test, cache, int(10 * self.usual[name]) + 3) if compiles else (False, 0, "")
+                compiles = compiles and KERNELS_REFUSED not in said
+            finally:
+                write_text(path, text)
+            if not passed:
+                caught = name
+                break
+        if not compiles:
+            verdict = "DOES NOT COMPILE"
+        elif mutant.same:
+            verdict = "wrongly called the same" if caught else "the same"
+        else:
+            verdict = "caught" if caught else "SURVIVED"
+        return Result(mutant, line, verdict, caught, time.monotonic() - start)
+
+
+def all_mutants(source):
+    mutants = list(table.MUTANTS)
+    for file, tables in entries.TABLES.items():
+        with open(os.path.join(source, file), encoding="utf-8") as f:
+            mutants += entries.mutants(file, f.read(), tables)
+    return mutants
+
+
+def check_table(source, mutants):
+    faults = []
+    for mutant in mutants:
+        try:
+            with open(os.path.join(source, mutant.file), encoding="utf-8") as f:
+                planted(f.read(), mutant)
+            table.tests_of(mutant)
+        except TableError as e:
+            faults.append(str(e))
+    if faults:
+        raise TableError("\n".join(faults))
+
+
+def result_line(r):
+    why = r.test or r.mutant.same or ""
+    return f"{r.mutant.file}:{r.line}: {r.mutant.what}: {r.verdict}{': ' if why else ''}{why} ({r.seconds:.1f} s)"
+
+
+def run_all(source, work, mutants, worker_count):
+    results, errors, waiting = [], [], queue.Queue()
+    for mutant in mutants:
+        waiting.put(mutant)
+
+    def work_through(number):
+        try:
+            worker = Worker(source, work, number, 2 if worker_count == 1 else 1)
+            while not errors:
+                r = worker.plant(waiting.get_nowait())
+                results.append(r)
+                print(result_line(r), flush=True)
+        except queue.Empty:
+            pass
+        except TableError as e:
+            errors.append(e)
+
+    threads = [threading.Thread(target=work_through, args=(n,)) for n in range(worker_count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    if errors:
+        sys.exit(f"mutants.py: {errors[0]}")
+    return results
+
+
+def write_results(folder, results, seconds):
+    by = collections.Counter(r.verdict for r in results)
+    figures = [{"what": "faults planted in the sources", "value": len(results)},
+               {"what": "of these caught by a test", "value": by["caught"]},
+               {"what": "of these the same program, with the reason", "value": by["the same"]}]
+    lines = [{"file": r.mutant.file, "line": r.line, "what": r.mutant.what, "verdict": r.verdict, "test": r.test,
+              "reason": r.mutant.same} for r in sorted(results, key=lambda r: (r.mutant.file, r.line, r.mutant.what))]
+    report = {"part": "mutants", "date": datetime.date.today().isoformat(), "versions": table.versions(),
+              "seconds": round(seconds), "figures": figures, "mutants": lines}
+    with open(os.path.join(folder, "mutants.json"), "w", encoding="utf-8") as f:
+        json.dump(report, f, indent=1)
+        f.write("\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source")
+    parser.add_argument("work")
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--list", action="store_true")
+    arguments = parser.parse_args()
+    mutants = all_mutants(arguments.source)
+    try:
+        check_table(arguments.source, mutants)
+    except TableError as e:
+        sys.exit(f"mutants.py: {e}")
+    if arguments.only:
+        mutants = [m for m in mutants if any(w in m.file or w in m.what or w in m.old for w in arguments.only)]
+    if arguments.sample:
+        mutants = [m for m in mutants if m.sample]
+        arguments.workers = 1
+    if arguments.list:
+        for m in mutants:
+            print(f"{m.file}: {m.what}: {m.old!r} -> {m.new!r}")
+        print(f"{len(mutants)} mutants")
+        return
+    if not mutants:
+        sys.exit("mutants.py: no mutant is of that kind")
+    start = time.monotonic()
+    results = run_all(os.path.abspath(arguments.source), os.path.abspath(arguments.work), mutants, arguments.workers)
+    by = collections.Counter(r.verdict for r in results)
+    print(f"{len(results)} mutants: " + ", ".join(f"{n} {verdict}" for verdict, n in sorted(by.items())))
+    if os.environ.get("TETRACUBES_RESULTS"):
+        write_results(os.environ["TETRACUBES_RESULTS"], results, time.monotonic() - start)
+    sys.exit(not results or bool(set(by) - {"caught", "the same"}))
+
+
+if __name__ == "__main__":
+    main()
