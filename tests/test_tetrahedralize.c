@@ -314,7 +314,7 @@ static void offsets_beyond(void) {
     const int64_t connectivity[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         tc_cells cells = {sizeof cells, 8, points, 2, types, cases[n], connectivity, NULL, NULL};
-        refused(&cells, TC_ERROR_DATA, "do not rise to the last, 8");
+        refused(&cells, TC_ERROR_DATA, "do not rise from 0 to the last one, 8");
     }
 }
 

@@ -73,7 +73,8 @@ static const command commands[] = {
     {"selftest", COMMAND_SELFTEST, selftest_run, NULL, "known answers and the reference, on a device",
      "tetracubes selftest [--device SPEC] [--json]",
      "Extracts small volumes on the device, compares counts with known answers and every byte with\n"
-     "the scalar reference: types, sizes, ties, missing data, normals, grids, methods, scan, launches, slabs.\n"
+     "the scalar reference: types, sizes, ties, missing data, normals, grids, methods, scan, launches,\n"
+     "slabs.\n"
      "Prints a line per group and PASS or FAIL."},
 };
 
