@@ -69,6 +69,7 @@ TESTS = {
     "test_curvilinear, points": test("test_curvilinear", "f32 points*, one work-item", device=True),
     "test_curvilinear, axes": test("test_curvilinear", "f32 axes*, one work-item", device=True),
     "test_hybrid, u8": test("test_hybrid", "* u8, *complete", device=True),
+    "test_complex_slabs": test("test_complex_slabs", device=True),
     "test_complex, u8": test("test_complex", "*u8*, context [12]", device=True),
     "test_complex, refusals": test("test_complex", "refusals", device=True),
     "test_complex, f32": test("test_complex", "*f32*, context 1", device=True),
