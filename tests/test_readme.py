@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""The README says what is so: options and fields are those of --help, its two commands those of .ci/run.
+"""The README says what is so: options and fields are those of --help, its two commands those of .ci/run, the tests that
+it names are there, its table of the long tier is made of the committed results.
 
-    test_readme.py SOURCE TOOL
+    test_readme.py SOURCE BUILD TOOL
 
 Its C example is compiled and run by test_install.py.
 """
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 failures = 0
@@ -63,12 +66,33 @@ def test_commands(readme, source):
         expect("://" in link or (source / link).exists(), f"README.md: {link} is not there")
 
 
+def test_promises(readme, build):
+    """Every test that a promise names is one of ctest's."""
+    listed = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    known = set(re.findall(r"Test +#\d+: (\w+)", listed))
+    promises = section(readme, "| promise |", "<!-- trust:begin -->")
+    named = re.findall(r"`((?:test|fuzz|mutants)_\w+|oclgrind)`", promises)
+    expect(len(named) > 20, f"README.md: only {len(named)} tests named")
+    expect(set(named) <= known, f"README.md: no tests of ctest: {sorted(set(named) - known)}")
+
+
+def test_figures(source):
+    """tests/figures.py would write what is there."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "README.md"
+        shutil.copy(source / "README.md", copy)
+        subprocess.run([sys.executable, source / "tests" / "figures.py", "--readme", copy], check=True)
+        expect(copy.read_text() == (source / "README.md").read_text(), "README.md: run tests/figures.py")
+
+
 def main():
-    source, tool = Path(sys.argv[1]), sys.argv[2]
+    source, build, tool = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     readme = (source / "README.md").read_text(encoding="utf-8")
     test_options(readme, tool)
     test_fields(readme, tool)
     test_commands(readme, source)
+    test_promises(readme, build)
+    test_figures(source)
     print(f"{failures} failed")
     return failures > 0
 

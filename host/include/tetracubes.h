@@ -228,7 +228,7 @@ TC_API void tc_grid_options_init(tc_grid_options *options);
  * an axis and for sizes that overflow. Samples may not change while the grid lives: it remembers what it has seen of
  * them, so that further isovalues leave most unread. */
 TC_API tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **grid);
-TC_API void tc_grid_destroy(tc_grid *grid);
+TC_API void tc_grid_destroy(tc_grid *grid); /* waits for what is under way on it */
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 

@@ -129,6 +129,7 @@ tc_status structured_grid_create(tc_grid *grid) {
 
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
+    cl->Finish(grid->context->queue); /* an emission that is under way reads arrays of the grid and of the caller's */
     if (grid->context->counted == grid) grid->context->counted = NULL;
     if (grid->context->served == grid) grid->context->served = NULL;
     free(grid->device->heads);
