@@ -14,14 +14,16 @@ static volatile sig_atomic_t seen;
 static uintptr_t page_bytes;
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
-/* Anything else that the signal may mean ends the process, as it would without this. */
+/* Compilers of kernels (LLVM) have handlers of their own while they work, which hand a fault of another thread on by
+ * raising the signal anew: it comes again as a fault. Anything else that the signal may mean ends the process, as it
+ * would without this. */
 static void replace_page(int number, siginfo_t *about, void *context) {
     (void)context;
     void *page = (void *)((uintptr_t)about->si_addr & ~(page_bytes - 1)); // NOLINT(performance-no-int-to-ptr)
     if (about->si_code == BUS_ADRERR &&
         mmap(page, page_bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == page)
         seen = 1;
-    else
+    else if (about->si_code != SI_TKILL || about->si_pid != getpid())
         signal(number, SIG_DFL);
 }
 

@@ -206,6 +206,7 @@ static int dispatch(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+    truncation_watch(); /* before drivers start threads and put handlers of their own in front */
     int status = dispatch(argc, argv);
     if (status) message("%s", failure_text());
     if (fflush(stdout) || ferror(stdout)) {
