@@ -133,13 +133,13 @@ typedef struct tc_context_options {
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
     tc_progress progress; /* NULL: none */
     void *progress_user;
-    int own_buffers; /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
-                        samples are copied to it and the mesh from it. Slower; runs that path where there is no such
-                        device. Never changes results */
-    int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a small
-                         volume goes through them and every byte is compared with the reference engine's. Where one
-                         differs, the call returns TC_ERROR_WRONG. A few milliseconds for each kind of kernels. tc_emit
-                         tries nothing itself */
+    int own_buffers;  /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
+                         samples are copied to it and the mesh from it. Slower; runs that path where there is no such
+                         device. Never changes results */
+    int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a
+                         small volume goes through them and every byte is compared with the reference engine's. Where
+                         one differs, the call returns TC_ERROR_WRONG. A few milliseconds for each kind of kernels.
+                         tc_emit tries nothing itself */
 } tc_context_options;
 
 typedef struct tc_context tc_context;

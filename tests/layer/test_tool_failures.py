@@ -4,8 +4,8 @@
 Each command runs undisturbed, then once for every request of the tool's and the library's for memory that it makes (or
 every call of OpenCL), with that one failing: memory_fault.c is preloaded from LIBRARY, or layer.c loaded. The tool then
 either does without, and what it writes is the same, byte for byte, or it ends with status 1 and a message that names the
-failure; no file is left that is not whole, neither under its final name nor beside it. Never a crash. Without `all` a sample of requests
-and calls. Standard library only.
+failure; no file is left that is not whole, neither under its final name nor beside it. Never a crash. Without `all` a
+sample of requests and calls. Standard library only.
 """
 import datetime
 import gzip
