@@ -32,7 +32,9 @@ def versions(results):
     for result in results:
         for name, version in result["versions"].items():
             known.setdefault(name, []).append(str(version))
-    return ", ".join(f"{name} {' and '.join(sorted(set(known[name])))}" for name in sorted(known, key=str.lower))
+    texts = {name: " and ".join(sorted(set(known[name]))) for name in known}
+    return ", ".join(texts[name] if name in texts[name] else f"{name} {texts[name]}"
+                     for name in sorted(texts, key=str.lower))
 
 
 def table(results):

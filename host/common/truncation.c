@@ -3,7 +3,6 @@
 #include "exit_status.h"
 #include "failure.h"
 
-#include <pthread.h>
 #include <signal.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,7 +11,6 @@
 
 static volatile sig_atomic_t seen;
 static uintptr_t page_bytes;
-static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 /* Compilers of kernels (LLVM) have handlers of their own while they work, which hand a fault of another thread on by
  * raising the signal anew: it comes again as a fault. Anything else that the signal may mean ends the process, as it
@@ -27,7 +25,7 @@ static void replace_page(int number, siginfo_t *about, void *context) {
         signal(number, SIG_DFL);
 }
 
-static void watch(void) {
+void truncation_watch(void) {
     struct sigaction action;
     memset(&action, 0, sizeof action);
     action.sa_sigaction = replace_page;
@@ -35,8 +33,6 @@ static void watch(void) {
     page_bytes = (uintptr_t)sysconf(_SC_PAGESIZE);
     sigaction(SIGBUS, &action, NULL);
 }
-
-void truncation_watch(void) { pthread_once(&once, watch); }
 
 int truncation_seen(void) { return seen; }
 

@@ -7,7 +7,7 @@
 #ifndef TRUNCATION_H
 #define TRUNCATION_H
 
-/* From here on the process survives such reads. May be called again. */
+/* From here on the process survives such reads; again after what may have set another handler of the signal. */
 void truncation_watch(void);
 
 /* Nonzero where a page has been lost. */

@@ -106,8 +106,9 @@ typedef enum tc_engine {
     TC_ENGINE_REFERENCE = 1, /* scalar C on the calling thread; needs no OpenCL */
 } tc_engine;
 
-/* Called on the extracting thread now and then; fraction runs from 0 to 1 within one call of the library. Return
- * nonzero to cancel: the call then returns TC_ERROR_CANCELLED, and everything can be used again. */
+/* Called on the extracting thread now and then, first when kernels have been built; fraction runs from 0 to 1 within
+ * one call of the library. Return nonzero to cancel: the call then returns TC_ERROR_CANCELLED, and everything can be
+ * used again. */
 typedef int (*tc_progress)(void *user, const char *stage, double fraction);
 
 struct _cl_context;

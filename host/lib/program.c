@@ -142,7 +142,7 @@ static void program_release(program *p) {
     free(p);
 }
 
-/* The program with these options, built when first asked for. name: of its main kernel; NULL: none is made. */
+/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: none is made. */
 static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCE_COUNT],
                              const char *name, bool cells, program **out) {
     for (program *p = context->programs; p; p = p->next)
@@ -163,7 +163,7 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     }
     p->next = context->programs;
     *out = context->programs = p;
-    return TC_OK;
+    return context_progress(context, "build", 0);
 }
 
 tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out) {

@@ -147,6 +147,7 @@ tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool
                       .plain = options->normals != 0};
     tc_status status = kinds_try(grid->context, &v, options, emits);
     trial_volume_release(&v);
-    if (!status) grid->context->passed[kind_of(grid, options, emits)] = true;
-    return status;
+    if (status) return status;
+    grid->context->passed[kind_of(grid, options, emits)] = true;
+    return context_progress(grid->context, "trial", 0);
 }

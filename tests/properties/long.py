@@ -40,7 +40,7 @@ def run(program, arguments, caches):
 
 
 def numbers(pattern, text):
-    return [tuple(map(int, found)) for found in re.findall(pattern, text, re.M)]
+    return [tuple(map(int, found.groups())) for found in re.finditer(pattern, text, re.M)]
 
 
 def topology_figures(text):
@@ -94,4 +94,5 @@ def main():
     return 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())
