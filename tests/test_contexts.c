@@ -109,9 +109,12 @@ static void test_progress(tc_engine engine, const tc_mesh_data *expected) {
     how.isovalue = 127.5;
     tc_context *context = context_open(&options);
     EXPECT(tc_grid_create(context, &grid_options, &grid) == TC_OK, "%s", tc_message());
-    EXPECT(tc_extract(grid, &how, &mesh) == TC_OK, "%s", tc_message());
-    tc_mesh_destroy(mesh);
-    mesh = NULL;
+    for (int n = 0; n < 2; n++) { /* the first builds kernels, and tells */
+        w.calls = 0;
+        EXPECT(tc_extract(grid, &how, &mesh) == TC_OK, "%s", tc_message());
+        tc_mesh_destroy(mesh);
+        mesh = NULL;
+    }
     int calls = w.calls;
     EXPECT(calls >= 2 && !w.wrong && w.last > 0.999, "%d calls of progress, %d wrong, the last at %g", calls, w.wrong,
            w.last);
