@@ -65,14 +65,14 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emittin
         shared[1] = emitting ? atomic_add(&head[STATE_ACTIVE_BRICKS], emitting) : 0;
     }
     group_barrier();
-    uint stride = shared[0] ? 1 : layer, count = layer * layers / stride;
-    for (uint start = 0; start < count; start += WORK_ITEMS) {
-        uint n = (start + (uint)get_local_id(0)) * stride;
-        bool emits = n < layer * layers && bricks[first + n].rows;
-        if (emits || (n < layer * layers && n % layer == 0))
-            bricks[first + n].vertices += prefix.x, bricks[first + n].triangles += prefix.y;
-        if (emits) active[atomic_inc(&shared[1])] = first + n;
-    }
+    uint count = shared[0] ? layer : 1;
+    for (uint z = 0; z < layers; z++, first += layer)
+        for (uint start = 0; start < count; start += WORK_ITEMS) {
+            uint n = start + (uint)get_local_id(0);
+            bool emits = n < layer && bricks[first + n].rows;
+            if (emits || n == 0) bricks[first + n].vertices += prefix.x, bricks[first + n].triangles += prefix.y;
+            if (emits) active[atomic_inc(&shared[1])] = first + n;
+        }
 }
 
 /* Looks back for a tile whose sums are posted, posts its prefix and stores what follows from it. */

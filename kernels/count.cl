@@ -90,37 +90,30 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
     return lanes_select(LANE_NUMBERS + y < (lanes)s->ny) & word_valid(s, w);
 }
 
-/* The rows of the brick at y in plane z; 0 outside the grid. */
-inline_always lanes tile_lanes(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    if (w >= s->words_x || z >= s->nz) return (lanes)0;
-    return vload8(0, tile_row(s, t, y, z, w, k)) & rows_valid(s, y, w);
-}
-
-inline_always ulong tile_word(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    if (w >= s->words_x || y >= s->ny || z >= s->nz) return 0;
-    return *tile_row(s, t, y, z, w, k) & word_valid(s, w);
-}
-
 /* Whether the samples that follow a uniform brick in x, y or z have one on the other side. Those of its tile that are
  * uniform too have not where they are on its side. */
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, uint sign) {
     const ulong uniform = sign_word(sign);
-    lanes differ = 0;
     for (uint n = 1; n < 8; n++) {
         const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
         if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
-        if (up < t.y1 && deep < t.z1 && k.bricks[brick_index(s, up, deep, across)].sign == sign) continue;
+        const uint found = up < t.y1 && deep < t.z1 ? k.bricks[brick_index(s, up, deep, across)].sign : SIGN_MIXED;
+        if (found == sign) continue;
+        if (found != SIGN_MIXED) return true;
         const ulong columns = n & 1 ? 1 : word_valid(s, across);
-        const uint end = n & 4 ? deep + 1 : min(z + BRICK_PLANES, t.z1);
-        for (uint plane = deep; plane < end; plane++) {
-            global const ulong *row = tile_row(s, t, up, plane, across, k);
+        const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
+        const uint stride = up < t.y1 ? BRICK_ROWS : s->words_x; /* from plane to plane */
+        global const ulong *row = tile_row(s, t, up, deep, across, k);
+        lanes differ = 0;
+        ulong differs = 0;
+        for (uint plane = 0; plane < planes; plane++, row += stride)
             if (n & 2)
-                differ.s0 |= (*row ^ uniform) & columns;
+                differs |= *row ^ uniform;
             else
-                differ |= (vload8(0, row) ^ uniform) & rows_valid(s, up, across) & columns;
-        }
+                differ |= vload8(0, row) ^ uniform;
+        if (n & 2 ? differs & columns : lanes_any(differ & rows_valid(s, up, across) & columns)) return true;
     }
-    return lanes_any(differ) != 0;
+    return false;
 }
 
 /* Whether a brick emits something, or, where it is mixed, may. The bricks at higher x, y and z tell at once where they
@@ -138,11 +131,46 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
     return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign);
 }
 
-/* Rows y to y + 7 and y + 1 to y + 8. */
-inline_always void plane_rows(const slab *s, tile t, uint y, uint z, uint w, tile_words k, sample_rows *a,
-                              sample_rows *b) {
-    lanes at = tile_lanes(s, t, y, z, w, k), next = tile_lanes(s, t, y, z, w + 1, k);
-    ulong last = tile_word(s, t, y + BRICK_ROWS, z, w, k), last_next = tile_word(s, t, y + BRICK_ROWS, z, w + 1, k);
+/* The words that cubes of a brick take from one brick: where those of its planes are, and of the plane after. */
+typedef struct column {
+    global const ulong *first, *after;
+    uint stride; /* from plane to plane */
+    lanes valid; /* samples that exist */
+} column;
+
+/* Outside the grid all words are 0. */
+inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+    global const ulong *none = brick_words(0, SIGN_OUTSIDE, k.words);
+    column c = {none, none, 0, 0};
+    if (w >= s->words_x || y >= s->ny) return c;
+    const uint end = min(z + BRICK_PLANES, t.z1);
+    c.first = tile_row(s, t, y, z, w, k), c.stride = y < t.y1 ? BRICK_ROWS : s->words_x;
+    if (end < s->nz) c.after = tile_row(s, t, y, end, w, k);
+    c.valid = rows_valid(s, y, w);
+    return c;
+}
+
+/* Of the brick, of that at higher x, and of the rows after both. */
+typedef struct brick_columns {
+    column at, next, last, last_next;
+} brick_columns;
+
+inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+    brick_columns c = {column_of(s, t, y, z, w, k), column_of(s, t, y, z, w + 1, k),
+                       column_of(s, t, y + BRICK_ROWS, z, w, k), column_of(s, t, y + BRICK_ROWS, z, w + 1, k)};
+    return c;
+}
+
+inline_always global const ulong *column_row(column c, uint plane, bool after) {
+    return after ? c.after : c.first + plane * c.stride;
+}
+
+/* Rows y to y + 7 and y + 1 to y + 8 of a plane, which may be the one after the brick. */
+inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
+    lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
+    lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
+    ulong last = *column_row(c.last, plane, after) & c.last.valid.s0;
+    ulong last_next = *column_row(c.last_next, plane, after) & c.last_next.valid.s0;
     *a = rows_shifted(at, next);
     *b = rows_shifted(lanes_up(at, last), lanes_up(next, last_next));
 }
@@ -155,15 +183,19 @@ inline_always lanes lanes_before(lanes x) {
     return x + (lanes)(0, 0, 0, 0, x.s0123);
 }
 
+typedef ushort ushorts8 __attribute__((ext_vector_type(8)));
+
 /* Counts a brick, stores where in it each row's output begins and returns which rows emit. */
 inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, tile_words k, global const ulong *cells,
                                global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
-    uint number = brick_index(s, y, z, w), mask = 0;
-    lanes begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
+    const uint number = brick_index(s, y, z, w), planes = min((uint)BRICK_PLANES, t.z1 - z);
+    const brick_columns columns = columns_of(s, t, y, z, w, k);
+    uint mask = 0;
+    lanes cells_seen = 0, begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
     sample_rows a, b, c, d;
-    plane_rows(s, t, y, z, w, k, &a, &b);
-    for (uint plane = 0; plane < BRICK_PLANES && z + plane < t.z1; plane++) {
-        plane_rows(s, t, y, z + plane + 1, w, k, &c, &d);
+    plane_rows(columns, 0, false, &a, &b);
+    for (uint plane = 0; plane < planes; plane++) {
+        plane_rows(columns, plane + 1, plane + 1 == planes, &c, &d);
         cube_rows r = cube_rows_of(s, y, z + plane, w, a, b, c, d);
         a = c, b = d;
         row_counts rows = rows_count(s, &r, y, z + plane, w, cells);
@@ -171,11 +203,13 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
         if (!lanes_any(both)) continue;
         lanes before = lanes_before(both) + begins;
         vstore8(rows.packed + (before & 0xfffffffful), BRICK_PLANES * number + plane, offsets);
-        vstore8(convert_ushort8(before >> 32), BRICK_PLANES * number + plane, triangle_offsets);
+        *(global ushorts8 *)(triangle_offsets + BRICK_ROWS * (BRICK_PLANES * number + plane)) =
+            __builtin_convertvector(before >> 32, ushorts8);
         begins = (lanes)(before.s7 + both.s7);
         mask |= lanes_nonzero(both) << (BRICK_ROWS * plane);
-        sums->cells += (uint)lanes_sum(rows.cells);
+        cells_seen += rows.cells;
     }
+    sums->cells += (uint)lanes_sum(cells_seen);
     sums->vertices += (uint)begins.s0, sums->triangles += (uint)(begins.s0 >> 32);
     return mask;
 }

@@ -3,9 +3,9 @@
  *
  * A first visit reads every sample once and leaves the range of every brick, as keys: unsigned integers of 32 bits that
  * order like the samples (of 64-bit samples the upper half, so that a key in doubt counts as mixed). Later visits with
- * another isovalue read the bricks only whose range holds it. Where a work-item has bricks to itself it takes eight at
- * a time, next to each other in x, so that samples are read in long runs, 64 by vectors of Clang's; else four
- * work-items share a row of 64 samples.
+ * another isovalue read the bricks only whose range holds it. Where a work-item has bricks to itself it takes strips of
+ * them, so that samples are read in long runs, 64 by vectors of Clang's; else four work-items share a row of 64
+ * samples.
  */
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 
@@ -42,9 +42,13 @@ inline_always samples64 keys64(samples64 bits, const slab *s) {
 }
 
 inline_always ulong word_make(samples64 bits, const slab *s) {
-    ulong8 mask = __builtin_astype(
-        __builtin_convertvector((bits - (BITS)s->inside_low) <= (samples64)(BITS)s->inside_span, mask64), ulong8);
+    mask64 inside = __builtin_convertvector((bits - (BITS)s->inside_low) <= (samples64)(BITS)s->inside_span, mask64);
+#ifdef MASK_REGISTERS
+    return __builtin_ia32_cvtb2mask512(inside);
+#else
+    ulong8 mask = __builtin_astype(inside, ulong8);
     return as_ulong(convert_uchar8(((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56));
+#endif
 }
 
 /* 64 samples of a row; those past its end repeat the first. */
@@ -62,11 +66,32 @@ inline_always samples64 samples_load64(global const BITS *samples, const slab *s
     return *(const samples64_unaligned *)row;
 }
 
-inline_always brick_range range_of(samples64 low, samples64 high) {
-    BITS l[64], h[64];
-    *(samples64_unaligned *)l = low, *(samples64_unaligned *)h = high;
-    brick_range range = {keys_least(min(min(vload16(0, l), vload16(1, l)), min(vload16(2, l), vload16(3, l)))),
-                         keys_most(max(max(vload16(0, h), vload16(1, h)), max(vload16(2, h), vload16(3, h))))};
+/* Keys of a cache line's samples, of large ones 16. */
+#define LINE_KEYS (sizeof(BITS) < 4 ? 64 / sizeof(BITS) : 16)
+typedef BITS line_keys __attribute__((ext_vector_type(LINE_KEYS)));
+typedef union keys_parts {
+    samples64 all;
+    line_keys line[64 / LINE_KEYS];
+    BITS16 sixteen[4];
+} keys_parts;
+
+inline_always void line_widen(samples64 keys, line_keys *low, line_keys *high) {
+    keys_parts k = {keys};
+    line_keys least = *low, most = *high;
+#pragma unroll
+    for (uint n = 0; n < 64 / LINE_KEYS; n++) {
+        least = k.line[n] < least ? k.line[n] : least;
+        most = k.line[n] > most ? k.line[n] : most;
+    }
+    *low = least, *high = most;
+}
+
+inline_always brick_range line_range(line_keys low, line_keys high) {
+    keys_parts l, h;
+    l.line[0] = low, h.line[0] = high;
+    BITS16 least = l.sixteen[0], most = h.sixteen[0];
+    for (uint n = 1; n < LINE_KEYS / 16; n++) least = min(least, l.sixteen[n]), most = max(most, h.sixteen[n]);
+    brick_range range = {keys_least(least), keys_most(most)};
     return range;
 }
 
@@ -89,47 +114,55 @@ inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint coun
     for (uint n = 0; n < 64 * count; n += 64 / sizeof(BITS)) line_prefetch(row + n);
 }
 
-/* The row that comes eight places after one of a brick: in its next plane, or of the next brick in y. Memory is far
- * away, and what it foresees by itself ends with a page. */
-inline_always void row_prefetch_ahead(const slab *s, uint y0, uint z0, uint w, uint count, uint place,
-                                      global const BITS *samples) {
-    bool last = place + BRICK_ROWS >= BRICK_WORDS;
-    row_prefetch(s, y0 + place % BRICK_ROWS + (last ? BRICK_ROWS : 0), last ? z0 : z0 + place / BRICK_ROWS + 1, w,
-                 count, samples);
-}
+#define STRIP_BRICKS   64
+#define PREFETCH_BYTES 4096
 
-/* Words, ranges and signs of `count` bricks from w on, seen for the first time. */
-inline_always void run_visit(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
-                             global ulong *words, global brick_state *bricks, global brick_range *ranges,
-                             uint *nonfinite) {
-    ulong word[RUN_BRICKS_X][BRICK_WORDS];
-    samples64 low[RUN_BRICKS_X], high[RUN_BRICKS_X];
-    for (uint n = 0; n < count; n++) low[n] = (BITS) ~(BITS)0, high[n] = 0;
-    for (uint place = 0; place < BRICK_WORDS; place++) {
-        uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
-        bool exists = y < s->ny && z < s->z1;
-        row_prefetch_ahead(s, y0, z0, w, count, place, samples);
-        for (uint n = 0; n < count && exists; n++) {
-            samples64 bits = samples_load64(samples, s, y, z, w + n), keys = keys64(bits, s);
-            word[n][place] = word_make(bits, s);
-            low[n] = keys < low[n] ? keys : low[n];
-            high[n] = keys > high[n] ? keys : high[n];
+/* Bricks visited together: `rows` rows of them, `count` in each, at most STRIP_BRICKS. Of every plane they are read row
+ * after row, which where `count` are all is one long run: memory gives a third more that way. */
+typedef struct strip {
+    uint y, z, w; /* of the first word */
+    uint rows, count;
+} strip;
+
+/* Words, ranges and signs of a strip seen for the first time. Asks for what is read PREFETCH_BYTES later, be it in the
+ * next plane or the next strip: memory is far away, and what it foresees by itself ends with a page. */
+inline_always void strip_visit(const slab *s, strip p, global const BITS *samples, global ulong *words,
+                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
+    const uint rows = p.rows * BRICK_ROWS, later = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
+    ulong word[STRIP_BRICKS][BRICK_WORDS];
+    line_keys low[STRIP_BRICKS], high[STRIP_BRICKS];
+    for (uint n = 0; n < p.rows * p.count; n++) low[n] = (BITS) ~(BITS)0, high[n] = 0;
+    for (uint plane = 0; plane < BRICK_PLANES; plane++) {
+        const uint z = p.z + plane, have = z < s->z1 ? min(rows, s->ny - p.y) : 0;
+        const bool last = plane + 1 == BRICK_PLANES;
+        global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + later * (ulong)s->nx;
+        for (uint row = 0; row < rows; row++, ahead += s->nx) {
+            const uint first = row / BRICK_ROWS * p.count, place = BRICK_ROWS * plane + row % BRICK_ROWS;
+            if (row + later == rows)
+                ahead = samples + row_start(s, last ? p.y + rows : p.y, last ? p.z : z + 1) + 64ul * p.w;
+            for (uint n = 0; n < p.count && row < have; n++) {
+#pragma unroll
+                for (uint m = 0; m < 64; m += 64 / sizeof(BITS)) line_prefetch(ahead + 64 * n + m);
+                samples64 bits = samples_load64(samples, s, p.y + row, z, p.w + n);
+                word[first + n][place] = word_make(bits, s);
+                line_widen(keys64(bits, s), &low[first + n], &high[first + n]);
+            }
+            for (uint n = 0; n < p.count && row >= have; n++) word[first + n][place] = 0;
         }
-        for (uint n = 0; n < count && !exists; n++) word[n][place] = 0;
     }
-    uint first = brick_index(s, y0, z0, w);
-    for (uint n = 0; n < count; n++) {
-        brick_range range = range_of(low[n], high[n]);
+    for (uint n = 0; n < p.rows * p.count; n++) {
+        uint w = p.w + n % p.count, number = brick_index(s, p.y + n / p.count * BRICK_ROWS, p.z, w);
+        brick_range range = line_range(low[n], high[n]);
         uint sign = range_sign(s, range);
-        ranges[s->range_offset + first + n] = range;
-        brick_sign_store(first + n, sign, bricks);
+        ranges[s->range_offset + number] = range;
+        brick_sign_store(number, sign, bricks);
 #if FLOATING && !MISSING
         *nonfinite |= !range_finite(range);
 #endif
         if (sign != SIGN_MIXED) continue;
-        ulong valid = word_valid(s, w + n);
+        ulong valid = word_valid(s, w);
         for (uint place = 0; place < BRICK_WORDS; place++)
-            words[(ulong)BRICK_WORDS * (first + n) + place] = word[n][place] & valid;
+            words[(ulong)BRICK_WORDS * number + place] = word[n][place] & valid;
     }
 }
 
@@ -174,7 +207,7 @@ inline_always void run_words_make(const slab *s, uint y0, uint z0, uint w, uint 
         if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + BRICK_WORDS * (first + n));
 }
 
-/* A layer whose ranges are known: words are made one run behind, when their samples have come. */
+/* A layer whose ranges are known: words are made one mixed run behind, when their samples have come. */
 inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, global const BITS *samples,
                                     global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
     uint asked = 0, asked_y = y0, asked_w = 0;
@@ -182,6 +215,7 @@ inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, glo
         for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
             uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
             uint mixed = run_sign_again(s, y, z, w, count, samples, bricks, ranges);
+            if (!mixed) continue;
             run_words_make(s, asked_y, z, asked_w, asked, samples, words);
             asked = mixed, asked_y = y, asked_w = w;
         }
@@ -195,9 +229,12 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
         return;
     }
-    for (uint y = y0; y < y1; y += BRICK_ROWS)
-        for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X)
-            run_visit(s, y, z, w, min((uint)RUN_BRICKS_X, s->words_x - w), samples, words, bricks, ranges, nonfinite);
+    const uint most = min(s->words_x, (uint)STRIP_BRICKS), step = STRIP_BRICKS / most * BRICK_ROWS;
+    for (uint y = y0; y < y1; y += step)
+        for (uint w = 0; w < s->words_x; w += most) {
+            strip p = {y, z, w, (min(step, y1 - y) + BRICK_ROWS - 1) / BRICK_ROWS, min(most, s->words_x - w)};
+            strip_visit(s, p, samples, words, bricks, ranges, nonfinite);
+        }
 }
 
 /* A word of any tile. */

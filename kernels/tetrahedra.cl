@@ -57,12 +57,18 @@ inline_always ulong lanes_sum(lanes x) {
 
 /* Bit n for a lane n that is not 0. */
 inline_always uint lanes_nonzero(lanes x) {
+#ifdef MASK_REGISTERS
+    return __builtin_ia32_cvtq2mask512(x != 0ul);
+#else
     char8 mask = convert_char8(x != 0ul);
     return (uint)(((as_ulong(mask) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
+#endif
 }
 
 /* The lanes moved down by one, then row `last`. */
-inline_always lanes lanes_up(lanes x, ulong last) { return (lanes)(x.s1234, x.s567, last); }
+inline_always lanes lanes_up(lanes x, ulong last) {
+    return __builtin_shufflevector(x, (lanes)last, 1, 2, 3, 4, 5, 6, 7, 8);
+}
 #else
 #define LANE_NUMBERS            0ul
 #define lanes_select(condition) ((condition) ? ~0ul : 0ul)
@@ -164,8 +170,8 @@ inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
     lanes carry3 = add_carry(twos, two[1], two[2], &twos);
     lanes carry4 = add_carry(twos, two[3], two[4], &twos);
     lanes eights = add_carry(carry2, carry3, carry4, &fours);
-    lanes count =
-        lanes_popcount(ones) + 2 * lanes_popcount(twos) + 4 * lanes_popcount(fours) + 8 * lanes_popcount(eights);
+    lanes count = lanes_popcount(ones) +
+                  2 * (lanes_popcount(twos) + 2 * (lanes_popcount(fours | eights) + lanes_popcount(eights)));
     return HYBRID ? count - 2 * lanes_popcount(cubes) : count;
 }
 

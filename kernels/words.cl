@@ -22,6 +22,11 @@
 
 /* Bit-sliced code runs over LANES rows of 64 samples at once: the eight of a plane of a brick where a work-item has
  * bricks to itself, one where it shares them. */
+/* AVX-512: masks of comparisons are integers in registers of their own. */
+#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define MASK_REGISTERS
+#endif
+
 #if WORK_ITEMS == 1
 #define group_barrier()
 #define LANES 8
@@ -68,13 +73,17 @@ inline_always char16 missing_mask(BITS16 bits, const slab *s) {
     return missing;
 }
 
-/* Bit n of the result for byte n of the mask: each byte keeps one bit, the product sums the bytes of a half into its
- * highest one. */
+/* Bit n of the result for byte n of the mask, as AVX-512 has it; elsewhere each byte keeps one bit, and the product
+ * sums the bytes of a half into its highest one. */
+#ifdef MASK_REGISTERS
+inline_always uint mask_pack(char16 mask) { return __builtin_ia32_cvtb2mask128(mask); }
+#else
 inline_always uint mask_pack(char16 mask) {
     ulong2 kept = as_ulong2(mask) & 0x8040201008040201ul;
     ulong2 bytes = (kept * 0x0101010101010101ul) >> 56;
     return (uint)(bytes.x | bytes.y << 8);
 }
+#endif
 
 inline_always ulong row_start(const slab *s, uint y, uint z) {
     return s->sample_offset + ((ulong)(z - s->sample_z) * s->ny + y) * s->nx;
