@@ -14,10 +14,35 @@ typedef struct cluster_arrays {
     global uint *active, *head;
 } cluster_arrays;
 
-/* Sums over the clusters that a work-item has seen. */
+#if WORK_ITEMS == 1
+enum { LIST_BATCH = 64 };
+#endif
+
+/* What a work-item has seen of clusters: sums over them; where it is alone, active ones that are not listed yet. */
 typedef struct cluster_sums {
     uint crossed, invalid;
+#if WORK_ITEMS == 1
+    uint active_count, active[LIST_BATCH];
+#endif
 } cluster_sums;
+
+#if WORK_ITEMS == 1
+/* Work-items meet at the list's end: many clusters at once. */
+inline_always void clusters_append(cluster_arrays a, cluster_sums *sums) {
+    uint place = atomic_add(&a.head[HEAD_ACTIVE_CLUSTERS], sums->active_count);
+    for (uint n = 0; n < sums->active_count; n++) a.active[place + n] = sums->active[n];
+    sums->active_count = 0;
+}
+
+inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) {
+    sums->active[sums->active_count++] = n;
+    if (sums->active_count == LIST_BATCH) clusters_append(a, sums);
+}
+#else
+inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) {
+    a.active[atomic_inc(&a.head[HEAD_ACTIVE_CLUSTERS])] = n;
+}
+#endif
 
 /* Whether the surface may pass through a cluster; the first visit keeps its range. A recount does not know whether that
  * is there yet. */
@@ -40,7 +65,7 @@ inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a
     if (recount || !report.active) return;
     cluster_state state = {report.patterns, before.x, before.y};
     a.clusters[n] = state;
-    a.active[atomic_inc(&a.head[HEAD_ACTIVE_CLUSTERS])] = n;
+    cluster_append(n, a, sums);
     sums->crossed += report.edges;
 }
 
@@ -85,7 +110,10 @@ inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool
     for (uint start = first; start < end; start += 64) {
         ulong mixed = next;
         next = mixed_prefetch(k, start + 64, end, a);
-        for (; mixed; mixed &= mixed - 1) cluster_add(k, start + lowest_bit(mixed), false, a, recount, &running, sums);
+        for (; mixed; mixed &= mixed - 1) {
+            if (mixed & (mixed - 1)) cluster_prefetch(k.c, start + lowest_bit(mixed & (mixed - 1)), a.in);
+            cluster_add(k, start + lowest_bit(mixed), false, a, recount, &running, sums);
+        }
     }
     return running;
 }
@@ -108,7 +136,7 @@ inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool
 inline_always void cluster_tile_settle(tile_tools k, uint number, cluster_arrays a) {
     uint missing;
     bool look = false;
-    cluster_sums none = {0, 0};
+    cluster_sums none = {0};
     while (!tile_settle(k, number, look, &missing)) {
         tile_post(k, missing, tile_count(k, missing, a, true, &none));
         look = true;
@@ -128,7 +156,7 @@ kernel void complex_classify(slab s, complex_job c, global const BITS *samples, 
     tile_tools k = {&s, &c, state + HEAD_WORDS, shared, sums};
     cluster_arrays a = {
         {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset}, ranges, clusters, active, state};
-    cluster_sums found = {0, 0};
+    cluster_sums found = {0};
     uint number = 0, first_own = c.cluster_tiles, last_own = c.cluster_tiles;
     while (number < c.cluster_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_CLASSIFY], shared);
@@ -147,6 +175,7 @@ kernel void complex_classify(slab s, complex_job c, global const BITS *samples, 
         }
     }
 #if WORK_ITEMS == 1
+    clusters_append(a, &found);
     for (uint own = first_own; own < c.cluster_tiles; own = k.tiles[TILE_WORDS * own + TILE_NEXT])
         cluster_tile_settle(k, own, a);
 #endif

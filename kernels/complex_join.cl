@@ -28,47 +28,45 @@ inline_always uint edges_of(uint a, global const active_tetrahedron *active, glo
 
 #if WORK_ITEMS == 1
 
-/* Edges that a work-item has met lately: neighbours in the list share most. */
+/* Edges that a work-item has met lately: neighbours in the list share most. One more is never met. */
 enum { RECENT_EDGES = 2048 };
 
-typedef struct recent_edges {
-    uint2 points[RECENT_EDGES];
-    uint places[RECENT_EDGES];
-} recent_edges;
+/* New ones wait between being hashed and entered: what is fetched first is asked for at once, what that leads to half
+ * way. */
+enum { EDGE_WAIT = 16, EDGE_QUEUE = 32 };
+
+typedef struct edge_work {
+    uint2 points[RECENT_EDGES + 1];
+    uint places[RECENT_EDGES + 1];
+    uint queue[EDGE_QUEUE];
+    uint hashed, asked, entered; /* new edges so far */
+} edge_work;
 
 /* An edge with this bit has been met before, at the place in the other bits. */
 #define EDGE_MET 0x80000000u
 
-/* Where in the table the edges of a tetrahedron are looked for first, which is asked for. */
+/* Where in the table the edges of a tetrahedron are looked for first, which is asked for. Without branches, as nothing
+ * foretells which are new. */
 inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, global uint *entries,
-                              recent_edges *recent) {
-    uint edges = edges_of(a, active, cases);
+                              edge_work *work) {
+    uint2 edge[4];
+    uint hash[4], edges = edges_of(a, active, cases), hashed = work->hashed;
+#pragma unroll
+    for (uint n = 0; n < 4; n++) edge[n] = edge_points(active, 4 * a + n, cases), hash[n] = edge_hash(edge[n]);
+#pragma unroll
     for (uint n = 0; n < 4; n++) {
-        uint place = 4 * a + n, entry = 0;
-        if (n < edges) {
-            uint2 edge = edge_points(active, place, cases);
-            uint hash = edge_hash(edge), r = hash >> 21;
-            if (recent->points[r].x == edge.x && recent->points[r].y == edge.y) {
-                entry = EDGE_MET | recent->places[r];
-            } else {
-                entry = hash & c->table_mask & ~EDGE_MET;
-                recent->points[r] = edge;
-                recent->places[r] = place;
-                line_prefetch(table + entry);
-            }
-        }
-        entries[place] = entry;
+        uint place = 4 * a + n, exists = n < edges, first = hash[n] & c->table_mask & ~EDGE_MET;
+        uint r = exists ? hash[n] >> 21 : RECENT_EDGES, where = work->places[r];
+        bool met = (work->points[r].x == edge[n].x) & (work->points[r].y == edge[n].y) & exists;
+        work->points[r] = edge[n];
+        work->places[r] = met ? where : place;
+        entries[place] = met ? EDGE_MET | where : first;
+        line_prefetch(table + first);
+        work->queue[hashed % EDGE_QUEUE] = place;
+        hashed += exists & !met;
     }
-}
-
-inline_always void edges_prefetch(uint a, global const active_tetrahedron *active, volatile global uint *table,
-                                  global const uint *entries) {
-    for (uint n = 0; n < 4; n++) {
-        uint entry = entries[4 * a + n];
-        uint there = entry & EDGE_MET ? EDGE_NONE : table[entry];
-        if (there != EDGE_NONE) line_prefetch(active + there / 4);
-    }
+    work->hashed = hashed;
 }
 
 #endif
@@ -94,14 +92,17 @@ inline_always uint edge_enter(const complex_job *c, uint place, uint entry, glob
 }
 
 #if WORK_ITEMS == 1
-inline_always void edges_enter(const complex_job *c, uint a, global const active_tetrahedron *active,
+/* Asks for what the table leads to, and enters edges, of those that have waited so long. */
+inline_always void edges_enter(const complex_job *c, uint wait, global const active_tetrahedron *active,
                                global const uchar *cases, volatile global uint *table, global uint *entries,
-                               uint *full) {
-    uint edges = edges_of(a, active, cases);
-    for (uint place = 4 * a; place < 4 * a + edges; place++) {
-        uint entry = entries[place];
-        entries[place] =
-            entry & EDGE_MET ? entries[entry & ~EDGE_MET] : edge_enter(c, place, entry, active, cases, table, full);
+                               edge_work *work, uint *full) {
+    for (; work->asked + wait / 2 < work->hashed; work->asked++) {
+        uint there = table[entries[work->queue[work->asked % EDGE_QUEUE]]];
+        line_prefetch(active + (there == EDGE_NONE ? 0 : there / 4));
+    }
+    for (; work->entered + wait < work->hashed; work->entered++) {
+        uint place = work->queue[work->entered % EDGE_QUEUE];
+        entries[place] = edge_enter(c, place, entries[place], active, cases, table, full);
     }
 }
 #endif
@@ -111,19 +112,23 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
     local uint shared[4];
     uint number = 0, full = 0;
 #if WORK_ITEMS == 1
-    recent_edges recent;
-    for (uint n = 0; n < RECENT_EDGES; n++) recent.points[n] = 0;
+    edge_work work;
+    for (uint n = 0; n < RECENT_EDGES; n++) work.points[n] = 0;
+    work.hashed = work.asked = work.entered = 0;
 #endif
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
         uint first = number * c.tile_actives, count = 0;
         if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
 #if WORK_ITEMS == 1
-        for (uint n = 0; n < count + FETCH_AHEAD; n++) {
-            if (n < count) edges_hash(&c, first + n, active, cases, table, entries, &recent);
-            if (n >= FETCH_AHEAD / 2 && n - FETCH_AHEAD / 2 < count)
-                edges_prefetch(first + n - FETCH_AHEAD / 2, active, table, entries);
-            if (n >= FETCH_AHEAD) edges_enter(&c, first + n - FETCH_AHEAD, active, cases, table, entries, &full);
+        for (uint n = 0; n < count; n++) {
+            edges_hash(&c, first + n, active, cases, table, entries, &work);
+            edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &full);
+        }
+        edges_enter(&c, 0, active, cases, table, entries, &work, &full);
+        for (uint place = 4 * first; place < 4 * (first + count); place++) {
+            uint entry = entries[place]; /* of an edge met before: where that is found */
+            entries[place] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : place];
         }
         if (full) break; /* all begins again with a larger table */
 #else
