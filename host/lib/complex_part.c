@@ -38,9 +38,11 @@ tc_status part_points_provide(tc_grid *grid, const float *points, const void *sa
     part->point_count = count;
     tc_status status =
         array_provide(grid->context, &part->points, points, 12ull * count, 4, &part->point_offset, "points");
-    return status ? status
-                  : array_provide(grid->context, &part->samples, samples, sample_bytes * (uint64_t)count, sample_bytes,
-                                  &part->sample_offset, "samples");
+    if (!status)
+        status = array_provide(grid->context, &part->samples, samples, sample_bytes * (uint64_t)count, sample_bytes,
+                               &part->sample_offset, "samples");
+    if (status) part_points_release(grid);
+    return status;
 }
 
 void part_tetrahedra_release(tc_grid *grid) {

@@ -41,7 +41,8 @@ tc_status complex_cut(tc_grid *grid);
 
 /* ---------------------------------------------------------------------------- arrays of a part (complex_part.c) */
 
-/* Brings tetrahedra, and points with samples, of the host's to the device: in place where it can. */
+/* Brings tetrahedra, and points with samples, of the host's to the device: in place where it can. Of points and samples
+ * none are there where one fails. */
 tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uint32_t count);
 tc_status part_points_provide(tc_grid *grid, const float *points, const void *samples, uint32_t count);
 void part_tetrahedra_release(tc_grid *grid); /* with their ranges */

@@ -58,6 +58,7 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     complex_cases(cases);
     cl_int error =
         cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
+    if (error) buffer_release(context, buffer);
     return error ? context_fail(context, "uploading the case table", error) : TC_OK;
 }
 
