@@ -129,7 +129,7 @@ static const trial launched[] = {
 
 static const trial slabbed[] = {
     {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_F32, .isovalue = 127.5},
-    {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_U8, .isovalue = 127.5, .normals = 1},
+    {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_U8, .isovalue = 127.5, .normals = 1},    {.field = "gyroid", .dims = {80, 50, 40}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX},
 };
 /* clang-format on */
 
