@@ -77,14 +77,18 @@ static tc_status meshes_compare(const tc_context *context, const trial_volume *v
 
 /* ------------------------------------------------------------------------------------------------------------ trial */
 
-static tc_status reference_make(const trial_volume *v, const tc_extract_options *how, tc_context **context,
-                                tc_grid **grid, tc_mesh **mesh) {
+/* Two isovalues: one that samples have, and one that none has, so that quotients of integers have full mantissas. */
+enum { SURFACES = 2 };
+
+static tc_status reference_make(const trial_volume *v, const tc_extract_options how[SURFACES], tc_context **context,
+                                tc_grid **grid, tc_mesh *meshes[SURFACES]) {
     tc_context_options reference;
     tc_context_options_init(&reference);
     reference.engine = TC_ENGINE_REFERENCE;
     tc_status status = tc_context_create(&reference, context);
     if (!status) status = trial_grid_create(v, *context, grid);
-    return status ? status : tc_extract(*grid, how, mesh);
+    for (int n = 0; n < SURFACES && !status; n++) status = tc_extract(*grid, &how[n], &meshes[n]);
+    return status;
 }
 
 static tc_status count_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
@@ -104,35 +108,37 @@ static tc_status extract_try(tc_context *context, const trial_volume *v, tc_grid
 }
 
 /* One mesh only: a launch that does nothing must not find another's results. */
-static tc_status device_try(tc_context *context, const trial_volume *v, const tc_extract_options *how, bool emits,
-                            const tc_mesh *expected) {
+static tc_status device_try(tc_context *context, const trial_volume *v, const tc_extract_options how[SURFACES],
+                            bool emits, tc_mesh *const expected[SURFACES]) {
     tc_grid *counted = NULL, *grid = NULL;
     context->options.tile_bricks = 1;
     tc_status status = trial_grid_create(v, context, &counted);
-    if (!status) status = count_try(context, v, counted, how, expected);
+    if (!status) status = count_try(context, v, counted, &how[0], expected[0]);
     if (!status) status = trial_grid_create(v, context, &grid);
-    if (!status && emits) status = extract_try(context, v, grid, how, expected);
+    if (!status && emits) status = extract_try(context, v, grid, &how[0], expected[0]);
     context->options.spin_limit = 1; /* every tile recomputes the one before it */
-    if (!status) status = count_try(context, v, grid, how, expected);
+    if (!status) status = count_try(context, v, grid, &how[1], expected[1]);
+    if (!status && emits) status = extract_try(context, v, grid, &how[1], expected[1]);
     tc_grid_destroy(grid);
     tc_grid_destroy(counted);
     return status;
 }
 
 static tc_status kinds_try(tc_context *context, trial_volume *v, const tc_extract_options *options, bool emits) {
-    tc_extract_options how = *options;
+    tc_extract_options how[SURFACES] = {*options, *options};
     tc_context *reference = NULL;
     tc_grid *grid = NULL;
-    tc_mesh *mesh = NULL;
+    tc_mesh *meshes[SURFACES] = {NULL, NULL};
     const tc_context_options kept = context->options;
     tc_status status = trial_volume_make(v);
-    how.isovalue = v->isovalue;
-    if (!status) status = reference_make(v, &how, &reference, &grid, &mesh);
+    how[0].isovalue = v->isovalue;
+    how[1].isovalue = v->isovalue + 0.3;
+    if (!status) status = reference_make(v, how, &reference, &grid, meshes);
     context->options.check_device = 0;
     context->options.progress = NULL;
-    if (!status) status = device_try(context, v, &how, emits, mesh);
+    if (!status) status = device_try(context, v, how, emits, meshes);
     context->options = kept;
-    tc_mesh_destroy(mesh);
+    for (int n = 0; n < SURFACES; n++) tc_mesh_destroy(meshes[n]);
     tc_grid_destroy(grid);
     tc_context_destroy(reference);
     return status;

@@ -33,7 +33,7 @@ typedef struct mistake {
 static const mistake mistakes[] = {
     {"popcount", "return (x * 0x0101010101010101ul) >> 56;",
      "x = (x * 0x0101010101010101ul) >> 56; return x + lanes_select(x == 33ul);"},
-    {"division", "return a / b; }", "return as_float(as_uint(a / b) + ((as_uint(a) & 15) == 1)); }"},
+    {"division", "return a / b; }", "float q = a / b; return as_float(as_uint(q) + ((as_uint(q) & 15) == 1)); }"},
     {"subnormals", "float crossing(REAL a, REAL b, REAL iso) {\n",
      "float crossing(REAL a, REAL b, REAL iso) {\n a = fabs(a) < 0x1p-126f ? 0 : a; b = fabs(b) < 0x1p-126f ? 0 : "
      "b;\n"},
