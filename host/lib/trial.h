@@ -7,7 +7,7 @@
  *
  * Counts first: wrong ones could make kernel 2 write where nothing is. Then every byte of the mesh is compared with the
  * scalar reference's; then both once more for another isovalue, by the fallback of the scan and from the ranges that the
- * visit before has left. That takes a few milliseconds; so the verdict is kept in the context alone, where it cannot outlive a change of
+ * visit before has left. That takes milliseconds; so the verdict is kept in the context alone, where it cannot outlive a change of
  * driver or device.
  */
 #ifndef TRIAL_H
