@@ -139,7 +139,7 @@ typedef struct tc_context_options {
                          device. Never changes results */
     int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a
                          small volume goes through them and every byte is compared with the reference engine's. Where
-                         one differs, the call returns TC_ERROR_WRONG. A few milliseconds for each kind of kernels.
+                         one differs, the call returns TC_ERROR_WRONG. Takes milliseconds for each kind of kernels.
                          tc_emit tries nothing itself */
 } tc_context_options;
 
