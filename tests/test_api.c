@@ -196,6 +196,8 @@ static void test_grid_options(tc_context *context) {
             grid_describe(&options);
             options.matrix[n / 4][n % 4] = bad[m];
             expect_grid(context, &options, TC_ERROR_ARGUMENT, "a matrix that is not finite in float32");
+            EXPECT(strstr(tc_message(), "spacing, origin or direction"), "a number of the matrix is not named: %s",
+                   tc_message());
         }
     grid_describe(&options);
     options.matrix[2][2] = 0;

@@ -498,6 +498,20 @@ class Blocks(GridCase):
         self.assertGreater(len(vertices), 7)
         self.assertEqual({vertex["k"] for vertex in vertices}, {5.0})
 
+    def test_carry_of_several_components(self):
+        self.needs_xml()
+        points = lattice((4, 3, 3))
+        places = [float(n) for p in points for n in p]
+        volume = self.write("a.vti", vti_text((4, 3, 3), [
+            ("f", "f32", [float(sum(p)) for p in points]), ("place", "f32", places, 3)]))
+        self.surface(volume, "--field", "f", "--iso", "2.5", "--carry", "place,f", "-o", self.path("a.ply"))
+        vertices, _ = read_ply(self.path("a.ply"))
+        self.assertGreater(len(vertices), 7)
+        for vertex in vertices:
+            self.assertAlmostEqual(vertex["f"], 2.5, places=6)
+            for axis, name in enumerate("xyz"):
+                self.assertAlmostEqual(vertex[f"place_{axis}"], vertex[name], places=6)
+
     def test_carry_to_separate_files(self):
         self.expect(0, "extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine", "reference",
                     "--carry", "momentum-x", "--blocks", "separate", "-o", self.path("a.ply"))

@@ -170,6 +170,31 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
     cell_list_free(&list);
 }
 
+/* A vertex on the second end of an edge is where that is, to the bit, however far away the first one is. */
+static void ends_compare(void) {
+    static const float points[12] = {1e8f, -3e7f, 5e8f, -1e8f, 2e8f, 1e7f, 7e7f, 1e8f, -2e8f, 0.1f, 0.2f, 0.3f};
+    static const uint8_t values[4] = {0, 0, 0, 1};
+    static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
+    const double isovalue = 1;
+    tc_complex_options o;
+    tc_extract_options how;
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_complex_options_init(&o);
+    tc_extract_options_init(&how);
+    o.point_count = 4, o.points = points, o.samples = values;
+    o.tetrahedron_count = 1, o.tetrahedra = tetrahedron;
+    how.isovalue = isovalue;
+    EXPECT(!tc_complex_create(reference, &o, &grid) && !tc_extract(grid, &how, &mesh) && !tc_mesh_get(mesh, &data),
+           "ends of edges: %s", tc_message());
+    for (uint64_t v = 0; v < data.vertex_count; v++)
+        EXPECT(!memcmp(data.positions + 3 * v, points + 9, 12), "a vertex on the end of an edge is elsewhere");
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    engines_compare(&o, &isovalue, 1, true, "ends of edges, u8");
+}
+
 /* No tetrahedron shares an edge with another: the table of edges has to grow. */
 static void scattered_compare(void) {
     enum { COUNT = 3000 };
@@ -274,9 +299,11 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
 /* ---------------------------------------------------------------------------------------------------------- refusal */
 
 static void refusals(tc_context *context) {
+    enum { SEVERAL = 40 }; /* tetrahedra: two whole clusters of the kernels, and a part of one */
     static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const double values[4] = {0, 1, 2, 3};
-    static const uint32_t good[4] = {0, 1, 2, 3}, bad[8] = {0, 1, 2, 3, 0, 1, 2, 4};
+    static const uint32_t good[4] = {0, 1, 2, 3};
+    uint32_t bad[4 * SEVERAL];
     tc_complex_options o;
     tc_extract_options options;
     tc_grid *grid = NULL;
@@ -322,8 +349,10 @@ static void refusals(tc_context *context) {
     EXPECT(tc_extract(grid, &options, &mesh) == TC_OK && !tc_mesh_get(mesh, &data) && data.triangle_count == 2,
            "one tetrahedron: %s", tc_message());
     tc_grid_destroy(grid);
-    o.tetrahedra = bad, o.tetrahedron_count = 2;
-    if (tc_complex_create(context, &o, &grid) == TC_OK) {
+    for (uint32_t count = 2; count <= SEVERAL; count += SEVERAL - 2) {
+        for (uint32_t n = 0; n < 4 * SEVERAL; n++) bad[n] = n % 4 + (n == 7);
+        o.tetrahedra = bad, o.tetrahedron_count = count;
+        if (tc_complex_create(context, &o, &grid)) continue;
         EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_DATA, "a point that is not there");
         EXPECT(strstr(tc_message(), "tetrahedron 1 has point 4"), "not told which: %s", tc_message());
         tc_grid_destroy(grid);
@@ -401,6 +430,7 @@ int main(int argc, char **argv) {
         if (type_is_floating(type)) mixed_block_compare(type, 7, true, true);
     }
     mixed_block_compare(TC_F32, 21, true, false);
+    ends_compare();
     scattered_compare();
     grid_compare(TC_U8, false, false);
     grid_compare(TC_F32, false, true);

@@ -355,6 +355,25 @@ static void test_degenerate(subject *s) {
     tc_mesh_destroy(uniform);
 }
 
+/* A pyramid, beside a missing sample: all faces but those of its base lie in planes through the apex, the first point,
+ * and only the base tells which way round the grid is. */
+static void test_pyramid(subject *s) {
+    for (int turned = 0; turned < 2; turned++) {
+        subject_begin(s, TC_F32, (int64_t[3]){9, 9, 9});
+        ball_fill(s);
+        sample_set(s->samples, TC_F32, 8, (double)NAN);
+        for (int64_t n = 0; n < s->count; n++) {
+            double p[3];
+            place_of(s, n, p);
+            s->points[3 * n] = (float)((turned ? 8 - p[0] : p[0]) * p[2]);
+            s->points[3 * n + 1] = (float)(p[1] * p[2]);
+            s->points[3 * n + 2] = (float)p[2];
+        }
+        s->grid.points = s->points;
+        expect_outward(s, turned ? "a mirrored pyramid" : "a pyramid");
+    }
+}
+
 /* Where cells shrink by 10^8 the normals still are the gradient's. */
 static void test_flat_cells(subject *s) {
     tc_mesh *mesh;
@@ -490,6 +509,7 @@ int main(void) {
     test_uniform_twin(&s, 1);
     test_winding(&s);
     test_degenerate(&s);
+    test_pyramid(&s);
     test_flat_cells(&s);
     test_blanks_as_missing(&s, TC_F32);
     test_blanks_as_missing(&s, TC_U8);

@@ -24,7 +24,7 @@ typedef struct subject {
     uint64_t hash;
 } subject;
 
-enum { WAVES, MISSING, EXTREMES, GENTLE, GENTLE_MISSING, SUBJECTS };
+enum { WAVES, MISSING, EXTREMES, HALVES, GENTLE, GENTLE_MISSING, SUBJECTS };
 
 static subject subjects[SUBJECTS];
 static int own_buffers; /* of all contexts on the device */
@@ -52,12 +52,24 @@ static double random_f32(void) {
     return (double)value;
 }
 
+/* Between 0, at x = 0, and these a crossing of 147 * 2^-149 lies half way between two subnormal floats; 98 and 2 also
+ * tell apart products with a rounded reciprocal. */
+static double half_way_value(const int64_t p[3]) {
+    static const double values[] = {98, 294, 42, 14, 6, 2};
+    return p[0] ? values[(p[1] + 2 * p[2]) % 6] : 0;
+}
+
 static double subject_value(int kind, const int64_t p[3]) {
     if (kind == WAVES) return 127.5 + 60 * wave_at(p);
     if (kind == EXTREMES) return random_f32();
-    if (kind == GENTLE) return 127.5 + 4 * ((double)p[0] + 5 * wave_at(p) - 30);
-    if (kind == GENTLE_MISSING && random_below(300)) return (double)p[0] - (double)p[1] + 2 * wave_at(p);
-    return random_below(300) ? wave_at(p) : (double)NAN;
+    if (kind == HALVES) return half_way_value(p);
+    if (kind == GENTLE) { /* layers in the middle emit nothing */
+        double inside = fmax(0, 60 - 3 * fabs((double)p[2] - 48));
+        return fmin(255, fmax(0, 127.5 + 4 * ((double)p[0] + 5 * wave_at(p) - 30 + inside)));
+    }
+    /* many, so that edges lose all of their cubes, by samples on both sides of where slabs meet */
+    if (random_below(kind == GENTLE_MISSING ? 20 : 300) == 0) return (double)NAN;
+    return kind == GENTLE_MISSING ? (double)p[0] - 2.2 * (double)p[1] + 2 * wave_at(p) : wave_at(p);
 }
 
 static void subject_open(int kind, const char *name, tc_type type, const int64_t dims[3], double isovalue,
@@ -119,7 +131,7 @@ static void expect_variation(const tc_context_options *options, const subject *s
 /* ------------------------------------------------------------------------------------------------------------ work */
 
 static void test_work_shapes(void) {
-    static const uint32_t items[] = {1, 32, 64, 256}, groups[] = {1, 2, 3, 16}, tiles[] = {1, 2, 7, 1000};
+    static const uint32_t items[] = {1, 32, 64, 256}, groups[] = {1, 2, 3, 16}, tiles[] = {1, 27, 7, 1000};
     tc_context_options options;
     for (int i = 0; i < (method == TC_METHOD_TETRA ? 4 : 2); i++) { /* building for many work-items takes PoCL long */
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
@@ -149,7 +161,7 @@ static void test_divisions(void) {
         tc_context_destroy(context);
         EXPECT(status == TC_OK || (division < 3 && status == TC_ERROR_ARGUMENT), "division %d: status %d, %s", division,
                (int)status, tc_message());
-        if (!status) expect_variation(&options, &subjects[EXTREMES]);
+        for (int n = EXTREMES; n <= HALVES && !status; n++) expect_variation(&options, &subjects[n]);
     }
 }
 
@@ -185,6 +197,8 @@ static void test_memory_budgets(const subject *s) {
                    s->name, (unsigned long long)options.max_memory_bytes, (int)status, tc_message());
         } else {
             done++;
+            EXPECT(!refused, "%s: a budget of %llu suffices, a larger one did not", s->name,
+                   (unsigned long long)options.max_memory_bytes);
             most = data.slab_count > most ? data.slab_count : most;
             one = one || data.slab_count == 1;
             few = few || (data.slab_count > 1 && data.slab_count < 6);
@@ -401,6 +415,7 @@ int main(int argc, char **argv) {
     subject_open(WAVES, "waves", TC_U8, (int64_t[3]){130, 21, 30}, 127.5, 0);
     subject_open(MISSING, "waves with missing samples", TC_F32, (int64_t[3]){70, 18, 22}, 0.1, 1);
     subject_open(EXTREMES, "all floats", TC_F32, (int64_t[3]){20, 19, 18}, 1e-3, 1);
+    subject_open(HALVES, "crossings half way between floats", TC_F32, (int64_t[3]){2, 9, 9}, 0x93p-149, 1);
     subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, 46, 97}, 127.5, 0);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32, (int64_t[3]){65, 31, 58}, 0.1, 1);
     tc_context_options_init(&options);

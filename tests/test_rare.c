@@ -6,9 +6,11 @@
  * have of each type. One sample on the other side than all others, at every place around the point where eight bricks
  * of 64 x 8 x 4 samples meet, at two isovalues one after the other: bricks that have nothing to emit but for a far
  * neighbour. Slopes along ten bricks, at several isovalues: runs of eight bricks whose range is looked at as a whole.
- * Zeros of both signs, where zero stands for missing.
+ * Zeros of both signs, where zero stands for missing. One sample that is not finite.
  */
 #include "engines.h"
+
+#include <math.h>
 
 enum { LOW = 50, HIGH = 200, SAMPLES_MAX = 140 * 20 * 12 };
 
@@ -146,6 +148,26 @@ static void test_zeros_missing(void) {
     expect_same(&grid, isovalues, 2, "minus zeros missing");
 }
 
+/* ------------------------------------------------------------------------------------------------------- not finite */
+
+/* One sample, of each kind alone, among others that would leave its brick uniform and its neighbours not. */
+static void test_one_not_finite(void) {
+    static const float odd[] = {NAN, INFINITY, -INFINITY};
+    static const double isovalues[] = {50.5, 3};
+    for (int n = 0; n < 6; n++) {
+        char name[80];
+        tc_grid_options grid;
+        tc_grid_options_init(&grid);
+        grid.dims[0] = 131, grid.dims[1] = 10, grid.dims[2] = 6;
+        grid.type = TC_F32;
+        grid.samples = memory;
+        for (int at = 0; at < 131 * 10 * 6; at++) memory[at] = n < 3 ? (float)(at % 131) : (float)(131 - at % 131);
+        memory[131 * (10 * 3 + 4) + 70] = odd[n % 3];
+        snprintf(name, sizeof name, "not finite: %g, %s", (double)odd[n % 3], n < 3 ? "rising" : "falling");
+        expect_same(&grid, isovalues, 2, name);
+    }
+}
+
 int main(void) {
     tc_context_options options;
     tc_context_options_init(&options);
@@ -160,6 +182,7 @@ int main(void) {
     test_single_samples();
     test_slopes();
     test_zeros_missing();
+    test_one_not_finite();
     for (int n = 0; n < CONTEXTS; n++) tc_context_destroy(contexts[n]);
     int failed = EXPECT_DONE();
     return failed || !skipped ? failed : SKIPPED;

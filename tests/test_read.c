@@ -242,6 +242,27 @@ static void test_nrrd_stream_skip(void) {
     bytes_free(&second);
 }
 
+/* More bytes than are unpacked at once. */
+static void test_nrrd_long_skip(void) {
+    enum { SKIPPED = 200000 };
+    bytes inner = {0}, samples = test_samples(TC_U8, COUNT, 0), file = {0};
+    for (unsigned n = 0; n < SKIPPED; n++) bytes_put(&inner, n * 2654435761u >> 24, 1, 0);
+    bytes_add(&inner, samples.data, samples.size);
+    for (int bzip2 = 0; bzip2 < 2; bzip2++) {
+        bytes packed = bzip2 ? bzipped(inner.data, inner.size) : gzipped(inner.data, inner.size, AS_GZIP);
+        bytes_text(&file, "NRRD0001\ntype: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: %s\nbyte skip: %d\n\n",
+                   bzip2 ? "bzip2" : "gzip", SKIPPED);
+        bytes_add(&file, packed.data, packed.size);
+        read_request r = request_for(file_write("a.nrrd", file.data, file.size));
+        expected e = plain(TC_U8, "NRRD");
+        expect_volume("many bytes skipped", &r, &e);
+        bytes_free(&packed);
+        bytes_free(&file);
+    }
+    bytes_free(&inner);
+    bytes_free(&samples);
+}
+
 static void test_metaimage_types(void) {
     for (int type = 0; type <= STORED_U64; type++)
         for (int kind = 0; kind < 4; kind++) { /* little, big, zlib, text */
@@ -450,6 +471,7 @@ int main(void) {
     test_nrrd_choices();
     test_nrrd_detached();
     test_nrrd_stream_skip();
+    test_nrrd_long_skip();
     test_metaimage_types();
     test_metaimage_headers();
     test_nifti_types();

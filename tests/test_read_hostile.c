@@ -266,6 +266,16 @@ static void test_nifti(void) {
     expect_nifti_failure("a negative size", &f, 8, "at least 1");
 }
 
+/* The first one that is not there. */
+static void test_choices_beyond(void) {
+    read_request r = request_for(file_text("a.nrrd", NRRD_222 "kinds: vector domain domain\n\n" EIGHT));
+    r.component = 2;
+    expect_failure("component 2 of 2", &r, STATUS_INPUT, "--component 0 to 1");
+    r = request_for(file_text("a.nrrd", NRRD_222 "kinds: time domain domain\n\n" EIGHT));
+    r.frame = 2;
+    expect_failure("frame 2 of 2", &r, STATUS_INPUT, "--frame 0 to 1");
+}
+
 static void test_raw(void) {
     const char *path = file_text("a.raw", EIGHT);
     read_request good = request_for(path), r = good;
@@ -413,6 +423,7 @@ int main(void) {
     test_data_files();
     test_metaimage();
     test_nifti();
+    test_choices_beyond();
     test_raw();
     test_other_files();
     test_bytes();

@@ -204,16 +204,20 @@ static void test_facets(void) {
 
 /* What a person reads: short numbers stay short. */
 static void test_obj_text(void) {
-    const float positions[4][3] = {
-        {0, 1, -2.5f}, {100, 1234567936, 0.0001f}, {0.1f, 1e-6f, 3e30f}, {8388607.5f, 123456792, -0.0f}};
+    const float positions[5][3] = {{0, 1, -2.5f},
+                                   {100, 1234567936, 0.0001f},
+                                   {0.1f, 1e-6f, 3e30f},
+                                   {8388607.5f, 123456792, -0.0f},
+                                   {1e9f, 1e10f, 1e-23f}}; /* nine digits of 9.9999999982e-24 round up to ten */
     const uint32_t triangle[3] = {0, 1, 2};
-    tc_mesh_data mesh = {.vertex_count = 4, .triangle_count = 1, .positions = positions[0], .triangles = triangle};
+    tc_mesh_data mesh = {.vertex_count = 5, .triangle_count = 1, .positions = positions[0], .triangles = triangle};
     EXPECT(mesh_write(path_of("text.obj"), &mesh, NULL) == 0, "%s", failure_text());
-    EXPECT(holds(path_of("text.obj"), "# tetracubes isosurface: 4 vertices, 1 triangles\n"
+    EXPECT(holds(path_of("text.obj"), "# tetracubes isosurface: 5 vertices, 1 triangles\n"
                                       "v 0 1 -2.5\n"
                                       "v 100 1.23456794e+9 0.0000999999975\n"
                                       "v 0.100000001 9.99999997e-7 2.99999989e+30\n"
                                       "v 8388607.5 123456792 -0\n"
+                                      "v 1e+9 1e+10 1e-23\n"
                                       "f 1 2 3\n"),
            "OBJ text differs");
     unlink(path_of("text.obj"));

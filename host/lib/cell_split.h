@@ -6,13 +6,17 @@
  * over the triangles of the faces that do not contain it: of a wedge 3 tetrahedra, of a pyramid 2, of a hexahedron 6,
  * or 5 where none of the diagonals meets the corner opposite the smallest.
  *
- *       7-------6                 5           4            Corners as VTK numbers them, but for the wedge's bottom,
- *      /|      /|                /|\         /|\           which is turned over here. Faces are listed
- * counter-clockwise 4-------5 |               3---4       / | \          seen from outside, so that a tetrahedron made
- * of a corner | 3-----|-2               | 2 |      3--|--2         and a face of a cell of positive volume has a
- * positive one.
+ * Corners as VTK numbers them, but for the wedge's bottom, which is turned over here:
+ *
+ *       7-------6                 5           4
+ *      /|      /|                /|\         /|\
+ *     4-------5 |               3---4       / | \
+ *     | 3-----|-2               | 2 |      3--|--2
  *     |/      |/                |/ \|     /   | /
  *     0-------1                 0---1    0-------1
+ *
+ * Faces are listed counter-clockwise seen from outside, so that a tetrahedron made of a corner and a face of a cell of
+ * positive volume has a positive one.
  *
  * Dompierre, Labbe, Vallet, Camarero, "How to subdivide pyramids, prisms, and hexahedra into tetrahedra" (1999).
  */

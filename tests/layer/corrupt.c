@@ -25,7 +25,8 @@ static unsigned bit_index;
 
 /* ----------------------------------------------------------------------------------------------------- compilers */
 
-/* A mistake: text that stands in the kernels, and what is compiled in its place. */
+/* A mistake: text that stands in the kernels, and what is compiled in its place. "starved" is none: it is what a group
+ * sees that waits for one which the device has left standing, the tile before without sums; for a single group. */
 typedef struct mistake {
     const char *name, *from, *to;
 } mistake;
@@ -41,6 +42,9 @@ static const mistake mistakes[] = {
     {"contraction", "((m[0] * x + m[1] * y) + m[2] * z) + m[3]", "fma(m[2], z, fma(m[0], x, m[1] * y)) + m[3]"},
     {"look-back", "*sum += word & SCAN_VALUE;", "*sum += word & 0xfff;"},
     {"fallback", "atomic_add(&shared[2], e.vertices);", "atomic_add(&shared[2], e.vertices + 1);"},
+    {"starved", "uint2 prefix = tile_prefix(",
+     "for (uint c = 0; number && c < 2; c++) atomic_xchg(scan_at(tiles, number - 1, c), scan_word(SCAN_EMPTY, 0));\n"
+     "uint2 prefix = tile_prefix("},
     {"comparison", "<= (samples64)(BITS)s->inside_span", "< (samples64)(BITS)s->inside_span"},
 };
 enum { MISTAKES = sizeof mistakes / sizeof *mistakes };
@@ -171,6 +175,7 @@ static void mistakes_tell(void) {
 
 static bool command(char *const *words, int count) {
     const char *what = count > 1 ? words[1] : "";
+    mistakes_tell();
     action = NOTHING;
     launches = 0;
     if (count > 2) snprintf(kernel_name, sizeof kernel_name, "%s", words[2]);
@@ -185,6 +190,7 @@ static bool command(char *const *words, int count) {
         action = READ;
     } else if (!strcmp(what, "build") && count == 3 && mistake_choose(words[2])) {
         action = BUILD;
+        mistaken = 0;
         atexit(mistakes_tell);
     }
     return action != NOTHING || !strcmp(what, "off");

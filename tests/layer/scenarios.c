@@ -383,7 +383,7 @@ bool scenarios_prepare(void) {
     tc_context_destroy(reference);
     if (status || !theirs_make()) return false;
     for (int index = 0; index < SCENARIOS; index++)
-        if (scenarios[index].slabs && !budget_find(index)) return false;
+        if (scenarios[index].slabs && test_chosen(scenarios[index].name) && !budget_find(index)) return false;
     return true;
 }
 

@@ -8,6 +8,7 @@ import re
 from mutant import Mutant
 
 EDGE_TYPES = ["EDGE_X", "EDGE_Y", "EDGE_Z", "EDGE_XY", "EDGE_XZ", "EDGE_YZ"]
+CORNER_COUNT = 2  # of a cell_type, its third member
 SHAPES = ["CELL_FLAT", "CELL_OTHER", "CELL_TETRAHEDRON", "CELL_HEXAHEDRON", "CELL_WEDGE", "CELL_PYRAMID"]
 
 
@@ -31,7 +32,9 @@ def cell_type_entry(path, entry):
         return SHAPES[(SHAPES.index(entry) + 1) % len(SHAPES)]
     if entry in ("true", "false"):
         return "false" if entry == "true" else "true"
-    return str(int(entry) + 1) if len(path) == 2 else str((int(entry) + 1) % 8)
+    if len(path) == 2:  # with one more, the first would be looked at again
+        return str(int(entry) - 1 if path[1] == CORNER_COUNT else int(entry) + 1)
+    return str((int(entry) + 1) % 8)
 
 
 # Of a file: how a table begins, how its entries are changed.

@@ -55,9 +55,15 @@ def planted(text, mutant):
     return text[:at] + mutant.new + text[at + len(mutant.old):], text.count("\n", 0, at) + 1
 
 
-def target_of(test):
+def targets_of(test):
     """What has to be built for it."""
-    return "tetracubes_tool" if test.program.endswith(".py") else test.program
+    if test.program.endswith(".py"):
+        return ["tetracubes_tool"]
+    return [os.path.basename(test.program)] + (["layer"] if is_layered(test) else [])
+
+
+def is_layered(test):
+    return test.program.startswith("layer/")
 
 
 def write_text(path, text):
@@ -123,9 +129,9 @@ class Worker:
             return False
 
     def cache(self, name):
-        """Kernels of a mutant are never found in another's cache, and those without a fault are built once."""
+        """Kernels of a mutant are never found in another's cache; those of tests of mutants of the host are kept."""
         path = os.path.join(self.folder, "cache-" + name)
-        if name == "mutant":
+        if name != "kept":
             shutil.rmtree(path, ignore_errors=True)
         os.makedirs(path, exist_ok=True)
         return path
@@ -136,6 +142,8 @@ class Worker:
                            TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
         if not test.device:
             environment["OCL_ICD_VENDORS"] = os.devnull
+        if is_layered(test):
+            environment["OPENCL_LAYERS"] = os.path.join(self.build_folder, "tests", "layer", "liblayer.so")
         command = [os.path.join(self.build_folder, "tests", test.program), *test.arguments]
         if test.program.endswith(".py"):
             tool = os.path.join(self.build_folder, "host", "tool", "tetracubes")
@@ -161,11 +169,11 @@ class Worker:
             return passed, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, output.read(1 << 16)
 
     def check_without_fault(self, name):
-        """The test passes, once: its first run builds its kernels, as that of a mutated kernel has to."""
+        """The test passes, once: that run builds its kernels, as that of a mutated kernel has to."""
         if name in self.usual:
             return
-        self.build([target_of(table.TESTS[name])])
-        passed, self.usual[name], said = self.run(table.TESTS[name], self.cache("none"), 3600)
+        self.build(targets_of(table.TESTS[name]))
+        passed, self.usual[name], said = self.run(table.TESTS[name], self.cache("first"), 3600)
         if not passed:
             raise TableError(f"{name} fails without a fault, in {self.folder}: {said[-2000:]}")
 
@@ -177,13 +185,13 @@ class Worker:
         changed, line = planted(text, mutant)
         start = time.monotonic()
         caught, compiles = None, True
-        cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "none")
+        cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "kept")
         for name in table.tests_of(mutant):
             self.check_without_fault(name)
             test = table.TESTS[name]
             try:
                 write_text(path, changed)
-                compiles = self.builds([target_of(test)])
+                compiles = self.builds(targets_of(test))
                 passed, _, said = self.run(test, cache, int(10 * self.usual[name]) + 3) if compiles else (False, 0, "")
                 compiles = compiles and KERNELS_REFUSED not in said
             finally:

@@ -6,10 +6,10 @@ TILES = {"tests": ("test_device, tiles",)}
 SLABS = {"tests": ("test_device, slabs", "test_device, copied slabs")}
 SINGLE = {"tests": ("test_rare, one sample",)}
 AGAIN = {"tests": ("test_rare, slopes", "test_again, u8", "test_again, u8 in slabs")}
-MISSING = {"tests": ("test_random, u8 with missing",)}
+MISSING = {"tests": ("test_random, u8 with missing", "test_device, slabs with missing")}
 F32 = {"tests": ("test_random, f32",)}
 NORMALS = {"tests": ("test_random, f32 with normals",)}
-POINTS = {"tests": ("test_curvilinear, points",)}
+POINTS = {"tests": ("test_curvilinear, points", "test_curvilinear, u8 points")}
 HYBRID = {"tests": ("test_hybrid, u8",)}
 
 MUTANTS = [
@@ -56,7 +56,7 @@ MUTANTS = [
            ("range.low >= s->key_inside ?", "range.low + 1 >= s->key_inside ?", "bricks just below the isovalue are inside"),
            ("return (uint)(key >> 32);", "return (uint)(key >> 33);", "f64: keys", {"tests": ("test_random, f64",)}),
            ("range.high < KEY_INFINITY && range.low > ~KEY_INFINITY", "range.high < KEY_INFINITY",
-            "minus infinity is not noticed", F32),
+            "minus infinity is not noticed", {"tests": ("test_rare, not finite",)}),
            ("key_upper((BITS) ~(BITS)0) - keys_least(~keys)", "keys_least(~keys)", "ranges: the greatest")),
     *group("kernels/tetrahedra.cl",
            ("? 0xaaaaaaaaaaaaaaaaul : 0x5555555555555555ul", "? 0x5555555555555555ul : 0xaaaaaaaaaaaaaaaaul",
@@ -124,18 +124,21 @@ MUTANTS = [
             "uniform bricks: planes of the halo in y", TILES),
            ("if (m >= first && m < lid) before.vertices", "if (m >= first && m <= lid) before.vertices",
             "groups: prefix sums off by one", GROUPS),
-           ("mask |= 1u << (m - first);", "mask |= 1u << m;", "groups: rows that emit of the second brick", GROUPS)),
+           ("mask |= 1u << (m - first);", "mask |= 1u << m;", "groups: rows that emit of the second brick",
+            {"same": "first is a multiple of 32, and OpenCL C shifts 32-bit integers by the five low bits"})),
     *group("kernels/scan.cl",
            ("scan_at(tiles, *tile - 1, channel), 0u)", "scan_at(tiles, *tile, channel), 0u)", "look-back: off by one",
             {**TILES, "sample": True}),
            ("SCAN_PREFIX ? 0 : *tile - 1;", "SCAN_PREFIX ? 0 : 0;", "look-back: ends after one tile", TILES),
-           ("while (*tile > 0 &&", "while (*tile > 1 &&", "look-back: the first tile is left out", TILES),
+           ("while (*tile > 0 &&", "while (*tile > 1 &&", "look-back: the first tile is left out",
+            {"tests": ("test_complex, u8",)}),
            ("scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum)", "scan_word(SCAN_EMPTY, 0), scan_word(SCAN_PREFIX, sum)",
             "a sum is taken for a prefix", TILES),
            ("*sum += word & SCAN_VALUE;", "*sum = word & SCAN_VALUE;", "look-back: the last sum alone", TILES),
            ("SCAN_VALUE  0x3fffffffu", "SCAN_VALUE  0xfffu", "sums of more than 12 bits", TILES)),
     *group("kernels/classify.cl",
-           ("uint missing = shared[1] - 1;", "uint missing = shared[1];", "fallback: another tile is recounted", TILES),
+           ("uint missing = shared[1] - 1;", "uint missing = shared[1];", "fallback: another tile is recounted",
+            {"tests": ("test_memory, starved groups",)}),
            ("if (back[channel] == missing + 1) prefix[channel] += shared[2 + channel], back[channel] = missing;", "",
             "fallback: its sum is looked back for, too", {"same": "the sum has been posted: the next look-back finds it"}),
            ("if (emits || n == 0) bricks", "if (emits) bricks", "layers that emit nothing have no prefix",
@@ -156,7 +159,7 @@ MUTANTS = [
            ("drop = max(drop, -149 - exponent);", "", "division in integers: subnormal quotients",
             {"tests": ("test_device, division 3",)}),
            ("if (magnitude >> 24) magnitude >>= 1, field++;", "", "division in integers: a carry into the next power",
-            {"tests": ("test_device, division 3",)}),
+            {"same": "quotients of mantissas of 24 bits end a last place or more below a power of two"}),
            ("return (float)((r + 1) >> 1) * 0x1p-23f;", "return (float)(r >> 1) * 0x1p-23f;", "root in integers: cut off",
             {"tests": ("test_device, division 3",)}),
            ("(float)((double)a / (double)b)", "(float)((double)a * (1 / (double)b))", "division through double: twice rounded",
@@ -255,8 +258,10 @@ MUTANTS = [
            ("int16 mixed = (low < s->key_inside) & (high >= s->key_outside);", "int16 mixed = (low < s->key_inside) & (high > s->key_outside);",
             "later isovalues: clusters with it as their greatest value"),
            ("if (first + 64 <= end)\n", "if (1)\n", "later isovalues: clusters past the end"),
-           ("if (recount || !report.active) return;", "if (!report.active) return;", "fallback: clusters are listed twice"),
            ("clusters_append(a, &found);\n    for (uint own", "for (uint own", "the last active clusters are not listed"),
+           ("if (recount || !report.active) return;", "if (!report.active) return;",
+            "fallback: clusters are listed twice",
+            {"tests": ("test_memory, counted again",)}),
            ("triangle += cases[CASE_BYTES * pattern + CASE_TRIANGLES];", "triangle++;", "list: two triangles"),
            ("TILE_TRIANGLES) + cluster.triangles_before;", "TILE_TRIANGLES);", "list: triangles before the cluster")),
     *group("kernels/complex_tile.cl",
@@ -273,7 +278,8 @@ MUTANTS = [
             "(work->points[r].x == edge[n].x) & exists", "recent edges with the same first point are one"),
            ("edges_enter(&c, 0, active, cases, table, entries, &work, &full);", "", "the last edges of a tile are not entered"),
            ("return x ^ x >> 13;", "return x;", "another hash", {"same": "the place of an edge in the table is no result"}),
-           ("*full = 1;\n    return 0;", "return 0;", "a full table is not told")),
+           ("*full = 1;\n    return 0;", "return 0;", "a full table is not told",
+            {"tests": ("test_complex, scattered",)})),
     *group("kernels/complex_emit.cl",
            ("uint lower = t->owned & ((1u << owner % 4) - 1);", "uint lower = t->owned & ((2u << owner % 4) - 1);",
             "a tetrahedron's own vertices: off by one"),
