@@ -265,7 +265,8 @@ def write_results(folder, results, seconds):
     by = collections.Counter(r.verdict for r in results)
     figures = [{"what": "faults planted in the sources", "value": len(results)},
                {"what": "of these caught by a test", "value": by["caught"]},
-               {"what": "of these the same program, with the reason", "value": by["the same"]}]
+               {"what": "of these the same program, with the reason", "value": by["the same"]},
+               {"what": "of these neither", "value": len(results) - by["caught"] - by["the same"]}]
     lines = [{"file": r.mutant.file, "line": r.line, "what": r.mutant.what, "verdict": r.verdict, "test": r.test,
               "reason": r.mutant.same} for r in sorted(results, key=lambda r: (r.mutant.file, r.line, r.mutant.what))]
     report = {"part": "mutants", "date": datetime.date.today().isoformat(), "versions": table.versions(),
