@@ -35,6 +35,7 @@ from table import TableError
 COPIED = ("host", "kernels", "tests", "CMakeLists.txt")
 CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF"]
 MEMORY_MOST = 16 << 30
+FILE_MOST = 16 << 30  # a writer without its limits fills the disk
 QUICK_KERNELS = "-cl-opt-disable"  # built in a fifth of the time; what they compute is the same
 KERNELS_REFUSED = "does not build the kernels"  # as host/lib/program.c says it
 SKIPPED = 77  # what a test says of its part for a device
@@ -152,6 +153,7 @@ class Worker:
         def limit():
             resource.setrlimit(resource.RLIMIT_CPU, (processor_seconds, processor_seconds + 1))
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY_MOST, MEMORY_MOST))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_MOST, FILE_MOST))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
