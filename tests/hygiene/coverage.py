@@ -39,7 +39,9 @@ def build(source, folder, jobs):
 def test(build_folder, folder, jobs, more):
     for part in (build_folder / "tests" / "kernel_cache").glob("*"):
         shutil.copytree(part, folder / "tests" / "kernel_cache" / part.name, dirs_exist_ok=True)
-    done = run(["ctest", "--test-dir", folder, "-j", jobs, "--timeout", "1800", "-E", LEFT_OUT, *more], check=False)
+    plain = {name: value for name, value in os.environ.items() if name != "TETRACUBES_RESULTS"}
+    done = run(["ctest", "--test-dir", folder, "-j", jobs, "--timeout", "1800", "-E", LEFT_OUT, *more], check=False,
+               env=plain)  # samples of what the long tier runs whole are no results of it
     print("\n".join(done.stdout.splitlines()[-12:]), flush=True)
     return done.returncode
 
