@@ -118,7 +118,7 @@ inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint coun
 #define PREFETCH_BYTES 4096
 
 /* Bricks visited together: `rows` rows of them, `count` in each, at most STRIP_BRICKS. Of every plane they are read row
- * after row, which where `count` are all is one long run: memory gives a third more that way. */
+ * after row, which where `count` are all is one long run: memory gives more that way than in shorter ones. */
 typedef struct strip {
     uint y, z, w; /* of the first word */
     uint rows, count;
