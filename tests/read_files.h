@@ -11,10 +11,10 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "folder.h"
 #include "volume.h"
 
 #include <bzlib.h>
-#include <ftw.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -30,8 +30,6 @@ typedef struct bytes {
     unsigned char *data;
     size_t size;
 } bytes;
-
-static char folder[64];
 
 static inline void bytes_add(bytes *b, const void *data, size_t size) {
     b->data = realloc(b->data, b->size + size + 1);
@@ -124,7 +122,7 @@ static inline bytes bzipped(const unsigned char *data, size_t size) {
 
 /* The path of a file in the test's folder; valid for the next seven calls. */
 static inline const char *file_path(const char *name) {
-    static char paths[8][256];
+    static char paths[8][512];
     static int next;
     char *path = paths[next++ % 8];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
@@ -142,24 +140,6 @@ static inline const char *file_write(const char *name, const void *data, size_t 
 }
 
 static inline const char *file_text(const char *name, const char *text) { return file_write(name, text, strlen(text)); }
-
-static inline int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *at) {
-    (void)about;
-    (void)kind;
-    (void)at;
-    return remove(path);
-}
-
-static inline void folder_make(void) {
-    const char *parent = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%.40s/read-XXXXXX", parent ? parent : "/tmp");
-    if (!mkdtemp(folder)) {
-        printf("cannot make %s\n", folder);
-        exit(1);
-    }
-}
-
-static inline void folder_remove(void) { nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS); }
 
 static inline double volume_value(const volume *v, uint64_t i) {
     switch (v->type) {

@@ -5,6 +5,7 @@
  * after which everything works; contexts in several threads at once; no OpenCL platform at all.
  */
 #include "api.h"
+#include "folder.h"
 
 #include <pthread.h>
 #include <stddef.h>
@@ -213,8 +214,7 @@ static void test_first_contexts(void) {
 /* Without a platform (an empty folder of vendors, before the loader has looked) devices are refused in plain words, and
  * the reference works. Runs in a process of its own. */
 static void test_no_platform(void) {
-    char folder[] = "/tmp/tetracubes-vendors-XXXXXX";
-    EXPECT(mkdtemp(folder) != NULL, "no folder");
+    folder_make("vendors");
     fflush(stdout);
     pid_t child = fork();
     if (child == 0) {
@@ -249,7 +249,7 @@ static void test_no_platform(void) {
     int status = -1;
     waitpid(child, &status, 0);
     EXPECT(WIFEXITED(status) && WEXITSTATUS(status) == 0, "without a platform: exit status %d", status);
-    rmdir(folder);
+    folder_remove();
 }
 
 int main(void) {

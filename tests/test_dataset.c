@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "expect.h"
 #include "failure.h"
+#include "folder.h"
 #include "random.h"
 #include "select.h"
 
@@ -334,10 +335,8 @@ static void averages_agree_with_gathering(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ files */
 
-static char folder[] = "/tmp/dataset-XXXXXX";
-
 static const char *file_of(const char *name, const void *bytes, size_t size) {
-    static char path[128];
+    static char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *f = fopen(path, "wb");
     if (!f || fwrite(bytes, 1, size, f) != size || fclose(f)) abort();
@@ -400,7 +399,7 @@ static void what_is_not_read_is_named(void) {
 }
 
 int main(void) {
-    if (!mkdtemp(folder)) return 1;
+    folder_make("dataset");
     the_only_field_is_taken();
     open_choices_list_what_there_is();
     long_lists_are_cut();
@@ -411,8 +410,6 @@ int main(void) {
     averages_agree_with_gathering();
     images_are_datasets();
     what_is_not_read_is_named();
-    char command[64];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    EXPECT(system(command) == 0, "%s", command);
+    folder_remove();
     return EXPECT_DONE();
 }

@@ -399,7 +399,7 @@ static void test_random_damage(void) {
 }
 
 int main(void) {
-    folder_make();
+    folder_make("plot3d");
     test_variants();
     test_mixed();
     test_text();

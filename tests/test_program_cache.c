@@ -6,6 +6,7 @@
  * as they do for a user, and is compared with the reference.
  */
 #include "api.h"
+#include "folder.h"
 
 #include <dirent.h>
 #include <stdint.h>
@@ -14,8 +15,6 @@
 #include <unistd.h>
 
 enum { FILES_MOST = 16, PATH_MOST = 512, TEXT_MOST = 1 << 20 };
-
-static char root[] = "/tmp/tetracubes-cache-XXXXXX";
 
 /* --------------------------------------------------------------------------------------------------- child processes
  */
@@ -79,13 +78,13 @@ typedef struct listing {
 
 static int by_path(const void *a, const void *b) { return strcmp(((const entry *)a)->path, ((const entry *)b)->path); }
 
-static listing list(const char *folder) {
+static listing list(const char *path) {
     listing out = {0};
     struct stat about;
-    DIR *open = opendir(folder);
+    DIR *open = opendir(path);
     for (struct dirent *d; open && (d = readdir(open)) && out.count < FILES_MOST;) {
         entry *e = &out.entries[out.count];
-        snprintf(e->path, sizeof e->path, "%s/%s", folder, d->d_name);
+        snprintf(e->path, sizeof e->path, "%s/%s", path, d->d_name);
         if (*d->d_name == '.' || stat(e->path, &about)) continue;
         e->inode = about.st_ino;
         out.count++;
@@ -119,10 +118,10 @@ static void file_write(const char *path, const char *bytes, size_t count) {
     EXPECT(file && fwrite(bytes, 1, count, file) == count && fclose(file) == 0, "%s cannot be written", path);
 }
 
-/* root/name, set as the folder of the cache */
+/* folder/name, set as the folder of the cache */
 static const char *cache_folder(const char *name) {
     static char path[PATH_MOST];
-    snprintf(path, sizeof path, "%s/%s", root, name);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
     setenv("TETRACUBES_CACHE_DIR", path, 1);
     return path;
 }
@@ -131,12 +130,12 @@ static const char *cache_folder(const char *name) {
  */
 
 static void test_second_process(void) {
-    const char *folder = cache_folder("deep/down/cache");
+    const char *cache = cache_folder("deep/down/cache");
     extract_expect("an empty cache");
-    listing first = list(folder);
+    listing first = list(cache);
     EXPECT(first.count == 2, "%d files for two programs", first.count);
     extract_expect("a warm cache");
-    listing second = list(folder);
+    listing second = list(cache);
     EXPECT(names_same(&first, &second) && inodes_same(&first, &second) == 2, "the second process built programs");
 }
 
@@ -192,15 +191,15 @@ static const struct {
 
 static void test_damage(void) {
     static char bytes[TEXT_MOST + 1];
-    const char *folder = cache_folder("deep/down/cache");
+    const char *cache = cache_folder("deep/down/cache");
     for (size_t n = 0; n < sizeof damages / sizeof *damages; n++) {
-        listing before = list(folder);
+        listing before = list(cache);
         for (int f = 0; f < before.count; f++) {
             size_t count = damages[n].apply(bytes, file_read(before.entries[f].path, bytes));
             file_write(before.entries[f].path, bytes, count);
         }
         extract_expect(damages[n].name);
-        listing after = list(folder);
+        listing after = list(cache);
         EXPECT(names_same(&before, &after), "%s: %d files, %d before", damages[n].name, after.count, before.count);
         EXPECT(inodes_same(&before, &after) == 0, "%s: taken as it was", damages[n].name);
     }
@@ -210,7 +209,7 @@ static void test_damage(void) {
 static void test_swapped(void) {
     char beside[PATH_MOST];
     listing before = list(cache_folder("deep/down/cache"));
-    snprintf(beside, sizeof beside, "%s/beside", root);
+    snprintf(beside, sizeof beside, "%s/beside", folder);
     EXPECT(!rename(before.entries[0].path, beside) && !rename(before.entries[1].path, before.entries[0].path) &&
                !rename(beside, before.entries[1].path),
            "files cannot be renamed");
@@ -233,7 +232,7 @@ static void test_folders_for_files(void) {
 
 static void test_unwritable(void) {
     char text[5000];
-    snprintf(text, sizeof text, "%s/file", root);
+    snprintf(text, sizeof text, "%s/file", folder);
     file_write(text, "", 0);
     cache_folder("file/cache");
     extract_expect("a cache below a file");
@@ -244,7 +243,7 @@ static void test_unwritable(void) {
     text[sizeof text - 1] = 0;
     setenv("TETRACUBES_CACHE_DIR", text, 1);
     extract_expect("a path too long");
-    snprintf(text, sizeof text, "%s/locked", root);
+    snprintf(text, sizeof text, "%s/locked", folder);
     mkdir(text, 0500);
     cache_folder("locked");
     extract_expect("a folder that is not to be written");
@@ -252,8 +251,8 @@ static void test_unwritable(void) {
 
 static void test_places(void) {
     char home[PATH_MOST], xdg[PATH_MOST], in_home[PATH_MOST + 32], in_xdg[PATH_MOST + 32];
-    snprintf(home, sizeof home, "%s/home", root);
-    snprintf(xdg, sizeof xdg, "%s/xdg", root);
+    snprintf(home, sizeof home, "%s/home", folder);
+    snprintf(xdg, sizeof xdg, "%s/xdg", folder);
     snprintf(in_home, sizeof in_home, "%s/.cache/tetracubes", home);
     snprintf(in_xdg, sizeof in_xdg, "%s/tetracubes", xdg);
     setenv("HOME", home, 1);
@@ -275,9 +274,9 @@ static void test_at_once(void) {
     enum { PROCESSES = 3 };
     pid_t children[PROCESSES];
     char pocl[PATH_MOST];
-    const char *folder = cache_folder("shared");
+    const char *cache = cache_folder("shared");
     for (int n = 0; n < PROCESSES; n++) {
-        snprintf(pocl, sizeof pocl, "%s/pocl-%d", root, n);
+        snprintf(pocl, sizeof pocl, "%s/pocl-%d", folder, n);
         mkdir(pocl, 0700);
         setenv("POCL_CACHE_DIR", pocl, 1);
         children[n] = child_start(extract_compare);
@@ -286,19 +285,18 @@ static void test_at_once(void) {
         int status = child_end(children[n]);
         EXPECT(status == 0, "process %d of several at once: exit status %d", n, status);
     }
-    listing first = list(folder);
+    listing first = list(cache);
     EXPECT(first.count == 2, "%d files for two programs", first.count);
     extract_expect("what several left");
-    listing second = list(folder);
+    listing second = list(cache);
     EXPECT(names_same(&first, &second) && inodes_same(&first, &second) == 2, "what several left is no good");
 }
 
 int main(void) {
-    char command[sizeof root + 16];
     samples_fill();
     setenv("TETRACUBES_CACHE_DIR", "", 1);
     if (child_end(child_start(device_look))) return SKIPPED;
-    EXPECT(mkdtemp(root) != NULL, "no folder");
+    folder_make("program-cache");
     test_second_process();
     test_damage();
     test_swapped();
@@ -306,7 +304,6 @@ int main(void) {
     test_unwritable();
     test_places();
     test_at_once();
-    snprintf(command, sizeof command, "rm -rf %s", root);
-    EXPECT(system(command) == 0, "%s stays", root);
+    folder_remove();
     return EXPECT_DONE();
 }

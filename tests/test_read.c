@@ -464,7 +464,7 @@ static void test_detection(void) {
 }
 
 int main(void) {
-    folder_make();
+    folder_make("read");
     test_raw();
     test_nrrd_encodings();
     test_nrrd_world();

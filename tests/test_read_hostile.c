@@ -418,7 +418,7 @@ static void test_bytes(void) {
 }
 
 int main(void) {
-    folder_make();
+    folder_make("read-hostile");
     test_nrrd();
     test_data_files();
     test_metaimage();

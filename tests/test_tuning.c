@@ -5,10 +5,10 @@
  * defaults in place, and every mesh has to be the reference's.
  */
 #include "api.h"
+#include "folder.h"
 
 #include <unistd.h>
 
-static char folder[] = "/tmp/tetracubes-tuning-XXXXXX";
 static char path[sizeof folder + 16];
 
 static tc_tuning tuning_of(const tc_context *context) {
@@ -171,7 +171,7 @@ static void test_refused(tc_context *context) {
 int main(void) {
     if (!device_exists()) return SKIPPED;
     samples_fill();
-    EXPECT(mkdtemp(folder) != NULL, "no folder");
+    folder_make("tuning");
     snprintf(path, sizeof path, "%s/tuning", folder);
     setenv("TETRACUBES_CACHE_DIR", folder, 1);
     tc_context *context = open_with(0, 0, 0);
@@ -181,8 +181,6 @@ int main(void) {
     test_nonsense(&built_in);
     test_refused(context);
     tc_context_destroy(context);
-    char command[sizeof folder + 16];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    EXPECT(system(command) == 0, "%s stays", folder);
+    folder_remove();
     return EXPECT_DONE();
 }

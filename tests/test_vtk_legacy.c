@@ -663,7 +663,7 @@ static int test_any(const char *path, const struct stat *about, int kind, struct
 
 int main(void) {
     const char *data = getenv("TETRACUBES_DATA");
-    folder_make();
+    folder_make("vtk-legacy");
     test_kinds();
     test_passed_over();
     test_forms();

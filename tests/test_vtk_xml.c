@@ -318,7 +318,7 @@ static void test_many_blocks(void) {
 
 int main(int argc, char **argv) {
     random_state = 1996;
-    folder_make();
+    folder_make("vtk-xml");
     test_shapes();
     test_many_blocks();
     test_damage(argc > 1 ? atoi(argv[1]) : 200);

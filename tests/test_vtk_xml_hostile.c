@@ -274,7 +274,7 @@ static void test_numbers(void) {
 }
 
 int main(void) {
-    folder_make();
+    folder_make("vtk-xml-hostile");
     test_kinds_refused();
     test_xml();
     test_extents();

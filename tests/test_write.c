@@ -6,6 +6,7 @@
 #include "exit_status.h"
 #include "expect.h"
 #include "failure.h"
+#include "folder.h"
 #include "mesh_files.h"
 #include "mesh_write.h"
 
@@ -21,7 +22,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char folder[] = "/tmp/test_write_XXXXXX";
 
 /* The same triangles with three vertices of their own each. */
 static tc_mesh_data unshared(const tc_mesh_data *mesh) {
@@ -469,7 +469,7 @@ static void test_standard_output(const tc_mesh_data *mesh) {
 int main(int argc, char **argv) {
     random_state = argc > 1 ? strtoull(argv[1], NULL, 0) : 1996;
     printf("seed %llu\n", (unsigned long long)random_state);
-    if (!mkdtemp(folder)) return EXIT_FAILURE;
+    folder_make("write");
     tc_mesh_data small = make_mesh(4, 4, 1), large = make_mesh(200000, 200000, 0);
     test_meshes();
     test_one_processor();
@@ -485,7 +485,8 @@ int main(int argc, char **argv) {
     test_names(&small);
     test_devices(&large);
     test_standard_output(&small);
-    EXPECT(count_files() == 0 && rmdir(folder) == 0, "%d files are left in %s", count_files(), folder);
+    EXPECT(count_files() == 0, "%d files are left", count_files());
+    folder_remove();
     free_mesh(&small);
     free_mesh(&large);
     return EXPECT_DONE();

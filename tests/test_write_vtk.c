@@ -4,13 +4,13 @@
 #include "dataset.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "folder.h"
 #include "mesh_files.h"
 #include "mesh_write.h"
 #include "vtk_files.h"
 
 #include <unistd.h>
 
-static char folder[] = "/tmp/test_write_vtk_XXXXXX";
 
 static const char *path_of(const char *name) {
     static char path[512];
@@ -209,7 +209,7 @@ static void test_complex(uint64_t point_count, uint64_t count) {
 
 int main(void) {
     random_state = 1996;
-    if (!mkdtemp(folder)) return EXIT_FAILURE;
+    folder_make("write-vtk");
     test_fields();
     test_ply_names();
     test_refusals();

@@ -194,7 +194,7 @@ static void test_distances(void) {
 }
 
 int main(void) {
-    folder_make();
+    folder_make("limits");
     test_sizes();
     test_bombs();
     test_headers();

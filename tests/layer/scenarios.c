@@ -3,6 +3,7 @@
 #include "scenarios.h"
 
 #include "engines.h"
+#include "folder.h"
 
 #include <CL/cl.h>
 #include <dirent.h>
@@ -63,7 +64,7 @@ enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
 static const double isovalues[2] = {127.5, 90};
 
-static char problem[1500], cache_folder[] = "/tmp/tetracubes-programs-XXXXXX";
+static char problem[1500];
 static uint8_t bytes[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
@@ -262,13 +263,13 @@ static void emitted_check(int index) {
 /* --------------------------------------------------------------------------------------------------------- contexts */
 
 static void cache_clear(void) {
-    DIR *folder = opendir(cache_folder);
+    DIR *cache = opendir(folder);
     char path[PATH_BYTES];
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        snprintf(path, sizeof path, "%s/%s", cache_folder, entry->d_name);
+    for (struct dirent *entry; cache && (entry = readdir(cache));) {
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
         if (entry->d_name[0] != '.') unlink(path);
     }
-    if (folder) closedir(folder);
+    if (cache) closedir(cache);
 }
 
 static tc_context_options context_describe(int index) {
@@ -370,8 +371,8 @@ bool scenarios_prepare(void) {
     tc_context_options options;
     tc_grid_options grid;
     input_make();
-    if (!mkdtemp(cache_folder)) return false;
-    setenv("TETRACUBES_CACHE_DIR", cache_folder, 1);
+    folder_make("programs");
+    setenv("TETRACUBES_CACHE_DIR", folder, 1);
     complex.struct_size = sizeof complex;
     grid_describe(&scenarios[1], &grid);
     grid.points = points;
@@ -392,8 +393,7 @@ void scenarios_release(void) {
     for (int index = 0; index < SCENARIOS; index++)
         for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
     tc_complex_release(&complex);
-    cache_clear();
-    rmdir(cache_folder);
+    folder_remove();
     for (int n = 0; n < 3; n++)
         if (buffers[n]) clReleaseMemObject(buffers[n]);
     if (their_queue) clReleaseCommandQueue(their_queue);

@@ -6,7 +6,8 @@ Usage: mutants.py SOURCE WORK [--only WORD]... [--sample] [--workers N] [--list]
 SOURCE is never changed: each of N workers has a copy of it and a build folder under WORK, which a later run uses again.
 The mutants of table.py and entries.py are planted one at a time, what the next test needs is built, and tests are run,
 the cheapest first, until one fails; before it is used for the first time, each has to pass without a fault. A crash is a
-failure, and so is more processor time than ten times what the test needs otherwise and three seconds.
+failure, and so is more processor time than ten times what the test needs otherwise and three seconds, or 24 GiB of
+files in the folder where it may write, which is removed after each.
 
 A mutant that no test catches is an error, unless the table says why it is the same program; one that the table calls
 the same and that is caught is an error too, and so is one whose text is not in the source any more or does not compile.
@@ -23,6 +24,7 @@ import queue
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -35,7 +37,8 @@ from table import TableError
 COPIED = ("host", "kernels", "tests", "CMakeLists.txt")
 CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_C_FLAGS=-O1", "-DTETRACUBES_BENCH=OFF"]
 MEMORY_MOST = 16 << 30
-FILE_MOST = 16 << 30  # a writer without its limits fills the disk
+FILE_MOST = 16 << 30  # a writer without its limits fills the disk,
+DISK_MOST = 24 << 30   # be it with several files: so much in a test's folder, and it is stopped
 QUICK_KERNELS = "-cl-opt-disable"  # built in a fifth of the time; what they compute is the same
 KERNELS_REFUSED = "does not build the kernels"  # as host/lib/program.c says it
 SKIPPED = 77  # what a test says of its part for a device
@@ -93,6 +96,18 @@ def files_below(folder):
                 yield os.path.relpath(os.path.join(parent, file), folder)
 
 
+def bytes_below(folder):
+    """What the files of the folder take of the disk."""
+    total = 0
+    for place, _, files in os.walk(folder):
+        for name in files:
+            try:
+                total += 512 * os.lstat(os.path.join(place, name)).st_blocks
+            except FileNotFoundError:  # removed meanwhile
+                pass
+    return total
+
+
 class Worker:
     """A copy of the tree with a build folder of its own."""
 
@@ -101,6 +116,7 @@ class Worker:
         self.folder = os.path.join(work, str(number))
         self.source = os.path.join(self.folder, "source")
         self.build_folder = os.path.join(self.folder, "build")
+        self.scratch = os.path.join(self.folder, "scratch")  # where a test may write
         self.usual = {}  # test -> processor time without a fault
         self.copy(source)
         if not os.path.exists(os.path.join(self.build_folder, "build.ninja")):
@@ -137,10 +153,21 @@ class Worker:
         os.makedirs(path, exist_ok=True)
         return path
 
+    def wait(self, child, seconds):
+        """Its exit status; it is killed after so many seconds, or when it has written too much."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and bytes_below(self.scratch) <= DISK_MOST:
+            try:
+                return child.wait(timeout=0.5)
+            except subprocess.TimeoutExpired:
+                pass
+        os.killpg(child.pid, signal.SIGKILL)  # and those that it has started
+        return child.wait()
+
     def run(self, test, cache, processor_seconds):
         """Whether the test passes, the processor time that it took, and what it said."""
         environment = dict(os.environ, TETRACUBES_CACHE_DIR="", POCL_CACHE_DIR=cache, TEST_ONLY=test.only,
-                           TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS)
+                           TEST_STOP="1", POCL_EXTRA_BUILD_FLAGS=QUICK_KERNELS, TMPDIR=self.scratch)
         if not test.device:
             environment["OCL_ICD_VENDORS"] = os.devnull
         if is_layered(test):
@@ -156,15 +183,14 @@ class Worker:
             resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_MOST, FILE_MOST))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
+        os.makedirs(self.scratch, exist_ok=True)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         said = os.path.join(self.folder, "output.log")
         with open(said, "wb") as output, subprocess.Popen(command, env=environment, cwd=self.folder, preexec_fn=limit,
-                                                          stdout=output, stderr=output) as child:
-            try:
-                status = child.wait(timeout=60 + 10 * processor_seconds)
-            except subprocess.TimeoutExpired:
-                child.kill()
-                status = -1
+                                                          stdout=output, stderr=output,
+                                                          start_new_session=True) as child:
+            status = self.wait(child, 60 + 10 * processor_seconds)
+        shutil.rmtree(self.scratch, ignore_errors=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         passed = status == 0 or (status == SKIPPED and not test.device)
         with open(said, encoding="utf-8", errors="replace") as output:
