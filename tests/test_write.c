@@ -22,7 +22,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-
 /* The same triangles with three vertices of their own each. */
 static tc_mesh_data unshared(const tc_mesh_data *mesh) {
     tc_mesh_data soup = make_mesh(3 * mesh->triangle_count, mesh->triangle_count, mesh->normals != NULL);

@@ -11,7 +11,6 @@
 
 #include <unistd.h>
 
-
 static const char *path_of(const char *name) {
     static char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
