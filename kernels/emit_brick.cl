@@ -6,19 +6,20 @@
  *    has: its own and, from what kernel 1 left, its neighbours'. The table is never cleared: only crossed edges are
  *    looked up.
  * 3. Vertices are made of the list, in vector code.
- * 4. Active cubes are listed; a cube takes from the table what its case names, as lanes of the numbers of its four
- * rows.
+ * 4. Active cubes are listed with their cases; a cube takes from the table what its case names, as lanes of the numbers
+ *    of its four rows.
  *
- * Lists are filled and cases copied by fixed numbers of items, more than often needed, since a branch that cannot be
- * foreseen costs more; what is too much is overwritten by what comes next. Positions and triangles go through private
- * memory, batch by batch, and from there to the mesh in whole cache lines.
+ * A row has an edge of each type and three active cubes, more or less. So lists get one item of a row at the least, and
+ * as many indices are copied as most cases have: a branch that cannot be foreseen costs more. What is too much is
+ * overwritten by what comes next. Positions and triangles go through private memory, batch by batch, and from there to
+ * the mesh in whole cache lines.
  */
 #if WORK_ITEMS == 1
 
 #define NUMBER_STEP NUMBER_TYPES(HYBRID)
+#define CASE_BITS   9
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
-#define LIST_CUBES  (BRICK_WORDS * 64)
-#define LIST_STEP   2 /* items stored at once */
+#define LIST_MORE   16 /* items that are stored past its end, at the most */
 #define BATCH_EDGES 512
 #define BATCH_STEP  16
 #define BATCH_CUBES 128
@@ -32,6 +33,14 @@
 #define CASE_STEP  15
 #endif
 
+/* Sixteen words of 4 bytes, of any kind, anywhere. */
+typedef uint16 __attribute__((aligned(4), may_alias)) words16;
+
+#ifdef MASK_REGISTERS
+/* A byte for each sample of a row. */
+typedef char bytes64 __attribute__((ext_vector_type(64)));
+#endif
+
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {
     sample_rows rows[2][NUMBER_PLANES];
@@ -42,8 +51,10 @@ typedef struct brick_work {
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
     uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
-    uint list[LIST_EDGES + LIST_STEP]; /* edges as PLACE has them; cubes: see cubes_list */
-    ushort cases[LIST_CUBES];
+    uint list[LIST_EDGES + LIST_MORE]; /* edges as PLACE has them; cubes: see cubes_list */
+#ifdef MASK_REGISTERS
+    bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
+#endif
     ushort lane_place[4 * NUMBER_LANES];
     uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
 #ifdef REAL
@@ -93,7 +104,7 @@ inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
     return r;
 }
 
-/* What cubes_list needs to tell a cube's case. */
+/* What cubes_list needs to tell cubes' cases. */
 inline_always void corners_store(const brick_signs *signs, brick_work *work) {
     for (uint z = 0; z < NUMBER_PLANES; z++) {
         ulong16 both;
@@ -106,9 +117,6 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 
 /* --------------------------------------------------------------------------------------------------- way to the mesh
  */
-
-/* Sixteen words of 4 bytes, of any kind, anywhere. */
-typedef uint16 __attribute__((aligned(4), may_alias)) words16;
 
 /* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
 inline_always void lines_store(const void *words, uint count, global void *out) {
@@ -127,12 +135,14 @@ inline_always void lines_store(const void *words, uint count, global void *out) 
 
 /* --------------------------------------------------------------------------------------------------- vertex numbers */
 
+/* Whether the first cube of a row of the brick is odd. */
+inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
+
 /* Numbers the crossed edges of a row of another brick. */
 inline_always void row_number(uint *number, ulong crossed, uint first) {
     do {
-#pragma unroll
-        for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1)
-            number[NUMBER_STEP * lowest_bit(crossed)] = first++;
+        number[NUMBER_STEP * lowest_bit(crossed)] = first++;
+        crossed &= crossed - 1;
     } while (crossed);
 }
 
@@ -141,20 +151,17 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = (s->parity ^ y ^ z) & 1, *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
+        uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
 #pragma unroll
         for (uint type = 0; type < EDGE_TYPES; type++) {
             const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
             do {
-#pragma unroll
-                for (uint n = 0; n < LIST_STEP; n++, crossed &= crossed - 1) {
-                    uint bit = lowest_bit(crossed);
-                    work->list[count + n] = (bit & 1 ? codes[1] : codes[0]) + bit;
-                    number[NUMBER_STEP * bit + type] = first + count + n;
-                }
-                count += LIST_STEP;
+                uint bit = lowest_bit(crossed);
+                work->list[count] = (bit & 1 ? codes[1] : codes[0]) + bit;
+                number[NUMBER_STEP * bit + type] = first + count++;
+                crossed &= crossed - 1;
             } while (crossed);
             count = end;
         }
@@ -314,38 +321,74 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Lists the active cubes of the rows in mask: x, y, z in the bits that PLACE has, then the cube's place in the table of
- * numbers. */
-inline_always uint cubes_list(uint mask, brick_work *work) {
-    uint count = 0;
-    for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
-        uint code = y << 7 | z << 11 | NUMBER_PLACE(0, y, z) << 14;
-        ulong active = work->active[z][y];
-        uint end = count + (uint)popcount(active);
-        do {
+/* Lists the active cubes of the rows in mask: a cube's place in the table of numbers from bit CASE_BITS on, below that
+ * its case. First all patterns are made, as what is stored in whole vectors is not to be read in parts at once. */
+#ifdef MASK_REGISTERS
+inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
+    bytes64 patterns = 0;
 #pragma unroll
-            for (uint n = 0; n < LIST_STEP; n++, active &= active - 1)
-                work->list[count++] = code + lowest_bit(active) * (1 + (1u << 14));
+    for (uint n = 0; n < 4; n++) {
+        patterns |= __builtin_astype(__builtin_ia32_cvtmask2b512(row[n]), bytes64) & (bytes64)(char)(1 << n);
+        patterns |= __builtin_astype(__builtin_ia32_cvtmask2b512(deep[n]), bytes64) & (bytes64)(char)(16 << n);
+    }
+    return patterns;
+}
+
+/* Of sixteen items those in the mask, one after another; stores all that fits behind them. */
+inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
+    *(words16 *)out =
+        __builtin_astype(__builtin_ia32_compresssi512_mask(as_int16(items), (int16)0, (ushort)mask), words16);
+    return (uint)popcount((ushort)mask);
+}
+
+inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
+    const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    uint count = 0;
+    for (uint rows = mask; rows; rows &= rows - 1) {
+        uint place = lowest_bit(rows), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
+        work->patterns[place] = row_patterns(work->corners[z] + 2 * y, work->corners[z + 1] + 2 * y);
+    }
+    for (; mask; mask &= mask - 1) {
+        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, x = 0;
+        const uchar *patterns = (const uchar *)&work->patterns[place];
+        ulong active = work->active[z][y];
+        do {
+            uint skipped = lowest_bit(active);
+            x += skipped, active >>= skipped;
+            uint16 odd = (lane ^ x ^ row_odd(s, y, z)) & 1, number = NUMBER_PLACE(x, y, z) + lane;
+            uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << 8 | number << CASE_BITS;
+            count += items_keep(items, active, work->list + count);
+            x += 16, active >>= 16;
         } while (active);
-        count = end;
     }
     return count;
 }
-
-/* The cases of listed cubes, apart from what is done with them: how many triangles a cube has is soon known then. */
-inline_always void cases_find(const slab *s, uint count, brick_work *work) {
-    for (uint n = 0; n < count; n++) {
-        uint code = work->list[n], x = code & 0x7f, y = code >> 7 & 0xf, z = code >> 11 & 7;
-        uint odd = (x ^ y ^ z ^ s->parity) & 1;
-        ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
-        work->cases[n] = (ushort)(256 * odd + pattern_at(corners, x));
+#else
+inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
+    uint count = 0;
+    for (; mask; mask &= mask - 1) {
+        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
+        ulong active = work->active[z][y];
+        uint end = count + (uint)popcount(active);
+        do {
+            work->list[count++] = place << 7 | lowest_bit(active);
+            active &= active - 1;
+        } while (active);
+        count = end;
     }
+    for (uint n = 0; n < count; n++) {
+        uint x = work->list[n] & 0x7f, y = (work->list[n] >> 7) % BRICK_ROWS, z = (work->list[n] >> 7) / BRICK_ROWS;
+        uint odd = (x ^ row_odd(s, y, z)) & 1;
+        ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
+        work->list[n] = pattern_at(corners, x) | odd << 8 | NUMBER_PLACE(x, y, z) << CASE_BITS;
+    }
+    return count;
 }
+#endif
 
 /* The vertices of a cube's triangles, by lanes: numbers of its four rows from its first sample on. More of them than it
  * has are stored. `number` is that of the cube's own row. */
-#ifdef __AVX512F__ /* compilers know no such shuffle by name */
+#ifdef MASK_REGISTERS /* compilers know no such shuffle by name */
 inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {
     int16 lane = convert_int16(vload16(0, lanes_named));
     int16 here = __builtin_ia32_vpermi2vard512(as_int16(rows[0]), lane, as_int16(rows[1]));
@@ -374,8 +417,8 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
     for (uint first = 0; first < count; first += BATCH_CUBES) {
         uint *at = work->triangles, end = min(count, first + BATCH_CUBES);
         for (uint n = first; n < end; n++) {
-            global const uchar *entry = cases + CUBE_CASE_BYTES * work->cases[n];
-            case_store(work->number + NUMBER_STEP * (work->list[n] >> 14), entry, at, work);
+            global const uchar *entry = cases + CUBE_CASE_BYTES * (work->list[n] & ((1u << CASE_BITS) - 1));
+            case_store(work->number + NUMBER_STEP * (work->list[n] >> CASE_BITS), entry, at, work);
             at += 3u * *entry;
         }
         uint written = (uint)(at - work->triangles);
@@ -417,7 +460,7 @@ inline_always void samples_prefetch(const slab *s, corner c, uint mask, global c
     }
 }
 
-/* Asks ahead for sign words and offsets. */
+/* Asks ahead for what kernel 1 left. */
 inline_always void brick_prefetch(const slab *s, uint number, corner c, row_results k1) {
     uint up = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
          deep = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
@@ -426,9 +469,11 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
         line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up) + line);
         line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up) + line);
     }
+    line_prefetch(k1.bricks + number);
     line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + deep));
     line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + deep));
     line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up + deep));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up + deep));
 }
 
 inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
@@ -436,9 +481,6 @@ inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays 
     brick_signs signs;
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;
-#ifdef REAL
-    samples_prefetch(s, c, state.rows, in.samples);
-#endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
@@ -449,8 +491,7 @@ inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays 
     plane_number(s, c, &signs, k1, work);
     next_rows_number(s, c, &signs, k1, work);
     column_number(s, c, &signs, k1, work);
-    count = cubes_list(state.rows, work);
-    cases_find(s, count, work);
+    count = cubes_list(s, state.rows, work);
     triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
 }
 

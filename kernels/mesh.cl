@@ -44,8 +44,6 @@ inline_always owner owner_of(const slab *s, uint y, uint z, uint w, row_results 
 
 inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
-#ifdef REAL
-
 /* Where an edge of a type lies, seen from the sample that owns it. Diagonals differ with the parity of the cube. */
 inline_always uint edge_place(uint type, bool odd) {
     switch (type) {
@@ -63,6 +61,8 @@ inline_always uint edge_place(uint type, bool odd) {
         return odd ? PLACE(0, 1, 0, 0, -1, 1) : PLACE(0, 0, 0, 0, 1, 1);
     }
 }
+
+#ifdef REAL
 
 /* How far apart the samples at the ends of an edge are in the buffer. */
 inline_always long place_step(const slab *s, uint place) {

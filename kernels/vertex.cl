@@ -15,13 +15,13 @@ typedef struct corner {
     uint x, y, z;
 } corner;
 
-#ifdef REAL
-
 /* Where an edge begins and which way it goes, in one word: offsets of its first end from the first sample of the
  * brick's row of bits 0-6 x, 7-10 y, 11-13 z, then a step of -1, 0 or 1 along each axis, plus 1, two bits each. */
 #define PLACE(x, y, z, step_x, step_y, step_z)                                                                         \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
      (uint)((step_z) + 1) << 18)
+
+#ifdef REAL
 
 #if GRID == 0
 /* The position on the edge at t, in world space. */

@@ -20,13 +20,14 @@
 #define inline_always static inline __attribute__((always_inline))
 #endif
 
-/* Bit-sliced code runs over LANES rows of 64 samples at once: the eight of a plane of a brick where a work-item has
- * bricks to itself, one where it shares them. */
-/* AVX-512: masks of comparisons are integers in registers of their own. */
-#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+/* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.
+ */
+#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(NO_AVX512)
 #define MASK_REGISTERS
 #endif
 
+/* Bit-sliced code runs over LANES rows of 64 samples at once: the eight of a plane of a brick where a work-item has
+ * bricks to itself, one where it shares them. */
 #if WORK_ITEMS == 1
 #define group_barrier()
 #define LANES 8

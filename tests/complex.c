@@ -119,7 +119,8 @@ static void cube_add(cell_list *list, const uint32_t voxel[8], uint32_t column) 
     }
 }
 
-cell_list mixed_block_make(uint32_t size) {
+cell_list mixed_block_make(uint32_t size, uint64_t seed) {
+    random_state = seed;
     const uint32_t side = size + 1, count = side * side * side;
     cell_list list = cell_list_make(count + size * size * size, 6 * size * size * size);
     uint32_t *numbers = memory_get(4ull * count), *columns = memory_get(4 * size * size);

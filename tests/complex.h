@@ -27,8 +27,8 @@ uint32_t cell_list_point(cell_list *list, double x, double y, double z);
 void cell_list_add(cell_list *list, int type, int corner_count, const uint32_t *corners, bool inverted);
 
 /* A block of size^3 unit cubes, columns of them cut into wedges, others into hexahedra, voxels, pyramids around their
- * middle and tetrahedra at random, of either orientation; points numbered at random. */
-cell_list mixed_block_make(uint32_t size);
+ * middle and tetrahedra at random, of either orientation; points numbered at random. A seed makes one and the same. */
+cell_list mixed_block_make(uint32_t size, uint64_t seed);
 
 typedef struct complex_facts {
     uint64_t boundary_faces; /* of one tetrahedron */

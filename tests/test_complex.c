@@ -150,7 +150,7 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
     char what[80];
     snprintf(what, sizeof what, "mixed block of %u, %s%s%s", size, tc_type_name(type), few ? ", few values" : "",
              holes ? ", holes" : "");
-    cell_list list = mixed_block_make(size);
+    cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
     tc_complex complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());

@@ -60,7 +60,7 @@ static subject block_make(tc_type type, uint32_t size, bool holes, bool shuffled
     char name[80];
     snprintf(name, sizeof name, "block of %u, %s%s%s", size, tc_type_name(type), holes ? ", holes" : "",
              shuffled ? ", shuffled" : "");
-    cell_list list = mixed_block_make(size);
+    cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
     tc_complex complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", name, tc_message());

@@ -151,7 +151,7 @@ static void mixed_blocks(void) {
         if (round == 39) size = 24; /* several blocks of cells */
         char what[64];
         snprintf(what, sizeof what, "mixed block %d of size %u", round, size);
-        cell_list list = mixed_block_make(size);
+        cell_list list = mixed_block_make(size, random_u64());
         tc_cells cells = cell_list_view(&list);
         tc_complex complex = cut(&cells, what);
         expect_conforming(&complex, &cells, 12ull * size * size, 6.0 * size * size * size, what);
@@ -245,7 +245,7 @@ static void curved_and_flat(void) {
 }
 
 static void blanked(void) {
-    cell_list list = mixed_block_make(4);
+    cell_list list = mixed_block_make(4, 1);
     uint8_t *points = calloc(list.point_count, 1), *marks = calloc(list.cell_count, 1);
     for (int n = 0; n < 10; n++) points[random_below((uint32_t)list.point_count)] = 1;
     for (int n = 0; n < 10; n++) marks[random_below((uint32_t)list.cell_count)] = 1;

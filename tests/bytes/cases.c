@@ -157,7 +157,7 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
 /* ------------------------------------------------------------------------------------------------------- complexes */
 
 static void complex_fill(const bytes_case *c, bool small, case_data *data) {
-    cell_list list = mixed_block_make(small ? 3 : 9);
+    cell_list list = mixed_block_make(small ? 3 : 9, random_u64());
     tc_cells cells = cell_list_view(&list);
     tc_complex_options *o = &data->complex;
     data->split.struct_size = sizeof data->split;

@@ -16,6 +16,7 @@
  *     corrupt read BYTE BIT          that bit is wrong in whatever is read from a buffer
  *     corrupt build MISTAKE          programs are built wrongly: the table of corrupt.c; "corrupt off" ends either
  *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
+ *     lacks fp64 | off               devices say that they have no double precision
  *     memory PATTERN | off           new buffers are full of a byte, and have guards around them: memory.c
  *     count                          at the end of the process the calls of each entry point go to standard error
  *
@@ -74,7 +75,7 @@ typedef struct layer_mode {
     bool (*command)(char *const *words, int count);
 } layer_mode;
 
-extern const layer_mode corrupt_mode, fail_mode, count_mode, ledger_mode, late_mode, memory_mode;
+extern const layer_mode corrupt_mode, fail_mode, count_mode, lacks_mode, ledger_mode, late_mode, memory_mode;
 
 unsigned long fail_calls(const char *entry_name);
 unsigned long fail_count(void);

@@ -240,7 +240,7 @@ static void complex_make(subject *s) {
     uint32_t size[3];
     for (int axis = 0; axis < 3; axis++) size[axis] = 1 + random_below(3);
     if (s->kind == MIXED) size[1] = size[2] = size[0] = 1 + random_below(2) + random_below(2) / 2;
-    s->list = s->kind == MIXED ? mixed_block_make(size[0]) : block_make(s->kind, size);
+    s->list = s->kind == MIXED ? mixed_block_make(size[0], random_u64()) : block_make(s->kind, size);
     points_move(s, size);
     s->sample_count = (int64_t)s->list.point_count;
     samples_fill(s);

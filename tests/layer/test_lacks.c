@@ -1,0 +1,100 @@
+/*
+ * test_lacks.c - a device without double precision: 32-bit integers and doubles have their vertices made on the host,
+ * of triangles that the device has numbered; what cannot be so is refused
+ */
+#define CL_TARGET_OPENCL_VERSION 120
+
+#include "engines.h"
+#include "layer_find.h"
+#include "random.h"
+#include "samples.h"
+
+#include <math.h>
+
+enum { NX = 70, NY = 13, NZ = 9, SAMPLES = NX * NY * NZ };
+
+static union {
+    uint32_t u32[SAMPLES];
+    int32_t i32[SAMPLES];
+    float f32[SAMPLES];
+    double f64[SAMPLES];
+} samples;
+static tc_context *reference;
+
+static void grid_describe(tc_grid_options *grid, tc_type type) {
+    tc_grid_options_init(grid);
+    grid->dims[0] = NX, grid->dims[1] = NY, grid->dims[2] = NZ;
+    grid->type = type;
+    grid->samples = &samples;
+    for (int n = 0; n < SAMPLES; n++) sample_set(&samples, type, n, (double)(random_below(1000)));
+    if (type == TC_F64) samples.f64[SAMPLES / 2] = NAN;
+}
+
+static void test_extract(tc_context *context, uint32_t work_items, tc_type type, tc_method method, bool normals) {
+    tc_grid_options grid;
+    tc_extract_options options;
+    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_mesh_data data[2];
+    grid_describe(&grid, type);
+    tc_extract_options_init(&options);
+    options.isovalue = 500.25;
+    options.method = method;
+    options.normals = normals;
+    if (extract(reference, &grid, &options, &meshes[0], &data[0]) &&
+        extract(context, &grid, &options, &meshes[1], &data[1])) {
+        const char *differs = mesh_difference(&data[0], &data[1]);
+        EXPECT(!differs, "%s, %u work-items: %s", tc_type_name(type), work_items, differs);
+        EXPECT(data[0].triangle_count > 1000, "%llu triangles", (unsigned long long)data[0].triangle_count);
+    }
+    tc_mesh_destroy(meshes[0]);
+    tc_mesh_destroy(meshes[1]);
+}
+
+static void test_refusals(tc_context *context) {
+    static const float points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint32_t corners[4] = {0, 1, 2, 3};
+    tc_complex_options complex;
+    tc_grid_options options;
+    tc_extract_options extraction;
+    tc_counts counts = {.struct_size = sizeof counts};
+    tc_grid *grid = NULL;
+    tc_complex_options_init(&complex);
+    complex.points = &points[0][0], complex.point_count = 4;
+    complex.tetrahedra = corners, complex.tetrahedron_count = 1;
+    complex.type = TC_F64, complex.samples = samples.f64;
+    EXPECT_REFUSED(tc_complex_create(context, &complex, &grid), TC_ERROR_DEVICE, "a complex of doubles");
+    EXPECT(strstr(tc_message(), "fp64"), "the message says nothing of fp64: %s", tc_message());
+
+    grid_describe(&options, TC_F64);
+    tc_extract_options_init(&extraction);
+    extraction.isovalue = 500.25;
+    EXPECT(tc_grid_create(context, &options, &grid) == TC_OK && tc_count(grid, &extraction, &counts) == TC_OK,
+           "counting triangles of doubles: %s", tc_message());
+    EXPECT(counts.triangle_count > 1000, "%llu triangles", (unsigned long long)counts.triangle_count);
+    tc_grid_destroy(grid);
+}
+
+int main(void) {
+    random_state = 1996;
+    if (!device_exists()) return SKIPPED;
+    const layer_functions *layer = layer_find();
+    EXPECT(layer && layer->command("lacks fp64"), "the layer is not there");
+    if (!layer) return EXPECT_DONE();
+    reference = reference_open();
+    for (uint32_t work_items = 1; work_items <= 32; work_items += 31) {
+        tc_context_options options;
+        tc_device_info info = {.struct_size = sizeof info};
+        tc_context_options_init(&options);
+        options.work_items = work_items;
+        tc_context *context = context_open(&options);
+        EXPECT(tc_context_device(context, &info) == TC_OK && !info.has_fp64, "the device has fp64 all the same");
+        test_extract(context, work_items, TC_F64, TC_METHOD_TETRA, false);
+        test_extract(context, work_items, TC_F64, TC_METHOD_HYBRID, false);
+        test_extract(context, work_items, TC_U32, TC_METHOD_TETRA, true);
+        test_extract(context, work_items, TC_F32, TC_METHOD_TETRA, true);
+        test_refusals(context);
+        tc_context_destroy(context);
+    }
+    tc_context_destroy(reference);
+    return EXPECT_DONE();
+}
