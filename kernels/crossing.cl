@@ -45,8 +45,7 @@ inline_always float divide(float a, float b) {
     ulong kept = quotient >> drop, rest = quotient - (kept << drop), half_way = 1ul << (drop - 1);
     kept += rest > half_way || (rest == half_way && (inexact || (kept & 1)));
     int field = exponent + drop + 150;
-    uint magnitude = (uint)kept;
-    if (magnitude >> 24) magnitude >>= 1, field++;
+    uint magnitude = (uint)kept; /* rounded up to no 25th bit: such quotients end a last place or more below it */
     magnitude = magnitude >> 23 ? ((uint)field << 23) | (magnitude & 0x7fffff) : magnitude;
     return as_float(sign | magnitude);
 }
