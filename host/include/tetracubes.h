@@ -277,6 +277,7 @@ typedef struct tc_mesh_data {
     const float *normals;      /* 3 per vertex, or NULL */
     const uint32_t *triangles; /* 3 vertex indices per triangle */
     uint32_t slab_count;       /* 1 where the grid was processed whole */
+    uint32_t reserved;         /* 0 */
     tc_timings timings;
 } tc_mesh_data;
 

@@ -32,8 +32,9 @@ FILE_TESTS = ["test_read", "test_read_hostile", "test_vtk_legacy", "test_vtk_xml
 QUICK_TESTS = ["test_read_hostile", "test_vtk_xml", "test_vtk_xml_hostile", "test_dataset", "test_write_vtk", "test_misuse",
                "test_order", "test_api"]
 SANITIZED = "address,undefined"
-LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1",
-         "UBSAN_OPTIONS": "print_stacktrace=1"}
+LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1:use_sigaltstack=0",
+         "LSAN_OPTIONS": f"suppressions={Path(__file__).resolve().parent / 'leaks.txt'}:print_suppressions=0",
+         "UBSAN_OPTIONS": "print_stacktrace=1"}  # use_sigaltstack: PoCL's threads have stacks of their own for signals
 FAULTS = r"(?:AddressSanitizer|LeakSanitizer|ThreadSanitizer)|runtime error:"
 
 
