@@ -73,12 +73,21 @@ static int points_make(samples *s) {
     return 0;
 }
 
-static int coordinates_make(samples *s) {
-    if (!s->coordinate_bytes) return 0;
-    void *memory = mmap(NULL, s->coordinate_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+/* In huge pages, as the bandwidth is measured in, and as the readers, and numpy, have their arrays. */
+static int memory_make(uint64_t bytes, const char *what, void **out) {
+    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
-        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the points; give smaller --dims",
-                    s->coordinate_bytes >> 20);
+        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the %s; give smaller --dims", bytes >> 20, what);
+    madvise(memory, bytes, MADV_HUGEPAGE);
+    *out = memory;
+    return 0;
+}
+
+static int coordinates_make(samples *s) {
+    void *memory = NULL;
+    if (!s->coordinate_bytes) return 0;
+    int status = memory_make(s->coordinate_bytes, "points", &memory);
+    if (status) return status;
     s->coordinates = memory;
     if (s->placed >= BENCH_CURVILINEAR) return points_make(s);
     axes_make(s);
@@ -86,9 +95,9 @@ static int coordinates_make(samples *s) {
 }
 
 static int values_make(samples *s) {
-    void *memory = mmap(NULL, s->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED)
-        return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the samples; give smaller --dims", s->bytes >> 20);
+    void *memory = NULL;
+    int status = memory_make(s->bytes, "samples", &memory);
+    if (status) return status;
     s->made = memory;
     s->grid.samples = memory;
     const int64_t *dims = s->grid.dims;
