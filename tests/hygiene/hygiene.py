@@ -130,7 +130,7 @@ class Hygiene:
 
     def readers(self):
         names = QUICK_TESTS
-        strict = {**LEAKS, "ASAN_OPTIONS": LEAKS["ASAN_OPTIONS"] + ":strict_string_checks=1"}  # a pass over the text each
+        strict = {**LEAKS, "ASAN_OPTIONS": LEAKS["ASAN_OPTIONS"] + ":strict_string_checks=1"}  # slow
         return self.run_tests(self.sanitized("sanitizers", SANITIZED, names), names, **strict)
 
     def sanitizers(self):
