@@ -2,8 +2,9 @@
  * emit.cl - kernel 2: vertices and triangles of the bricks that have any
  *
  * Runs over the list that kernel 1 left. Groups stay and take runs of active bricks by ticket. How a brick is emitted
- * depends on who shares it: emit_brick.cl, emit_rows.cl. Triangles come from the table of a cube (2 parities x 256
- * patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the hybrid method has.
+ * depends on who shares it: emit_numbers.cl and emit_brick.cl, or emit_rows.cl. Triangles come from the table of a cube
+ * (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the
+ * hybrid method has.
  */
 
 /* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,

@@ -1,122 +1,22 @@
 /*
  * emit_brick.cl - kernel 2 where a work-item has bricks to itself: a brick in passes over its 32 rows, eight at a time
  *
- * 1. The sign words of the brick and its neighbours' next rows and planes give all crossed edges and active cubes.
- * 2. Crossed edges are listed, row by row, and numbered in a table with a place for every edge that a cube of the brick
- *    has: its own and, from what kernel 1 left, its neighbours'. The table is never cleared: only crossed edges are
- *    looked up.
+ * Steps 1 and 2 are in emit_numbers.cl.
  * 3. Vertices are made of the list, in vector code.
  * 4. Active cubes are listed with their cases; a cube takes from the table what its case names, as lanes of the numbers
  *    of its four rows.
  *
- * A row has an edge of each type and three active cubes, more or less. So lists get one item of a row at the least, and
- * as many indices are copied as most cases have: a branch that cannot be foreseen costs more. What is too much is
- * overwritten by what comes next. Positions and triangles go through private memory, batch by batch, and from there to
- * the mesh in whole cache lines.
+ * A row has three active cubes, more or less. So as many indices are copied as most cases have. Positions and triangles
+ * go through private memory, batch by batch, and from there to the mesh in whole cache lines.
  */
 #if WORK_ITEMS == 1
 
-#define NUMBER_STEP NUMBER_TYPES(HYBRID)
-#define CASE_BITS   9
-#define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
-#define LIST_MORE   16 /* items that are stored past its end, at the most */
-#define BATCH_EDGES 512
-#define BATCH_STEP  16
-#define BATCH_CUBES 128
-
-/* Indices that a cube has at the most, and those that are copied at once, as many as most have. */
-#if HYBRID
-#define CASE_ITEMS 18
-#define CASE_STEP  9
-#else
-#define CASE_ITEMS 30
-#define CASE_STEP  15
-#endif
+#define CASE_BITS  9
+#define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
+#define BATCH_STEP 16
 
 /* Sixteen words of 4 bytes, of any kind, anywhere. */
 typedef uint16 __attribute__((aligned(4), may_alias)) words16;
-
-#ifdef MASK_REGISTERS
-/* A byte for each sample of a row. */
-typedef char bytes64 __attribute__((ext_vector_type(64)));
-#endif
-
-/* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
-typedef struct brick_signs {
-    sample_rows rows[2][NUMBER_PLANES];
-} brick_signs;
-
-typedef struct brick_work {
-    ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
-    ulong active[BRICK_PLANES][BRICK_ROWS];
-    ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
-    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
-    uint list[LIST_EDGES + LIST_MORE]; /* edges as PLACE has them; cubes: see cubes_list */
-#ifdef MASK_REGISTERS
-    bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
-#endif
-    ushort lane_place[4 * NUMBER_LANES];
-    uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
-#ifdef REAL
-    ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of PLACE */
-    long step[64];           /* by its bits 14 to 19 */
-    BITS a[BATCH_EDGES], b[BATCH_EDGES];
-    float positions[3 * BATCH_EDGES];
-#endif
-} brick_work;
-
-inline_always void brick_work_begin(const slab *s, brick_work *work) {
-    for (uint n = 0; n < 4 * NUMBER_LANES; n++)
-        work->lane_place[n] =
-            NUMBER_STEP * NUMBER_PLACE(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
-#ifdef REAL
-    for (uint n = 0; n < 64; n++) work->step[n] = place_step(s, n << 14);
-#endif
-}
-
-/* ------------------------------------------------------------------------------------------------------------ signs */
-
-/* The words of the brick that lies so many bricks further on. */
-inline_always global const ulong *words_beside(const slab *s, corner c, uint number, uint across, uint up, uint deep,
-                                               row_results k1) {
-    bool exists = c.x + 64 * across < s->nx && c.y + BRICK_ROWS * up < s->ny && c.z + BRICK_PLANES * deep < s->nz;
-    if (!exists) return brick_words(0, SIGN_OUTSIDE, k1.words);
-    number += (deep * s->bricks_y + up) * s->words_x + across;
-    return brick_words(number, k1.bricks[number].sign, k1.words);
-}
-
-inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
-    ulong valid = word_valid(s, c.x / 64);
-    for (uint up = 0; up < 2; up++) {
-        global const ulong *at = words_beside(s, c, number, 0, up, 0, k1);
-        global const ulong *next = words_beside(s, c, number, 1, up, 0, k1);
-        for (uint z = 0; z < BRICK_PLANES; z++)
-            signs->rows[up][z] = rows_shifted(vload8(z, at) & valid, vload8(z, next));
-        at = words_beside(s, c, number, 0, up, 1, k1), next = words_beside(s, c, number, 1, up, 1, k1);
-        signs->rows[up][BRICK_PLANES] = rows_shifted(vload8(0, at) & valid, vload8(0, next));
-    }
-}
-
-/* The rows of plane z that follow those of the brick by one. */
-inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
-    const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
-    sample_rows r = {lanes_up(here->at, up->at.s0), lanes_up(here->next, up->next.s0)};
-    return r;
-}
-
-/* What cubes_list needs to tell cubes' cases. */
-inline_always void corners_store(const brick_signs *signs, brick_work *work) {
-    for (uint z = 0; z < NUMBER_PLANES; z++) {
-        ulong16 both;
-        both.even = signs->rows[0][z].at, both.odd = signs->rows[0][z].next;
-        vstore16(both, 0, work->corners[z]);
-        work->corners[z][2 * BRICK_ROWS] = signs->rows[1][z].at.s0;
-        work->corners[z][2 * BRICK_ROWS + 1] = signs->rows[1][z].next.s0;
-    }
-}
-
-/* --------------------------------------------------------------------------------------------------- way to the mesh
- */
 
 /* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
 inline_always void lines_store(const void *words, uint count, global void *out) {
@@ -131,129 +31,6 @@ inline_always void lines_store(const void *words, uint count, global void *out) 
     }
 #pragma clang loop vectorize(disable) unroll(disable)
     for (; n < count; n++) to[n] = from[n];
-}
-
-/* --------------------------------------------------------------------------------------------------- vertex numbers */
-
-/* Whether the first cube of a row of the brick is odd. */
-inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
-
-/* Numbers the crossed edges of a row of another brick. */
-inline_always void row_number(uint *number, ulong crossed, uint first) {
-    do {
-        number[NUMBER_STEP * lowest_bit(crossed)] = first++;
-        crossed &= crossed - 1;
-    } while (crossed);
-}
-
-/* Lists and numbers the brick's own vertices; returns how many there are. */
-inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *work) {
-    uint count = 0;
-    for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
-#pragma unroll
-        for (uint type = 0; type < EDGE_TYPES; type++) {
-            const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
-            ulong crossed = work->crossed[z][type][y];
-            uint end = count + (uint)popcount(crossed);
-            do {
-                uint bit = lowest_bit(crossed);
-                work->list[count] = (bit & 1 ? codes[1] : codes[0]) + bit;
-                number[NUMBER_STEP * bit + type] = first + count++;
-                crossed &= crossed - 1;
-            } while (crossed);
-            count = end;
-        }
-    }
-    return count;
-}
-
-/* Crossings of the next plane that the brick's cubes have. */
-inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
-    const uint z = c.z + BRICK_PLANES, w = c.x / 64;
-    const sample_rows none = rows_shifted((lanes)0, (lanes)0);
-    if (z >= s->nz) return;
-    cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
-    crossings k = crossings_owned(&r);
-#if MISSING
-    crossings_keep(s, k1.cells, c.y, z, w, &k);
-#endif
-    ulong crossed[3][BRICK_ROWS];
-    vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
-    for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
-        uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, BRICK_PLANES);
-        owner o = owner_of(s, c.y + y, z, w, k1);
-        row_number(number, crossed[0][y], number_of(o, 0));
-        row_number(number + 1, crossed[1][y], number_of(o, 1));
-        if (!HYBRID) row_number(number + 3, crossed[2][y], number_of(o, 3));
-    }
-}
-
-/* Crossings of the next row of each plane. */
-inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, row_results k1,
-                                    brick_work *work) {
-    const uint y = c.y + BRICK_ROWS, w = c.x / 64;
-    const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
-    if (y >= s->ny) return;
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
-        const bool has_z = n < BRICK_PLANES && c.z + n + 1 < s->nz;
-        const ulong even = even_cubes(s, y, c.z + n), a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
-        const ulong c0 = has_z ? signs->rows[1][n + 1].at.s0 : a0, c1 = has_z ? signs->rows[1][n + 1].next.s0 : 0;
-        ulong x = (a0 ^ a1) & has_x, z = a0 ^ c0;
-        ulong xz = has_z && !HYBRID ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
-#if MISSING
-        crossings k = {{x, 0, z, 0, xz, 0}};
-        crossings_keep(s, k1.cells, y, c.z + n, w, &k);
-        x = k.type[0].s0, z = k.type[2].s0, xz = k.type[4].s0;
-#endif
-        if (!(x | z | xz)) continue;
-        owner o = owner_of(s, y, c.z + n, w, k1);
-        uint *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, BRICK_ROWS, n);
-        row_number(number, x, number_of(o, 0));
-        row_number(number + 2, z, number_of(o, 2));
-        if (!HYBRID) row_number(number + 4, xz, number_of(o, 4));
-    }
-}
-
-/* The first samples of the rows in the next brick in x. */
-inline_always lanes column_of(sample_rows rows) { return rows.next >> 63; }
-
-/* Numbers the first edge of one type of the rows from y on in plane z of word w. */
-inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, corner c, row_results k1,
-                                brick_work *work) {
-    for (; rows; rows &= rows - 1) {
-        uint row = y + lowest_bit(rows);
-        uint place = NUMBER_STEP * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
-        work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
-    }
-}
-
-/* Crossings of the next column, of rows y, y + 1 and planes z, z + 1. Last, since others store too much there. */
-inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
-    const uint w = c.x / 64 + 1;
-    if (w >= s->words_x) return;
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
-        const uint z = c.z + n;
-        const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
-        const lanes a = column_of(signs->rows[0][n]), b = column_of(signs_up(signs, n));
-        crossings k = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
-        k.type[1] = (a ^ b) & has_y;
-        if (n < BRICK_PLANES && z + 1 < s->nz) {
-            const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
-            k.type[2] = a ^ behind;
-            if (!HYBRID) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
-            up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
-        }
-#if MISSING
-        crossings_keep(s, k1.cells, c.y, z, w, &k);
-        crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
-#endif
-        column_store(s, c.y, z, w, 1, lanes_nonzero(k.type[1]), c, k1, work);
-        column_store(s, c.y, z, w, 2, lanes_nonzero(k.type[2]), c, k1, work);
-        column_store(s, c.y, z, w, 5, lanes_nonzero(k.type[5]), c, k1, work);
-        if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
-    }
 }
 
 /* --------------------------------------------------------------------------------------------------------- vertices */
@@ -428,23 +205,6 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 }
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
-
-/* Crossed edges and active cubes of the brick itself. */
-inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, row_results k1,
-                                   brick_work *work) {
-    for (uint n = 0; n < BRICK_PLANES; n++) {
-        cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
-                                   signs->rows[0][n + 1], signs_up(signs, n + 1));
-        crossings k = crossings_owned(&r);
-        lanes active = cubes_active(&r);
-#if MISSING
-        crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &k);
-        active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
-#endif
-        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
-        vstore8(active, 0, work->active[n]);
-    }
-}
 
 /* The samples of the rows that emit and of those that their edges lead to. */
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {

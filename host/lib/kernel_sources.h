@@ -14,6 +14,7 @@ extern const char kernel_source_classify[];
 extern const char kernel_source_crossing[];
 extern const char kernel_source_vertex[];
 extern const char kernel_source_mesh[];
+extern const char kernel_source_emit_numbers[];
 extern const char kernel_source_emit_brick[];
 extern const char kernel_source_emit_rows[];
 extern const char kernel_source_emit[];

@@ -85,10 +85,10 @@ static const char *const emit_sources[SOURCE_COUNT] = {kernel_source_slab,
                                                        kernel_source_crossing,
                                                        kernel_source_vertex,
                                                        kernel_source_mesh,
+                                                       kernel_source_emit_numbers,
                                                        kernel_source_emit_brick,
                                                        kernel_source_emit_rows,
-                                                       kernel_source_emit,
-                                                       ""};
+                                                       kernel_source_emit};
 static const char *const complex_sources[SOURCE_COUNT] = {kernel_source_slab,
                                                           kernel_source_words,
                                                           kernel_source_ranges,

@@ -11,13 +11,16 @@ files in the folder where it may write, which is removed after each.
 
 A mutant that no test catches is an error, unless the table says why it is the same program; one that the table calls
 the same and that is caught is an error too, and so is one whose text is not in the source any more or does not compile.
---only keeps the mutants whose file, text or description has one of the words; --sample a few of every kind.
+--only keeps the mutants whose file, text or description has one of the words; --sample a few of every kind; --changed
+those whose file is not as it was when mutants.json was written. What this processor would not compile is left out.
 
-Prints one line per mutant. Where TETRACUBES_RESULTS names a folder, mutants.json there tells the same.
+Prints one line per mutant. Where TETRACUBES_RESULTS names a folder, mutants.json there tells the same, and keeps what it
+told of other mutants whose files are as they were.
 """
 import argparse
 import collections
 import datetime
+import hashlib
 import json
 import os
 import queue
@@ -289,19 +292,48 @@ def run_all(source, work, mutants, worker_count):
     return results
 
 
-def write_results(folder, results, seconds):
-    by = collections.Counter(r.verdict for r in results)
-    figures = [{"what": "faults planted in the sources", "value": len(results)},
+def sums(source, mutants):
+    """What tells a file's text from another, of the files that mutants are in."""
+    found = {}
+    for file in {m.file for m in mutants}:
+        with open(os.path.join(source, file), "rb") as f:
+            found[file] = hashlib.sha256(f.read()).hexdigest()[:16]
+    return found
+
+
+def told_before(folder, mutants, sum_of):
+    """Lines of mutants.json that hold still: the mutant is in the table, and its file is as it was."""
+    path = os.path.join(folder, "mutants.json")
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as f:
+        lines = json.load(f)["mutants"]
+    known = {(m.file, m.what) for m in mutants}
+    return {(line["file"], line["what"]): line for line in lines
+            if (line["file"], line["what"]) in known and line["sum"] == sum_of[line["file"]]}
+
+
+def write_results(folder, results, before, sum_of, seconds):
+    today = datetime.date.today().isoformat()
+    lines = {**before, **{(r.mutant.file, r.mutant.what): {
+        "file": r.mutant.file, "line": r.line, "what": r.mutant.what, "verdict": r.verdict, "test": r.test,
+        "reason": r.mutant.same, "sum": sum_of[r.mutant.file], "date": today} for r in results}}
+    lines = sorted(lines.values(), key=lambda line: (line["file"], line["line"], line["what"]))
+    by = collections.Counter(line["verdict"] for line in lines)
+    figures = [{"what": "faults planted in the sources", "value": len(lines)},
                {"what": "of these caught by a test", "value": by["caught"]},
                {"what": "of these the same program, with the reason", "value": by["the same"]},
-               {"what": "of these neither", "value": len(results) - by["caught"] - by["the same"]}]
-    lines = [{"file": r.mutant.file, "line": r.line, "what": r.mutant.what, "verdict": r.verdict, "test": r.test,
-              "reason": r.mutant.same} for r in sorted(results, key=lambda r: (r.mutant.file, r.line, r.mutant.what))]
-    report = {"part": "mutants", "date": datetime.date.today().isoformat(), "versions": table.versions(),
-              "seconds": round(seconds), "figures": figures, "mutants": lines}
+               {"what": "of these neither", "value": len(lines) - by["caught"] - by["the same"]}]
+    report = {"part": "mutants", "date": today, "versions": table.versions(), "seconds": round(seconds),
+              "figures": figures, "mutants": lines}
     with open(os.path.join(folder, "mutants.json"), "w", encoding="utf-8") as f:
         json.dump(report, f, indent=1)
         f.write("\n")
+
+
+def processor_features():
+    with open("/proc/cpuinfo", encoding="utf-8") as f:
+        return set(re.search(r"(?m)^(?:flags|Features)\s*:(.*)$", f.read())[1].split())
 
 
 def main():
@@ -310,6 +342,7 @@ def main():
     parser.add_argument("work")
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--changed", action="store_true")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--list", action="store_true")
     arguments = parser.parse_args()
@@ -318,6 +351,12 @@ def main():
         check_table(arguments.source, mutants)
     except TableError as e:
         sys.exit(f"mutants.py: {e}")
+    folder, sum_of = os.environ.get("TETRACUBES_RESULTS"), sums(arguments.source, mutants)
+    before = told_before(folder, mutants, sum_of) if folder else {}
+    features = processor_features()
+    mutants = [m for m in mutants if not m.needs or m.needs in features]
+    if arguments.changed:
+        mutants = [m for m in mutants if (m.file, m.what) not in before]
     if arguments.only:
         mutants = [m for m in mutants if any(w in m.file or w in m.what or w in m.old for w in arguments.only)]
     if arguments.sample:
@@ -334,8 +373,8 @@ def main():
     results = run_all(os.path.abspath(arguments.source), os.path.abspath(arguments.work), mutants, arguments.workers)
     by = collections.Counter(r.verdict for r in results)
     print(f"{len(results)} mutants: " + ", ".join(f"{n} {verdict}" for verdict, n in sorted(by.items())))
-    if os.environ.get("TETRACUBES_RESULTS"):
-        write_results(os.environ["TETRACUBES_RESULTS"], results, time.monotonic() - start)
+    if folder:
+        write_results(folder, results, before, sum_of, time.monotonic() - start)
     sys.exit(not results or bool(set(by) - {"caught", "the same"}))
 
 

@@ -10,6 +10,7 @@ MISSING = {"tests": ("test_random, u8 with missing", "test_device, slabs with mi
 F32 = {"tests": ("test_random, f32",)}
 NORMALS = {"tests": ("test_random, f32 with normals",)}
 POINTS = {"tests": ("test_curvilinear, points", "test_curvilinear, u8 points")}
+AVX512 = {"needs": "avx512bw"}
 HYBRID = {"tests": ("test_hybrid, u8",)}
 
 MUTANTS = [
@@ -180,7 +181,7 @@ MUTANTS = [
             "windows: a brick too many", SLABS),
            ("uint end = min(run + run_bricks, active_count);", "uint end = min(run + run_bricks - 1, active_count);",
             "runs of bricks: off by one", {"tests": ("test_random, u8", "test_device, tiles")})),
-    *group("kernels/emit_brick.cl",
+    *group("kernels/emit_numbers.cl",
            ("number += (deep * s->bricks_y + up) * s->words_x + across;", "number += (deep * s->bricks_y + up) * s->words_x;",
             "signs: the next brick in x"),
            ("work->corners[z][2 * BRICK_ROWS] = signs->rows[1][z].at.s0;", "work->corners[z][2 * BRICK_ROWS] = 0;",
@@ -203,7 +204,17 @@ MUTANTS = [
            ("if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store", "if (0) column_store",
             "the edge in z at the corner of three bricks"),
            ("crossings_keep(s, k1.cells, y, c.z + n, w, &k);", "", "missing: the next row's edges", MISSING),
-           ("active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);", "", "missing: cubes are emitted", MISSING),
+           ("active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);", "", "missing: cubes are emitted", MISSING)),
+    *group("kernels/emit_brick.cl",
+           ("& (bytes64)(char)(16 << n)", "& (bytes64)(char)(8 << n)", "cases: the next plane's samples", AVX512),
+           ("lowest_bit(active);\n            x += skipped, active >>= skipped;", "lowest_bit(active);\n            x += skipped;",
+            "cubes: those that were skipped", AVX512),
+           ("convert_uint16(vload16(0, patterns + x))", "convert_uint16(vload16(0, patterns))", "cubes: another one's case",
+            AVX512),
+           ("x += 16, active >>= 16;", "x += 15, active >>= 16;", "cubes: the place of the next sixteen", AVX512),
+           ("return (uint)popcount((ushort)mask);", "return (uint)popcount(mask);", "cubes: more are counted than are listed",
+            AVX512),
+           ("(lane & (2 * NUMBER_LANES)) != 0", "(lane & NUMBER_LANES) != 0", "triangles: the plane of a number", AVX512),
            ("3ul * (uint)(state.triangles - s->triangle_window)", "3ul * (uint)state.triangles", "slabs: triangles of a window",
             SLABS)),
     *group("kernels/vertex.cl",
