@@ -212,7 +212,8 @@ static int fill_scaling(const nifti_header *h, layout *l, volume *out) {
     return 0;
 }
 
-/* With an existing file of another ending beside it: x.hdr gives x.img or x.img.gz. Returns 0 where there is none. */
+/* With an existing file of another ending beside it: x.hdr gives x.img or x.img.gz. Returns 0 where there is none. The
+ * name is the caller's, no header's, so links are followed, as archives of scans have them. */
 static int find_partner(const char *path, const char *own, const char *wanted, char *partner, size_t size) {
     size_t length = strlen(path);
     if (length > 3 && strcmp(path + length - 3, ".gz") == 0) length -= 3;

@@ -6,7 +6,7 @@ every kind is test_bytes' (small), so the bytes are compared as well. Kernels wi
 each check reports. Triangle soups are the writers' work: no kernel makes them.
 
 Usage: oclgrind.py quick|long TEST_BYTES FAULTS WRITE_LAYER
-With TETRACUBES_RESULTS in the environment, a folder, the figures go to oclgrind.json in it.
+With TETRACUBES_RESULTS in the environment, a folder, the figures of a long run go to oclgrind.json in it.
 """
 import datetime
 import glob
@@ -142,7 +142,8 @@ def main():
         cases_check(program, "groups", text, UNINITIALISED, layer, uninitialised)
     print(f"{races['meshes']} meshes without races or faults of memory, {uninitialised['meshes']} without "
           "uninitialised values")
-    results_write(races, uninitialised, time.time() - start)
+    if tier == "long":
+        results_write(races, uninitialised, time.time() - start)
 
 
 main()
