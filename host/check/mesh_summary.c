@@ -71,6 +71,7 @@ static int add_finite_vertices(const float *positions, uint64_t count, mesh_summ
             memcpy(&at, p + 4 * n, sizeof at);
             least[n] = choose(at < least[n], at, least[n]);
             most[n] = choose(at > most[n], at, most[n]);
+            /* NaN where it is not finite. NOLINTNEXTLINE(misc-redundant-expression) */
             nan[n] += at - at;
         }
     memcpy(low, least, sizeof low);

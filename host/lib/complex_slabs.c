@@ -87,8 +87,8 @@ static tc_status points_load(slabs_run *t, uint32_t slab_index, const uint32_t *
 
 /* Copies the slab's ranges from the host, or to it. */
 static tc_status ranges_move(slabs_run *t, uint32_t slab_index, bool save) {
-    const cl_command_queue queue = t->r.context->queue;
-    const cl_mem memory = t->r.part->ranges.memory;
+    cl_command_queue queue = t->r.context->queue;
+    cl_mem memory = t->r.part->ranges.memory;
     brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
     const size_t bytes = sizeof *ranges * slab_cluster_count(t, slab_index);
     cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL)
@@ -213,14 +213,14 @@ static tc_status positions_allocate(const slabs_run *t, emission *e) {
     uint32_t most = 0;
     for (uint32_t n = 0; n < t->slabs->slab_count; n++)
         if (t->totals[n].vertices > most) most = t->totals[n].vertices;
-    e->positions = malloc(MESH_BYTES_PER_VERTEX * (size_t)most);
-    return e->positions || !most ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the vertices of a slab");
+    e->positions = malloc(MESH_BYTES_PER_VERTEX * (size_t)most + 1);
+    return e->positions ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the vertices of a slab");
 }
 
 /* Reads what the slab has emitted, triangles to where they belong. */
 static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) {
     const mesh_buffers *m = &t->r.context->work.mesh[0];
-    const cl_command_queue queue = t->r.context->queue;
+    cl_command_queue queue = t->r.context->queue;
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
     cl_int error = cl->EnqueueReadBuffer(queue, m->positions.memory, CL_TRUE, 0,
                                          MESH_BYTES_PER_VERTEX * (size_t)totals.vertices, e->positions, 0, NULL, NULL);

@@ -111,6 +111,7 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
     for (int64_t k = z; k <= z + 1 && k < r->dims[2]; k++)
         for (int64_t j = y; j <= y + 1 && j < r->dims[1]; j++) {
             const uint8_t *signs = r->signs + sample_index(r, (int64_t[3]){x0, j, k});
+            /* Classified before. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
             for (int64_t n = 0; n < count; n++) any |= signs[n], all &= signs[n];
         }
     return !(any & INSIDE) || (all & INSIDE);
@@ -331,11 +332,11 @@ tc_status reference_count(const tc_grid *grid, const tc_extract_options *options
 
 tc_status reference_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     reference r;
-    double start = clock_ms(), classified = start;
+    const double start = clock_ms();
     tc_status status = reference_begin(&r, grid, options);
     if (!status) status = layers_run(&r, "classify", 0, 0.5);
     if (status) goto cleanup;
-    classified = clock_ms();
+    const double classified = clock_ms();
     status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
     if (!status) status = ids_allocate(&r);
     if (status) goto cleanup;
@@ -365,12 +366,12 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
 tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                           uint64_t *vertex_count) {
     reference r;
-    const double layer_count = (double)((grid->dims[2] + BRICK_Z - 1) / BRICK_Z);
+    const int64_t layer_count = (grid->dims[2] + BRICK_Z - 1) / BRICK_Z;
     tc_status status = reference_begin(&r, grid, options);
     r.carried = c;
     for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
         layer_run(&r, layer, row_number);
-        status = context_progress(grid->context, "carry", (double)(layer + 1) / layer_count);
+        status = context_progress(grid->context, "carry", (double)(layer + 1) / (double)layer_count);
     }
     *vertex_count = r.vertex_count;
     reference_end(&r);

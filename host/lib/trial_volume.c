@@ -79,7 +79,8 @@ static void coordinates_make(trial_volume *v) {
     for (uint64_t n = 0; n < NX + NY + NZ; n++) v->axes[n] = (float)n + 0.4f * (float)real_noise(n);
     for (int axis = 0; axis < 3 && v->kind == GRID_RECTILINEAR; at += dims[axis++]) v->options.axes[axis] = at;
     for (uint64_t n = 0; n < SAMPLES; n++) {
-        const float place[3] = {-(float)(n % NX), (float)(n / NX % NY), (float)(n / NX / NY)};
+        const uint64_t z = n / NX / NY;
+        const float place[3] = {-(float)(n % NX), (float)(n / NX % NY), (float)z};
         for (uint64_t axis = 0; axis < 3; axis++)
             v->points[3 * n + axis] = place[axis] + 0.2f * (float)real_noise(3 * n + axis);
     }

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAMES_MAX = 1000000, NAME_BYTES = 4096, NUMBER_MAX = 1000000000 };
+enum { NAMES_MAX = 1000000, NAME_BYTES = 4096, ALL_NAMES_BYTES = 16 << 20, NUMBER_MAX = 1000000000 };
 
 /* Whether a part of the path between slashes is "..". */
 static int has_parent(const char *name) {
@@ -32,6 +32,9 @@ int data_names_add(data_names *names, const char *header_path, const char *name)
             header_path, name);
     if (names->count >= NAMES_MAX)
         return fail(STATUS_INPUT, "%s: names more than %d data files", header_path, NAMES_MAX);
+    if ((names->bytes += length) > ALL_NAMES_BYTES)
+        return fail(STATUS_INPUT, "%s: names data files by more than %d characters in all; name fewer, or shorter ones",
+                    header_path, ALL_NAMES_BYTES);
 
     const char *slash = strrchr(header_path, '/');
     size_t folder = slash ? (size_t)(slash - header_path) + 1 : 0;

@@ -13,6 +13,7 @@
 typedef struct data_names {
     char **paths; /* the header's folder put before each */
     int64_t count;
+    size_t bytes; /* of the names, without the folder */
 } data_names;
 
 /* Adds one name. 0, STATUS_INPUT for a name that leaves the folder, STATUS_FAILED without memory. */

@@ -27,6 +27,8 @@ int header_line(header_text *text, char *line, int *more) {
                     text->path, (long long)text->line, length >= HEADER_LINE_BYTES ? "too long" : "not text");
     memcpy(line, start, length);
     line[length] = 0;
+    for (char *c = line; *c; c++) /* nothing of it is to steer a terminal that it is shown on */
+        if (iscntrl((unsigned char)*c) && !isspace((unsigned char)*c)) *c = '?';
     char *trimmed = trim(line);
     memmove(line, trimmed, strlen(trimmed) + 1);
     text->position += length + (end ? 1 : 0);

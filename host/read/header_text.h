@@ -16,7 +16,8 @@ typedef struct header_text {
 } header_text;
 
 /* Copies the next line, without its end and the white space around it, to line[HEADER_LINE_BYTES]. *more is 0 at the
- * end of the text. STATUS_INPUT where a line is too long, holds a zero byte, or there are too many. */
+ * end of the text; control characters become '?'. STATUS_INPUT where a line is too long, holds a zero byte, or there
+ * are too many. */
 int header_line(header_text *text, char *line, int *more);
 
 /* Parse words separated by white space. The number of values, or -1: a word is no such value, or more than max. */

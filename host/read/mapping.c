@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { FILES_KEPT = 4096 };
+enum { FILES_KEPT = 1 << 20 }; /* as many as a header can name; pages of it that are not used take no memory */
 
 /* The files mapped last. */
 static struct {

@@ -12,7 +12,7 @@ typedef struct mapping {
 /* Maps a regular file. 0 or a status with text, *m zeroed. */
 int mapping_open(const char *path, mapping *m);
 
-/* Nonzero where path is one of the few thousand files mapped last in this process, under whatever name. */
+/* Nonzero where path is one of the million files mapped last in this process, under whatever name. */
 int mapping_was_opened(const char *path);
 
 /* Accepts a zeroed mapping; zeroes it. */

@@ -221,7 +221,8 @@ int metaimage_read(const read_request *request, const mapping *file, volume *out
     list_axes(&h, &stored);
     if ((status = layout_make(h.path, &stored, h.element, request, &l))) goto cleanup;
     h.from.axes = &stored;
-    h.from.axes_per_file += stored.count - h.dimension;
+    if (__builtin_add_overflow(h.from.axes_per_file, stored.count - h.dimension, &h.from.axes_per_file))
+        h.from.axes_per_file = INT64_MAX; /* refused like any that is too many */
     h.from.start = text.position;
     h.from.encoding = h.is_compressed ? ENCODING_DEFLATE : h.is_text ? ENCODING_TEXT : ENCODING_RAW;
     l.swapped = !h.is_text && h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);

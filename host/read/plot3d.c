@@ -38,6 +38,7 @@ typedef struct choice {
 /* ----------------------------------------------------------------------------------------------------------- choice */
 
 static int is_grid(const plot3d_form *form) {
+    /* Of forms that are there. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
     return form->content == PLOT3D_GRID || form->content == PLOT3D_GRID_IBLANK;
 }
 

@@ -58,7 +58,7 @@ static int parse_number(const char *word, double *value) {
         int is_bare = (*p == '+' || *p == '-') && p > word && (isdigit((unsigned char)p[-1]) || p[-1] == '.');
         if (is_bare && !has_exponent) c_word[length++] = 'e';
         has_exponent |= is_letter || is_bare;
-        c_word[length++] = is_letter ? 'e' : *p;
+        c_word[length++] = (char)(is_letter ? 'e' : *p);
         if (length >= WORD_BYTES) return 0;
     }
     c_word[length] = 0;
@@ -73,6 +73,7 @@ static int parse_repeated(const char *word, uint64_t *repeats, double *value) {
     if (!star) return parse_number(word, value);
     *repeats = 0;
     for (const char *p = word; p < star; p++) {
+        /* The word ends with a zero. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript) */
         if (!isdigit((unsigned char)*p) || *repeats > UINT64_MAX / 100) return 0;
         *repeats = 10 * *repeats + (uint64_t)(*p - '0');
     }

@@ -66,6 +66,8 @@ static int check_size(const source *from, const char *path, uint64_t available, 
     }
 }
 
+enum { WORD_BYTES = 1152 }; /* of a number: a double to its last decimal, 1,075 digits, and more */
+
 /* Writes one number of text as an element in this machine's byte order. Returns 0 where it is none, or out of range. */
 static int store_number(const char *word, int element, unsigned char *to) {
     static const int64_t low[] = {0, INT8_MIN, 0, INT16_MIN, 0, INT32_MIN},
@@ -100,25 +102,30 @@ static int store_number(const char *word, int element, unsigned char *to) {
     return 1;
 }
 
+static int is_between(unsigned char c) { return isspace(c) || c == ','; }
+
+/* *more: whether anything follows the last number. */
 static int read_text(const char *path, const unsigned char *text, size_t size, int element, unsigned char *to,
-                     uint64_t count) {
+                     uint64_t count, int *more) {
     size_t at = 0, bytes = element_bytes(element);
     for (uint64_t i = 0; i < count; i++, to += bytes) {
-        char word[64];
+        char word[WORD_BYTES];
         size_t length = 0;
-        while (at < size && (isspace(text[at]) || text[at] == ',')) at++;
-        while (at < size && !isspace(text[at]) && text[at] != ',' && length < sizeof word - 1)
-            word[length++] = (char)text[at++];
+        while (at < size && is_between(text[at])) at++;
+        while (at < size && !is_between(text[at]) && length < sizeof word - 1) word[length++] = (char)text[at++];
         word[length] = 0;
         if (!length)
             return fail(STATUS_INPUT,
                         "%s: has %" PRIu64 " numbers of text, but its header asks for %" PRIu64
                         "; the header is wrong or the file is cut",
                         path, i, count);
-        if (!store_number(word, element, to))
-            return fail(STATUS_INPUT, "%s: number %" PRIu64 " of its data, '%s', is no number of its type", path, i + 1,
-                        word);
+        int is_whole = strlen(word) == length && (at == size || is_between(text[at]));
+        if (!is_whole || !store_number(word, element, to))
+            return fail(STATUS_INPUT, "%s: number %" PRIu64 " of its data, '%.40s', is no number of its type", path,
+                        i + 1, word);
     }
+    while (at < size && is_between(text[at])) at++;
+    *more = at < size;
     return 0;
 }
 
@@ -148,7 +155,7 @@ static int load_part(const source *from, const char *path, const layout *l, uint
     if (from->encoding == ENCODING_RAW)
         memcpy(to, m.bytes + start, (size_t)bytes);
     else if (from->encoding == ENCODING_TEXT)
-        status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element));
+        status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element), &more);
     else
         status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes, &more);
     if (!status) notice_rest(path, from->encoding == ENCODING_RAW ? available - bytes : (uint64_t)more, out);

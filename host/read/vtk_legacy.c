@@ -22,6 +22,16 @@ enum { NEWEST_MAJOR = 5, NEWEST_MINOR = 1 };
 
 /* -------------------------------------------------------------------------------------------------------- header */
 
+/* "3.0". Returns 0 where the text does not begin with two such numbers. */
+static int parse_version(const char *text, int *major, int *minor) {
+    char *end;
+    *major = (int)strtoul(text, &end, 10);
+    if (end == text || *end != '.') return 0;
+    text = end + 1;
+    *minor = (int)strtoul(text, &end, 10);
+    return end != text && *major >= 0 && *minor >= 0;
+}
+
 static int read_version(legacy *r) {
     static const char magic[] = "# vtk DataFile Version";
     size_t length = sizeof magic - 1;
@@ -32,7 +42,7 @@ static int read_version(legacy *r) {
     r->at = length;
     for (size_t i = 0; i < sizeof number - 1 && r->at + i < r->size && r->bytes[r->at + i] != '\n'; i++)
         number[i] = (char)r->bytes[r->at + i];
-    if (sscanf(number, "%2d.%2d", &r->major, &minor) != 2)
+    if (!parse_version(number, &r->major, &minor))
         return legacy_fail(r, "has no number of its version behind '%s'", magic);
     if (r->major > NEWEST_MAJOR || (r->major == NEWEST_MAJOR && minor > NEWEST_MINOR))
         dataset_notice(r->out, "its version %d.%d is newer than %d.%d, the last one known", r->major, minor,

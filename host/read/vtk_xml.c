@@ -79,6 +79,7 @@ static int load_briefly(xml_reader *r, const xml_array *array, uint64_t count, c
     if (status) return status;
     if (v.in_place) {
         *values = v.in_place;
+        status = vtk_xml_note_taken(&r->doc, &v, v.bytes);
     } else {
         if (!(*owned = samples_allocate(v.bytes)))
             return fail(STATUS_FAILED, "%s: no memory for %" PRIu64 " bytes", v.label, v.bytes);

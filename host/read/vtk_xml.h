@@ -48,7 +48,8 @@ typedef struct xml_document {
 
     const unsigned char *appended; /* first byte of the appended data; NULL: none */
     int appended_is_raw;           /* else base64 */
-    uint64_t taken;                /* bytes of the file that arrays were decoded from so far */
+    uint64_t taken;                /* bytes of the file that arrays were decoded or copied from so far */
+    uint64_t unpacked;             /* bytes that compressed arrays had */
 
     xml_piece *pieces;
     xml_array *arrays;
@@ -87,6 +88,10 @@ typedef struct xml_values {
 /* Finds the first `count` values, and checks that the file can hold them: to be called before memory is taken for
  * them. STATUS_INPUT where it cannot. */
 int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_values *out);
+
+/* To be called before so many bytes that lie in the file as they are wanted are copied nevertheless. STATUS_INPUT where
+ * arrays have asked for the same bytes of the file too often. */
+int vtk_xml_note_taken(xml_document *doc, const xml_values *values, uint64_t bytes);
 
 /* Writes values->bytes bytes: values of the stored type in this machine's byte order. */
 int vtk_xml_take(xml_values *values, void *to);

@@ -133,11 +133,21 @@ static int has_too_few(const xml_values *v, uint64_t bytes) {
                 v->label, bytes, v->count, v->bytes);
 }
 
-static int note_taken(xml_document *doc, const xml_values *v, uint64_t stored) {
-    uint64_t size = (uint64_t)(doc->end - doc->bytes);
-    if (__builtin_add_overflow(doc->taken, stored, &doc->taken) || doc->taken / SHARED_MOST > size)
-        return fail(STATUS_INPUT, "%s: too many arrays share the same data; the file is damaged", v->label);
-    return 0;
+static int are_too_many(const xml_values *v) {
+    return fail(STATUS_INPUT, "%s: too many arrays share the same data; the file is damaged", v->label);
+}
+
+static uint64_t file_bytes(const xml_document *doc) { return (uint64_t)(doc->end - doc->bytes); }
+
+int vtk_xml_note_taken(xml_document *doc, const xml_values *v, uint64_t stored) {
+    int too_many = __builtin_add_overflow(doc->taken, stored, &doc->taken);
+    return too_many || doc->taken / SHARED_MOST > file_bytes(doc) ? are_too_many(v) : 0;
+}
+
+/* All that is unpacked of a file is bounded as one stream of its size would be. */
+static int note_unpacked(xml_document *doc, const xml_values *v) {
+    int too_many = __builtin_add_overflow(doc->unpacked, v->bytes, &doc->unpacked);
+    return too_many || unpack_check(v->label, ENCODING_DEFLATE, file_bytes(doc), doc->unpacked) ? are_too_many(v) : 0;
 }
 
 static int open_plain(xml_document *doc, xml_values *v) {
@@ -152,7 +162,7 @@ static int open_plain(xml_document *doc, xml_values *v) {
         v->in_place = v->data.at;
         return 0;
     }
-    return note_taken(doc, v, v->bytes);
+    return vtk_xml_note_taken(doc, v, v->bytes);
 }
 
 /* Goes over the sizes of all blocks; v->data is then where the blocks begin. */
@@ -176,7 +186,8 @@ static int open_blocks(xml_document *doc, xml_values *v) {
     if (unpacked < v->bytes) return has_too_few(v, unpacked);
     v->more = unpacked > v->bytes;
     int status = unpack_check(v->label, ENCODING_DEFLATE, (size_t)packed, unpacked);
-    return status ? status : note_taken(doc, v, packed);
+    if (!status) status = note_unpacked(doc, v);
+    return status ? status : vtk_xml_note_taken(doc, v, packed);
 }
 
 /* A digit each and a space between. */

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 64, FIRST_CHUNK = 64 << 10, LARGEST_CHUNK = 1 << 30 };
+enum { DEEPEST = 64, ARRAYS_MOST = 4096, FIRST_CHUNK = 64 << 10, LARGEST_CHUNK = 1 << 30 };
 
 /* Levels of elements: VTKFile, grid, Piece, section, DataArray. */
 enum { LEVEL_FILE = 1, LEVEL_GRID, LEVEL_PIECE, LEVEL_SECTION, LEVEL_ARRAY };
@@ -205,6 +205,8 @@ static int begin_array(header_parser *p, const char **attributes) {
     xml_document *doc = p->doc;
     const char *name = attribute(attributes, "Name"), *components = attribute(attributes, "NumberOfComponents"),
                *format = attribute(attributes, "format"), *offset = attribute(attributes, "offset");
+    if (doc->pieces[doc->piece_count - 1].array_count == ARRAYS_MOST)
+        return fail(STATUS_INPUT, "%s: has a piece of more than %d arrays; split it", doc->path, ARRAYS_MOST);
     xml_array *arrays = grow(doc->arrays, doc->array_count, sizeof *arrays);
     if (!arrays) return no_memory(doc);
     doc->arrays = arrays;

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD_BYTES = 128, EXACT_DIGITS = 15, EXACT_POWER = 22 };
+enum { WORD_BYTES = 1152, EXACT_DIGITS = 15, EXACT_POWER = 22 }; /* a double to its last decimal: 1,075 digits */
 
 static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                        1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -107,7 +107,7 @@ int vtk_xml_take_text(xml_values *v, void *to) {
             return fail(STATUS_INPUT,
                         "%s has %" PRIu64 " numbers of text, but %" PRIu64 " are needed; the file is damaged or cut",
                         v->label, i, v->count);
-        if (!store_number(word, v->array->element, value))
+        if ((at<end && * at> ' ') || !store_number(word, v->array->element, value))
             return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", v->label, i + 1,
                         word);
     }

@@ -12,13 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The status, with the text saying which block it is of. */
-static int block_status(const options *o, tc_status status, int n, int block_count) {
+/* The status, the text of a failure then saying which block it is of. */
+static int block_status(int status, int n, int block_count) {
     char text[1000];
-    int failed = input_status(o, status);
-    if (!failed || block_count == 1) return failed;
+    if (!status || block_count == 1) return status;
     snprintf(text, sizeof text, "%s", failure_text());
-    return fail(failed, "%s (block %d)", text, n);
+    return fail(status, "%s (block %d)", text, n);
 }
 
 static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
@@ -40,20 +39,22 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
     grid->blanked_cells = b->scalar->blanked_cells;
 }
 
-static tc_status cut_structured(prepared_block *b) {
+static int cut_structured(const options *o, prepared_block *b) {
     tc_grid_options grid;
     describe_grid(b, &grid);
     void *none_missing = NULL; /* the library wants samples, of which only those that are missing matter */
     if (!b->scalar) {
         grid.type = TC_U8;
         grid.samples = none_missing = calloc((size_t)b->source->point_count + 1, 1);
+        if (!none_missing)
+            return fail(STATUS_FAILED, "no memory to cut a grid of %" PRId64 " points", b->source->point_count);
     }
     tc_status status = tc_tetrahedralize_grid(&grid, &b->complex);
     free(none_missing);
-    return status;
+    return input_status(o, status);
 }
 
-static tc_status cut_unstructured(prepared_block *b) {
+static int cut_unstructured(const options *o, prepared_block *b) {
     const dataset_block *from = b->source;
     const tc_cells cells = {.struct_size = sizeof cells,
                             .point_count = (uint64_t)from->point_count,
@@ -64,7 +65,7 @@ static tc_status cut_unstructured(prepared_block *b) {
                             .connectivity = from->cell_points,
                             .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
                             .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells};
-    return tc_tetrahedralize(&cells, &b->complex);
+    return input_status(o, tc_tetrahedralize(&cells, &b->complex));
 }
 
 /* Cubes of a structured block, none where it is flat; cells of three dimensions of an unstructured one. */
@@ -139,9 +140,9 @@ static void tell_all(const block_list *list) {
     if (!list->tetrahedron_count && all_cut) message("nothing to contour: no cell of three dimensions is left");
 }
 
-static tc_status cut(prepared_block *b) {
-    if (!b->is_cut || b->is_skipped) return TC_OK;
-    return b->source->kind == GRID_UNSTRUCTURED ? cut_unstructured(b) : cut_structured(b);
+static int cut(const options *o, prepared_block *b) {
+    if (!b->is_cut || b->is_skipped) return 0;
+    return b->source->kind == GRID_UNSTRUCTURED ? cut_unstructured(o, b) : cut_structured(o, b);
 }
 
 int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out) {
@@ -155,8 +156,8 @@ int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, blo
         b->is_cut = all || d->blocks[n].kind == GRID_UNSTRUCTURED;
         b->is_skipped = !flat && is_flat(b->source);
         b->complex.struct_size = sizeof b->complex;
-        tc_status status = cut(b);
-        if (status) return block_status(o, status, n, d->block_count);
+        int status = block_status(cut(o, b), n, d->block_count);
+        if (status) return status;
         uint64_t cells = solid_cells(b);
         out->cell_count += cells;
         out->tetrahedron_count += b->is_cut ? b->complex.tetrahedron_count : 5 * cells;
@@ -189,9 +190,9 @@ int block_grid(const options *o, const block_list *list, int n, tc_context *cont
     tc_grid_options from;
     *grid = NULL;
     if (b->is_skipped) return 0;
-    if (b->is_cut) return block_status(o, complex_grid(b, context, grid), n, list->count);
+    if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, grid)), n, list->count);
     describe_grid(b, &from);
-    return block_status(o, tc_grid_create(context, &from, grid), n, list->count);
+    return block_status(input_status(o, tc_grid_create(context, &from, grid)), n, list->count);
 }
 
 static int has_nonfinite(const prepared_block *b) {

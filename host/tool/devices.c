@@ -12,10 +12,10 @@ static json_t *device_json(int index, const tc_device_info *d) {
     json_t *object = json_object();
     json_object_set_new(object, "index", json_integer(index));
     json_object_set_new(object, "spec", json_string(spec));
-    json_object_set_new(object, "name", json_string(d->name));
-    json_object_set_new(object, "platform", json_string(d->platform));
-    json_object_set_new(object, "version", json_string(d->version));
-    json_object_set_new(object, "driver", json_string(d->driver));
+    json_object_set_new(object, "name", report_string(d->name));
+    json_object_set_new(object, "platform", report_string(d->platform));
+    json_object_set_new(object, "version", report_string(d->version));
+    json_object_set_new(object, "driver", report_string(d->driver));
     json_object_set_new(object, "type", json_string(d->type));
     json_object_set_new(object, "compute_units", json_integer(d->compute_units));
     json_object_set_new(object, "max_work_group_size", json_integer((json_int_t)d->max_work_group_size));

@@ -168,10 +168,11 @@ int info_run(const options *o) {
     dataset d = {0};
     scalar field;
     facts f = {.d = &d};
-    int status = input_request(o, &request);
+    int has_choice = 0, status = input_request(o, &request);
     if (!status) status = dataset_read(&request, &d);
     if (!status) status = progress_status();
-    if (!status && input_has_choice(o, &d)) {
+    if (!status) status = input_has_choice(o, &d, &has_choice);
+    if (!status && has_choice) {
         status = input_select(o, &d, &field);
         f.field = &field;
     }

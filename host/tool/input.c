@@ -76,13 +76,14 @@ int input_overwrite_check(const options *o, const char *path) {
     return 0;
 }
 
-int input_has_choice(const options *o, const dataset *d) {
+int input_has_choice(const options *o, const dataset *d, int *has) {
     const char **names;
     int count = common_field_names(d, &names);
-    if (count < 0) return 0;
+    if (count < 0) return STATUS_FAILED;
     int is_plain = count == 1 && (o->component >= 0 || block_field(d->blocks, names[0])->components == 1);
     free(names);
-    return o->field || is_plain;
+    *has = o->field || is_plain;
+    return 0;
 }
 
 int input_status(const options *o, tc_status status) {

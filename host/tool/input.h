@@ -22,9 +22,9 @@ void input_tell_average(const options *o, const dataset *d, const char *name);
  * replace what it is made from. */
 int input_overwrite_check(const options *o, const char *path);
 
-/* Nonzero where a field is named, or there is just one and nothing to choose in it: where input_select can succeed
- * though the command can do without. */
-int input_has_choice(const options *o, const dataset *d);
+/* *has: whether a field is named, or there is just one and nothing to choose in it: where input_select can succeed
+ * though the command can do without. Returns 0 or STATUS_FAILED. */
+int input_has_choice(const options *o, const dataset *d, int *has);
 
 /* A failure of the library that grids as a file describes them are to blame for; of raw input the options are. */
 int input_status(const options *o, tc_status status);

@@ -9,6 +9,7 @@
 #include "nearest.h"
 #include "output.h"
 #include "progress.h"
+#include "report.h"
 #include "truncation.h"
 #include "volume.h"
 
@@ -173,6 +174,7 @@ static int run_command(const command *c, int argc, char **argv) {
         print_command_help(c, stdout);
     } else if (!status) {
         progress_begin(o.quiet);
+        report_begin();
         output_stop_when(progress_cancelled);
         status = c->run(&o);
         if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();

@@ -27,6 +27,7 @@ typedef enum value_kind {
     VALUE_INDEX,     /* int, from 0 */
     VALUE_NUMBER,    /* uint64_t */
     VALUE_SIZE,      /* uint64_t bytes, K M G T */
+    VALUE_BOUND,     /* the same, above 0 */
     VALUE_DIMS,      /* int64_t[3], from 1 */
     VALUE_SPACING,   /* double[3], above 0 */
     VALUE_POINT,     /* double[3] */
@@ -93,7 +94,7 @@ static const option table[] = {
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
-    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_SIZE, IN(max_memory), NULL,
+    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_BOUND, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024):\n"
      "less memory means smaller slabs, never another result"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
@@ -223,6 +224,8 @@ static int parse_size(const option *spec, const char *text, uint64_t *out) {
     if (!good || *at || bytes > UINT64_MAX >> shift)
         return fail(STATUS_USAGE, "%s: '%s' is no size; give bytes, or K, M, G, T behind a whole number, as in 512M",
                     spec->name, text);
+    if (!bytes && spec->kind == VALUE_BOUND)
+        return fail(STATUS_USAGE, "%s: '%s' leaves nothing; leave the option out for no bound", spec->name, text);
     *out = bytes << shift;
     return 0;
 }
@@ -280,6 +283,7 @@ static int parse_value(const option *spec, const char *text, options *o) {
     case VALUE_NUMBER:
         return parse_number(spec, text, UINT64_MAX, place);
     case VALUE_SIZE:
+    case VALUE_BOUND:
         return parse_size(spec, text, place);
     case VALUE_DIMS:
         return parse_dims(spec, text, place);

@@ -6,10 +6,21 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ------------------------------------------------------------------------------------------------------------ JSON */
+
+static atomic_int lacks_memory;
+
+static void *watched_malloc(size_t bytes) {
+    void *memory = malloc(bytes);
+    if (!memory) lacks_memory = 1;
+    return memory;
+}
+
+void report_begin(void) { json_set_alloc_funcs(watched_malloc, free); }
 
 json_t *report_real(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
@@ -33,7 +44,8 @@ int report_digits(double value) {
 }
 
 int report_print(json_t *object, int digits) {
-    int failed = !object || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
+    int failed =
+        !object || lacks_memory || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
     json_decref(object);
     if (failed) return fail(STATUS_FAILED, "could not print the report: out of memory, or standard output is full");
     putchar('\n');

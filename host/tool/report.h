@@ -49,6 +49,10 @@ typedef struct extract_report {
 int report_extract_json(const extract_report *report);
 void report_extract_text(const extract_report *report);
 
+/* To be called before any JSON is built: a request for memory that fails makes report_print fail, so that no building
+ * step needs to be checked. */
+void report_begin(void);
+
 /* A path or name as a JSON string; bytes that are no UTF-8 become ?. */
 json_t *report_string(const char *text);
 

@@ -110,7 +110,8 @@ static int make_coordinates(const trial *t, selftest_volume *v) {
     if (!v->points || !v->axes) return fail(STATUS_FAILED, "out of memory for a volume of the self-test");
     for (uint64_t n = 0; n < nx + ny + nz; n++) v->axes[n] = (float)n + jitter(n);
     for (uint64_t n = 0; n < nx * ny * nz; n++) {
-        const float place[3] = {-(float)(n % nx), (float)(n / nx % ny), (float)(n / nx / ny)};
+        const uint64_t z = n / nx / ny;
+        const float place[3] = {-(float)(n % nx), (float)(n / nx % ny), (float)z};
         for (uint64_t axis = 0; axis < 3; axis++) v->points[3 * n + axis] = place[axis] + jitter(3 * n + axis);
     }
     return 0;

@@ -35,9 +35,10 @@ static int check_usage(const options *o) {
 }
 
 static int read_input(conversion *c) {
-    int status = input_read(c->o, &c->data);
+    int has_choice = 0, status = input_read(c->o, &c->data);
     if (!status) status = input_overwrite_check(c->o, c->o->output);
-    if (!status && input_has_choice(c->o, &c->data)) status = input_select(c->o, &c->data, &c->field);
+    if (!status) status = input_has_choice(c->o, &c->data, &has_choice);
+    if (!status && has_choice) status = input_select(c->o, &c->data, &c->field);
     return status ? status : progress_status();
 }
 

@@ -1,6 +1,7 @@
 /*
  * test_limits.c - what every reader does with sizes that overflow, streams that unpack to far more than they should,
- * headers without end, links out of a header's folder, and spacings that are no distances
+ * arrays that share what they unpack or copy, headers and names without end, numbers of hundreds of digits, links out
+ * of a header's folder, and spacings that are no distances
  *
  * Memory is measured: nothing is taken for what a header only says.
  */
@@ -122,7 +123,134 @@ static void test_headers(void) {
                    "\n", 1000001, "lines");
     check_repeated("long.vtk", "# vtk DataFile Version 3.0\ntitle\nASCII\n", "a", 100000, "longer than 255");
     check_repeated("long.vtk", "# vtk DataFile Version 3.0\n", "a", 1000000, "ASCII");
+    check_repeated("many.vti",
+                   "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 1 0 1 0 1\">"
+                   "<Piece Extent=\"0 1 0 1 0 1\"><PointData>",
+                   "<DataArray type=\"UInt8\" format=\"ascii\"/>", 5000, "more than 4096 arrays");
     check_repeated("deep.vtu", "<VTKFile type=\"UnstructuredGrid\">", "<a>", 100000, "nested");
+}
+
+/* ------------------------------------------------------------------------------------------------------------- names
+ */
+
+/* A million names of 4,000 characters; files of more axes than numbers can say. */
+static void test_names(void) {
+    char long_name[4001] = "";
+    bytes header = {0};
+    memset(long_name, 'a', sizeof long_name - 1);
+    bytes_text(&header, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 1000000\nencoding: raw\n");
+    bytes_text(&header, "data file: %s%%d 0 999999 1\n", long_name);
+    check_file("names by the million", file_write("names.nhdr", header.data, header.size), "in all");
+    bytes_free(&header);
+
+    read_request r = request_for(
+        file_text("axes.mhd", "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementNumberOfChannels = 3\n"
+                              "ElementDataFile = a%d.raw 0 1 1 9223372036854775807\n"));
+    r.component = 0;
+    expect_failure("2^63 - 1 axes per file", &r, STATUS_INPUT, "axes");
+    check_file("what would steer a terminal",
+               file_text("type.nrrd", "NRRD0004\ntype: \033]0;a\007\ndimension: 3\nsizes: 2 2 2\n"), "'?]0;a?'");
+}
+
+/* ----------------------------------------------------------------------------------------------------------- numbers
+ */
+
+static double first_value(const char *path) {
+    dataset d;
+    read_request r = request_for(path);
+    int status = dataset_read(&r, &d);
+    EXPECT(status == 0 && d.blocks[0].field_count == 1, "%s: status %d: %s", path, status, failure_text());
+    if (status) return 0;
+    double value;
+    memcpy(&value, d.blocks[0].fields[0].values, sizeof value);
+    dataset_release(&d);
+    return value;
+}
+
+/* Words of so many digits are one number, or refused; never two. */
+static void test_numbers(void) {
+    static const struct {
+        int digits;
+        double value;
+    } cases[] = {{62, 1e62}, {63, 1e63}, {64, 1e64}, {126, 1e126}, {127, 1e127}, {308, 1e308}, {2000, 0}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        bytes number = {0}, nrrd = {0}, vti = {0};
+        bytes_text(&number, "1");
+        for (int digit = 0; digit < cases[n].digits; digit++) bytes_text(&number, "0");
+        bytes_text(&number, " 2 3 4 5 6 7 8");
+        bytes_add(&number, "", 1);
+        bytes_text(&nrrd, "NRRD0004\ntype: double\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n%s\n", number.data);
+        bytes_text(&vti,
+                   XML("ImageData") "<ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece Extent=\"0 1 0 1 0 1\"><PointData>"
+                                    "<DataArray type=\"Float64\" Name=\"a\" format=\"ascii\">%s</DataArray>"
+                                    "</PointData></Piece></ImageData></VTKFile>",
+                   number.data);
+        const bytes *const files[] = {&nrrd, &vti};
+        for (int f = 0; f < 2; f++) {
+            const char *path = file_write(f ? "digits.vti" : "digits.nrrd", files[f]->data, files[f]->size);
+            if (cases[n].value == 0)
+                check_file("a number of 2,001 digits", path, "is no number");
+            else
+                EXPECT(first_value(path) == cases[n].value, "1e%d: read as %g", cases[n].digits, first_value(path));
+        }
+        bytes_free(&number);
+        bytes_free(&nrrd);
+        bytes_free(&vti);
+    }
+    check_file("a number with a zero byte in it",
+               file_write("zero.nrrd",
+                          "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n"
+                          "1\0002 2 3 4 5 6 7 8\n",
+                          87),
+               "is no number");
+}
+
+/* ------------------------------------------------------------------------------------------------------------ sharing
+ */
+
+/* So many pieces of points with one array in common, of doubles or packed. */
+static void write_shared(bytes *file, int pieces, int points, const bytes *data, int is_packed) {
+    bytes_text(file,
+               "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>"
+               "<UnstructuredGrid>",
+               is_packed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+    for (int n = 0; n < pieces; n++)
+        bytes_text(file,
+                   "<Piece NumberOfPoints=\"%d\" NumberOfCells=\"0\"><Points><DataArray type=\"%s\" "
+                   "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece>",
+                   points, is_packed ? "Float32" : "Float64");
+    bytes_text(file, "</UnstructuredGrid><AppendedData encoding=\"raw\">");
+    while ((file->size + 1) % 8) bytes_text(file, " ");
+    bytes_text(file, "_");
+    bytes_add(file, data->data, data->size);
+    bytes_text(file, "</AppendedData></VTKFile>");
+}
+
+static void test_sharing(void) {
+    enum { DOUBLES = 3 * 4000, FLOATS = 3 * 300000 };
+    unsigned char *zeros = calloc(FLOATS, sizeof(float));
+    bytes plain = {0}, packed = {0}, stream = gzipped(zeros, FLOATS * sizeof(float), AS_ZLIB), file = {0};
+    bytes_put(&plain, DOUBLES * sizeof(double), 8, 0);
+    bytes_add(&plain, zeros, DOUBLES * sizeof(double));
+    write_shared(&file, 3, DOUBLES / 3, &plain, 0);
+    check_file("doubles shared by three pieces", file_write("shared.vtu", file.data, file.size), NULL);
+    file.size = 0;
+    write_shared(&file, 400, DOUBLES / 3, &plain, 0);
+    check_file("doubles shared by 400 pieces", file_write("shared.vtu", file.data, file.size), "share the same data");
+    file.size = 0;
+    bytes_put(&packed, 1, 8, 0); /* blocks, bytes of each, of the last, packed */
+    bytes_put(&packed, FLOATS * sizeof(float), 8, 0);
+    bytes_put(&packed, 0, 8, 0);
+    bytes_put(&packed, stream.size, 8, 0);
+    bytes_add(&packed, stream.data, stream.size);
+    write_shared(&file, 40, FLOATS / 3, &packed, 1);
+    check_file("a packed array shared by 40 pieces", file_write("shared.vtu", file.data, file.size),
+               "share the same data");
+    free(zeros);
+    bytes_free(&plain);
+    bytes_free(&packed);
+    bytes_free(&stream);
+    bytes_free(&file);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- links
@@ -198,6 +326,9 @@ int main(void) {
     test_sizes();
     test_bombs();
     test_headers();
+    test_names();
+    test_numbers();
+    test_sharing();
     test_links();
     test_distances();
     folder_remove();

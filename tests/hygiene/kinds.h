@@ -26,10 +26,10 @@ static inline void kind_describe(enum kind kind, tc_grid_options *o) {
     static const int dims[3] = {KIND_X, KIND_Y, KIND_Z};
     tc_grid_options_init(o);
     for (int axis = 0; axis < 3; axis++) o->dims[axis] = dims[axis];
-    o->type = kind == KIND_MISSING || kind == KIND_RECTILINEAR || kind == KIND_COMPLEX ? TC_F32 : TC_U8;
+    o->type = kind == KIND_RECTILINEAR || kind == KIND_COMPLEX ? TC_F32 : TC_U8;
     o->samples = o->type == TC_F32 ? (const void *)kind_f32 : kind_u8;
-    if (kind == KIND_F64) o->type = TC_F64, o->samples = kind_f64;
-    if (kind == KIND_MISSING) o->has_nodata = 1, o->nodata = (double)kind_f32[KIND_SAMPLES / 2];
+    if (kind == KIND_F64 || kind == KIND_HYBRID || kind == KIND_MISSING) o->type = TC_F64, o->samples = kind_f64;
+    if (kind == KIND_MISSING) o->has_nodata = 1, o->nodata = kind_f64[KIND_SAMPLES / 2];
     for (int axis = 0; axis < 3 && kind == KIND_RECTILINEAR; axis++) o->axes[axis] = kind_axes[axis];
     if (kind == KIND_CURVILINEAR || kind == KIND_COMPLEX) o->points = kind_points;
 }

@@ -75,6 +75,7 @@ def inputs_write(folder):
         "points.vtk": legacy(f"DATASET STRUCTURED_POINTS\nDIMENSIONS {dims}\nORIGIN 0 0 0\nSPACING 1 1 1\n" +
                              f"CELL_DATA {len(cells)}\nSCALARS bump float\nLOOKUP_TABLE default\n" +
                              text(values()[:len(cells)])),
+        "bare.vtk": legacy("DATASET STRUCTURED_POINTS\nDIMENSIONS 3 4 5\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
         "grid.vtk": legacy(f"DATASET STRUCTURED_GRID\nDIMENSIONS {dims}\nPOINTS {count} float\n" + text(flat(points())) +
                            point_data(count)),
         "cells.vtk": legacy(f"DATASET UNSTRUCTURED_GRID\nPOINTS {count} float\n" + text(flat(points())) +
@@ -103,7 +104,7 @@ class Failures(unittest.TestCase):
         inputs_write(self.folder)
 
     def run_once(self, command, environment):
-        """Status, standard output, messages and the files written, by name; these are gone afterwards."""
+        """Status, messages and the files written, by name, info's output among them; these are gone afterwards."""
         words = [os.path.join(self.folder, w[1:]) if w.startswith("@") else w for w in command]
         result = subprocess.run([TOOL, *words], cwd=self.outputs, env=dict(os.environ, **environment), timeout=600,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -112,6 +113,8 @@ class Failures(unittest.TestCase):
             with open(os.path.join(self.outputs, name), "rb") as file:
                 files[name] = file.read()
             os.unlink(os.path.join(self.outputs, name))
+        if command[0] == "info" and result.returncode == 0:
+            files["standard output"] = result.stdout
         return result.returncode, result.stderr, files
 
     def judge(self, command, what, outcome, expected, pattern):
@@ -181,7 +184,11 @@ class Memory(Failures):
 
     def test_other_commands(self):
         self.fail_requests("tetrahedralize", "@cells.vtk", "-o", "s.vtu")
+        self.fail_requests("tetrahedralize", "@bare.vtk", "-o", "s.vtu")
         self.fail_requests("info", "@grid.vtk")
+        self.fail_requests("info", "@grid.vtk", "--json")
+        self.fail_requests("extract", "@a.nrrd", "--iso", "80", "--engine", "reference", "--check", "--json")
+        self.fail_requests("devices", "--json")
         self.fail_requests("generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "s.nrrd")
         self.fail_requests("extract", "@grid.vts", "--iso", "80", "--engine", "reference", "--carry", "bump", "-o",
                            "s.vtp")

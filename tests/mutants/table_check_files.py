@@ -69,7 +69,7 @@ MUTANTS = [
            ("memcpy(to, m.bytes + start, (size_t)bytes);", "memcpy(to, m.bytes, (size_t)bytes);",
             "data begin with the file"),
            ("value < low[element] || value > high[element]", "value < low[element]", "text: numbers out of range"),
-           ("i, count);\n        if (!store_number", "i, count);\n        if (0 && !store_number",
+           ("if (!is_whole || !store_number", "if (!is_whole || (0 && !store_number",
             "text: what is no number is taken")),
     *group("host/read/unpack.c",
            ("DEFLATE_LIMIT = 1100", "DEFLATE_LIMIT = 1 << 30", "decompression bombs are not refused"),
