@@ -236,6 +236,17 @@ static void cells_cut(subject *s, const tc_cells *cells) {
     s->cells.tetrahedron_count = s->complex.tetrahedron_count, s->cells.tetrahedra = s->complex.tetrahedra;
 }
 
+static uint64_t left_out_count(const tc_cells *cells) {
+    uint64_t count = 0;
+    for (uint64_t cell = 0; cell < cells->cell_count; cell++) {
+        bool is_out = cells->blanked_cells && cells->blanked_cells[cell];
+        for (int64_t n = cells->offsets[cell]; n < cells->offsets[cell + 1] && cells->blanked_points; n++)
+            is_out = is_out || cells->blanked_points[cells->connectivity[n]];
+        count += is_out;
+    }
+    return count;
+}
+
 static void complex_make(subject *s) {
     uint32_t size[3];
     for (int axis = 0; axis < 3; axis++) size[axis] = 1 + random_below(3);
@@ -250,6 +261,8 @@ static void complex_make(subject *s) {
     for (uint64_t n = 0; n < cells.cell_count; n++) s->blanked_cells[n] = random_below(6) == 0;
     if (which & 1) cells.blanked_points = s->blanked_samples;
     if (which & 2) cells.blanked_cells = s->blanked_cells;
+    s->blanked_points = cells.blanked_points;
+    s->left_out_count = left_out_count(&cells);
     s->complete = which == 0;
     if (type_is_floating(s->type) && random_below(6) == 0) samples_spoil(s), s->complete = false;
     cells_cut(s, &cells);
@@ -266,6 +279,7 @@ static void subject_begin(subject *s, kind k, tc_type type) {
     s->kind = k, s->type = type;
     s->complete = true, s->mirrored = s->folded = false;
     s->list = (cell_list){0};
+    s->blanked_points = NULL, s->left_out_count = 0;
     s->complex = (tc_complex){.struct_size = sizeof s->complex};
     tc_extract_options_init(&s->how);
     tc_grid_options_init(&s->grid);

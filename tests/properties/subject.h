@@ -41,8 +41,10 @@ typedef struct subject {
     tc_complex_options cells; /* the others */
     cell_list list;
     tc_complex complex;
-    uint64_t boundary_faces; /* triangles that the complex, where it is complete, ends in */
-    double volume;           /* six times its volume */
+    uint64_t boundary_faces;       /* triangles that the complex, where it is complete, ends in */
+    double volume;                 /* six times its volume */
+    const uint8_t *blanked_points; /* or NULL */
+    uint64_t left_out_count;       /* cells that are blanked, or have a blanked point */
 
     tc_type type;
     int64_t sample_count;

@@ -372,7 +372,11 @@ static const char *grid_fault(const subject *s, const expected *e) {
     if (kind_is_structured(s->kind)) return NULL;
     const complex_facts f = complex_facts_of(&s->complex, s->list.points, s->list.point_count);
     if (f.bad_faces || f.bad_tetrahedra || f.not_positive) return "the complex is none";
-    if (s->complex.blanked_cell_count) return NULL;
+    if (s->complex.blanked_cell_count != s->left_out_count)
+        return "other cells are left out than those that are blanked";
+    for (uint64_t n = 0; n < 4 * s->complex.tetrahedron_count && s->blanked_points; n++)
+        if (s->blanked_points[s->complex.tetrahedra[n]]) return "a tetrahedron has a blanked point";
+    if (s->left_out_count) return NULL;
     if (f.boundary_faces != s->boundary_faces) return "the complex does not end in the faces of the block";
     return fabs(f.volume - s->volume) > 1e-4 * s->volume ? "the complex does not fill the block" : NULL;
 }
