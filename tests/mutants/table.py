@@ -39,6 +39,7 @@ TESTS = {
     "test_plot3d": test("test_plot3d"),
     "test_vtk_xml_hostile": test("test_vtk_xml_hostile"),
     "test_read_hostile": test("test_read_hostile"),
+    "test_limits": test("fuzz/test_limits"),
     "test_api, reference": test("test_api"),
     "test_patterns, reference": test("test_patterns"),
     "test_random, reference": test("test_random"),

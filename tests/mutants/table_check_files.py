@@ -1,6 +1,8 @@
 """table_check_files.py - mutants of the mesh checker, the readers and the writers"""
 from mutant import group
 
+LIMITS = {"tests": ("test_limits",)}
+
 MUTANTS = [
     *group("host/check/mesh_check.c",
            ("end - first == 1;", "end - first == 3;", "border edges are not seen", {"sample": True}),
@@ -70,7 +72,17 @@ MUTANTS = [
             "data begin with the file"),
            ("value < low[element] || value > high[element]", "value < low[element]", "text: numbers out of range"),
            ("if (!is_whole || !store_number", "if (!is_whole || (0 && !store_number",
-            "text: what is no number is taken")),
+            "text: what is no number is taken"),
+           ("int is_whole = strlen(word) == length && (at == size || is_between(text[at]));", "int is_whole = 1;",
+            "text: a long number is cut in two", LIMITS)),
+    *group("host/read/vtk_xml_text.c",
+           ("if ((at < end && *at > ' ') || !store_number", "if (!store_number", "text: a long number is cut in two", LIMITS)),
+    *group("host/read/vtk_xml.c",
+           ("status = vtk_xml_note_taken(&r->doc, &v, v.bytes);", "", "copies of shared data are not counted", LIMITS)),
+    *group("host/read/vtk_xml_header.c",
+           ("array_count == ARRAYS_MOST", "array_count == SIZE_MAX", "arrays without number", LIMITS)),
+    *group("host/read/data_names.c",
+           ("if ((names->bytes += length) > ALL_NAMES_BYTES)", "if (0)", "names without end", LIMITS)),
     *group("host/read/unpack.c",
            ("DEFLATE_LIMIT = 1100", "DEFLATE_LIMIT = 1 << 30", "decompression bombs are not refused"),
            ("t->skip -= count;", "t->skip = 0;", "compressed data: bytes to skip")),
@@ -115,7 +127,8 @@ MUTANTS = [
             {"tests": ("test_vtk_xml_hostile", "test_vtk_xml")}),
            ("bits = bits << 6 | (value ? value - 1 : 0);", "bits = bits << 6 | value;", "base64: values off by one"),
            ("group[3] != '=' ? 3 : group[2] != '=' ? 2 : 1", "3", "base64: padding counts"),
-           ("(!doc->swapped || element == 1) &&", "", "samples in the other byte order are used in place")),
+           ("(!doc->swapped || element == 1) &&", "", "samples in the other byte order are used in place"),
+           ("if (!status) status = note_unpacked(doc, v);", "", "what shared arrays unpack to is not counted", LIMITS)),
     *group("host/write/ply.c",
            ("binary_little_endian", "binary_big_endian", "byte order: named wrongly"),
            ("*to++ = 3;", "*to++ = 4;", "faces of four corners"),
