@@ -101,13 +101,13 @@ int vtk_xml_take_text(xml_values *v, void *to) {
     for (uint64_t i = 0; i < v->count; i++, value += bytes) {
         size_t length = 0;
         while (at < end && *at <= ' ') at++;
-        while (at<end && * at> ' ' && length < WORD_BYTES - 1) word[length++] = (char)*at++;
+        while (end > at && *at > ' ' && length < WORD_BYTES - 1) word[length++] = (char)*at++;
         word[length] = 0;
         if (!length)
             return fail(STATUS_INPUT,
                         "%s has %" PRIu64 " numbers of text, but %" PRIu64 " are needed; the file is damaged or cut",
                         v->label, i, v->count);
-        if ((at<end && * at> ' ') || !store_number(word, v->array->element, value))
+        if ((end > at && *at > ' ') || !store_number(word, v->array->element, value))
             return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", v->label, i + 1,
                         word);
     }

@@ -76,7 +76,7 @@ MUTANTS = [
            ("int is_whole = strlen(word) == length && (at == size || is_between(text[at]));", "int is_whole = 1;",
             "text: a long number is cut in two", LIMITS)),
     *group("host/read/vtk_xml_text.c",
-           ("if ((at < end && *at > ' ') || !store_number", "if (!store_number", "text: a long number is cut in two", LIMITS)),
+           ("if ((end > at && *at > ' ') || !store_number", "if (!store_number", "text: a long number is cut in two", LIMITS)),
     *group("host/read/vtk_xml.c",
            ("status = vtk_xml_note_taken(&r->doc, &v, v.bytes);", "", "copies of shared data are not counted", LIMITS)),
     *group("host/read/vtk_xml_header.c",
