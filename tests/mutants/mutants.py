@@ -302,7 +302,7 @@ def sums(source, mutants):
 
 
 def told_before(folder, mutants, sum_of):
-    """Lines of mutants.json that hold still: the mutant is in the table, and its file is as it was."""
+    """Lines of mutants.json that hold still: the mutant is in the table and was no fault, its file is as it was."""
     path = os.path.join(folder, "mutants.json")
     if not os.path.exists(path):
         return {}
@@ -310,7 +310,8 @@ def told_before(folder, mutants, sum_of):
         lines = json.load(f)["mutants"]
     known = {(m.file, m.what) for m in mutants}
     return {(line["file"], line["what"]): line for line in lines
-            if (line["file"], line["what"]) in known and line["sum"] == sum_of[line["file"]]}
+            if (line["file"], line["what"]) in known and line["sum"] == sum_of[line["file"]] and
+            line["verdict"] in ("caught", "the same")}
 
 
 def write_results(folder, results, before, sum_of, seconds):

@@ -71,7 +71,7 @@ MUTANTS = [
            ("memcpy(to, m.bytes + start, (size_t)bytes);", "memcpy(to, m.bytes, (size_t)bytes);",
             "data begin with the file"),
            ("value < low[element] || value > high[element]", "value < low[element]", "text: numbers out of range"),
-           ("if (!is_whole || !store_number", "if (!is_whole || (0 && !store_number",
+           ("if (!is_whole || !store_number(word, element, to))", "if (!is_whole || (store_number(word, element, to), 0))",
             "text: what is no number is taken"),
            ("int is_whole = strlen(word) == length && (at == size || is_between(text[at]));", "int is_whole = 1;",
             "text: a long number is cut in two", LIMITS)),
