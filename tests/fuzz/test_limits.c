@@ -12,7 +12,7 @@
 
 #include <sys/resource.h>
 
-enum { MEMORY_MOST = 24 << 10 }; /* KiB */
+enum { MEMORY_MOST = 32 << 10 }; /* KiB */
 
 /* The most memory that this process has had since the last call; proc(5), clear_refs. */
 static long memory_peak(void) {
@@ -197,12 +197,9 @@ static void test_numbers(void) {
         bytes_free(&nrrd);
         bytes_free(&vti);
     }
-    check_file("a number with a zero byte in it",
-               file_write("zero.nrrd",
-                          "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n"
-                          "1\0002 2 3 4 5 6 7 8\n",
-                          87),
-               "is no number");
+    static const char zero[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n"
+                               "1\0002 2 3 4 5 6 7 8\n";
+    check_file("a number with a zero byte in it", file_write("zero.nrrd", zero, sizeof zero - 1), "is no number");
 }
 
 /* ------------------------------------------------------------------------------------------------------------ sharing
