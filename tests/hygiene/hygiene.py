@@ -8,12 +8,13 @@ tidy         clang-tidy over host/, with the checks of .clang-tidy
 cppcheck     over host/, with the suppressions of cppcheck.txt
 readers      readers, writers, reference and public functions under the address and undefined-behaviour sanitizers
 sanitizers   all tests under them
+failed       those of them that failed the last time
 threads      a context per thread under the thread sanitizer, the library's own threads included
 valgrind     memcheck over tests without a device, and over the tool with the reference engine
 
-Without a stage: all but readers, which is a part of sanitizers. Builds go to BUILD/hygiene, where they are kept; BUILD
+Without a stage: all but readers and failed, which are parts of sanitizers. Builds go to BUILD/hygiene, where they are kept; BUILD
 is a finished build, whose compile commands, tool and cache of kernels are used. Prints what was found, and writes
-hygiene.json where TETRACUBES_RESULTS names a folder. Exit status 77: a program that a stage needs is not installed.
+hygiene.json where TETRACUBES_RESULTS names a folder; failed, alone, renews its figure there. Exit status 77: a program that a stage needs is not installed.
 """
 import argparse
 import json
@@ -134,22 +135,31 @@ class Hygiene:
         return self.run_tests(self.sanitized("sanitizers", SANITIZED, names), names, **strict)
 
     def sanitizers(self):
+        done = self.tests_sanitized()
+        ran = re.search(r"tests failed out of (\d+)", done.stdout)
+        self.part.figure("tests under address and undefined-behaviour sanitizers", int(ran[1]) if ran else 0)
+        return self.judge_sanitized(done) + (ran is None)
+
+    def failed(self):
+        return self.judge_sanitized(self.tests_sanitized("--rerun-failed"))
+
+    def tests_sanitized(self, *more):
         """The whole ctest but for what preloads a library, with the kernels that the build at hand has compiled."""
         folder = self.sanitized("sanitizers", SANITIZED, [])
         for part in (self.build / "tests" / "kernel_cache").glob("*"):
             shutil.copytree(part, folder / "tests" / "kernel_cache" / part.name, dirs_exist_ok=True)
         plain = {name: value for name, value in os.environ.items() if name != "TETRACUBES_RESULTS"}  # of a sample, here
-        done = run(["ctest", "--test-dir", folder, "--output-on-failure", "-j", self.jobs, "--timeout", "1800",
+        return run(["ctest", "--test-dir", folder, "--output-on-failure", "-j", self.jobs, "--timeout", "1800", *more,
                     "-E", "^(test_install|test_readme|test_sanitized|test_static|test_data|test_endings)$"], check=False,
                    env={**plain, **LEAKS})
+
+    def judge_sanitized(self, done):
         failed = re.findall(r"^\s+\d+ - \w+ \(\w+\)$", done.stdout, re.MULTILINE)
-        ran = re.search(r"tests failed out of (\d+)", done.stdout)
         faults = len(re.findall(FAULTS, done.stdout))
-        if failed or faults or not ran:
+        if failed or faults or done.returncode:
             print(done.stdout[-20000:])
-        self.part.figure("tests under address and undefined-behaviour sanitizers", int(ran[1]) if ran else 0)
         self.part.figure("faults that these sanitizers found", len(failed))
-        return len(failed) + faults + (ran is None)
+        return len(failed) + faults + (done.returncode != 0 and not failed)
 
     def threads(self):
         folder = self.sanitized("threads", "thread", ["test_threads", "test_contexts", "test_tetrahedralize", "test_order"])
@@ -221,6 +231,8 @@ def main():
     os.rmdir(hygiene.no_device)
     if set(ALL) <= set(arguments.stages):
         part.write()
+    elif arguments.stages == ["failed"]:
+        part.renew()
     return 1 if faults else 0
 
 
