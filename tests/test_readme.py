@@ -61,7 +61,7 @@ def test_commands(readme, source):
     commands = re.findall(r"^    (bash tests/\w+)", section(readme, "## The two commands", "\n## "), re.MULTILINE)
     expect(len(commands) == 2, f"README.md: two commands expected, found {commands}")
     ci = (source / ".ci" / "run").read_text(encoding="utf-8")
-    expect(re.findall(r"^bash .*$", ci, re.MULTILINE) == commands, f".ci/run does not run {commands}")
+    expect(re.findall(r"^(bash \S+)", ci, re.MULTILINE) == commands, f".ci/run does not run {commands}")
     for link in re.findall(r"\]\(([^)#]+)\)", readme):
         expect("://" in link or (source / link).exists(), f"README.md: {link} is not there")
 
