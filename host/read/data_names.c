@@ -38,10 +38,12 @@ int data_names_add(data_names *names, const char *header_path, const char *name)
 
     const char *slash = strrchr(header_path, '/');
     size_t folder = slash ? (size_t)(slash - header_path) + 1 : 0;
-    if (names->count % 64 == 0) {
-        char **more = realloc(names->paths, ((size_t)names->count + 64) * sizeof *more);
+    if (names->count == names->room) {
+        int64_t room = names->room ? 2 * names->room : 64;
+        char **more = realloc(names->paths, (size_t)room * sizeof *more);
         if (!more) return fail(STATUS_FAILED, "%s: out of memory for the names of its data files", header_path);
         names->paths = more;
+        names->room = room;
     }
     char *path = malloc(folder + length + 1);
     if (!path) return fail(STATUS_FAILED, "%s: out of memory for the names of its data files", header_path);
