@@ -19,8 +19,7 @@ tc_status host_block_reserve(host_block *block, uint64_t bytes) {
     size_t mapped = rounded + alignment - page_bytes;
     char *start = mmap(NULL, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (start == MAP_FAILED)
-        return (tc_status)fail(TC_ERROR_MEMORY, "the host has no %llu MB of memory more",
-                               (unsigned long long)(bytes >> 20));
+        return (tc_status)fail(TC_ERROR_MEMORY, "the host has no %llu bytes of memory more", (unsigned long long)bytes);
     char *aligned = start + (-(uintptr_t)start & (alignment - 1));
     if (aligned > start) munmap(start, (size_t)(aligned - start));
     if (aligned + rounded < start + mapped) munmap(aligned + rounded, (size_t)(start + mapped - aligned) - rounded);

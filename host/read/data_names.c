@@ -5,6 +5,7 @@
 #include "failure.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,30 +116,48 @@ int data_names_pattern(data_names *names, const char *header_path, const char *t
     return 0;
 }
 
-/* Whether a real path is the folder of the path given, or lies below. */
-static int is_in_folder_of(const char *file, const char *path) {
+/* The folder of a path, no links left in it, to be freed; NULL, with errno, where there is none. */
+static char *real_folder(const char *path) {
     const char *slash = strrchr(path, '/');
     char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-    if (!folder) return 0;
-    char *real = realpath(folder, NULL);
+    char *real = folder ? realpath(folder, NULL) : NULL;
+    int error = errno;
     free(folder);
-    size_t length = real ? strlen(real) : 0;
-    int is_in = real && strncmp(file, real, length) == 0 && (!file[length] || file[length] == '/' || length == 1);
-    free(real);
-    return is_in;
+    errno = error;
+    return real;
 }
 
-int data_names_open(const char *header_path, const char *path, mapping *m) {
-    *m = (mapping){0};
+static int lies_in(const char *file, const char *folder) {
+    size_t length = strlen(folder);
+    return strncmp(file, folder, length) == 0 && (!file[length] || file[length] == '/' || length == 1);
+}
+
+/* 0 where the name leads into the folder that the header is named in, or into the one that it lies in. */
+static int check_links(const char *header_path, const char *path) {
+    char *file = NULL, *header = NULL, *named = NULL, *real = NULL;
+    errno = 0;
+    int is_found = (file = realpath(path, NULL)) && (header = realpath(header_path, NULL)) &&
+                   (named = real_folder(header_path)) && (real = real_folder(header));
     int status = 0;
-    char *file = realpath(path, NULL), *header = realpath(header_path, NULL); /* NULL: cannot be opened either */
-    if (file && !is_in_folder_of(file, header_path) && !(header && is_in_folder_of(file, header)))
+    if (!is_found && errno == ENOMEM)
+        status = fail(STATUS_FAILED, "%s: no memory to find out where it lies", path);
+    else if (!is_found)
+        status = fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    else if (!lies_in(file, named) && !lies_in(file, real))
         status = fail(STATUS_INPUT,
                       "%s: a symbolic link leads it to %s, out of the folder of its header %s; only files in the "
                       "header's own folder or below are read: put the data itself there",
                       path, file, header_path);
     free(file);
     free(header);
+    free(named);
+    free(real);
+    return status;
+}
+
+int data_names_open(const char *header_path, const char *path, mapping *m) {
+    *m = (mapping){0};
+    int status = check_links(header_path, path);
     return status ? status : mapping_open(path, m);
 }
 

@@ -14,6 +14,7 @@
 #include "failure.h"
 #include "source.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -185,8 +186,10 @@ static int fill_matrix(nifti_header *h, volume *out) {
     int status = check_voxel_sizes(h);
     if (status) return status;
     nifti_set_debug_level(0);
+    errno = 0;
     nifti_image *image =
         h->version == 1 ? nifti_convert_n1hdr2nim(h->raw.v1, NULL) : nifti_convert_n2hdr2nim(h->raw.v2, NULL);
+    if (!image && errno == ENOMEM) return fail(STATUS_FAILED, "%s: no memory to interpret its header", h->path);
     if (!image) return fail(STATUS_INPUT, "%s: libnifti2 cannot interpret its header", h->path);
     const nifti_dmat44 *matrix = image->sform_code > 0 ? &image->sto_xyz : &image->qto_xyz;
     for (int r = 0; r < 3; r++)

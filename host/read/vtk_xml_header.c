@@ -344,7 +344,9 @@ int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc) {
         code = XML_Parse(p.expat, (const char *)file->bytes + at, (int)bytes, at + bytes == file->size);
         if (chunk < LARGEST_CHUNK) chunk *= 2;
     }
-    if (!p.status && !p.has_ended && code != XML_STATUS_OK)
+    if (!p.status && !p.has_ended && code != XML_STATUS_OK && XML_GetErrorCode(p.expat) == XML_ERROR_NO_MEMORY)
+        p.status = no_memory(doc);
+    else if (!p.status && !p.has_ended && code != XML_STATUS_OK)
         p.status = fail(STATUS_INPUT, "%s: line %" PRIu64 " is not XML: %s; the file is damaged or cut", path,
                         (uint64_t)XML_GetCurrentLineNumber(p.expat), XML_ErrorString(XML_GetErrorCode(p.expat)));
     XML_ParserFree(p.expat);

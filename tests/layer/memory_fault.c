@@ -1,5 +1,6 @@
 #include "memory_fault.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <link.h>
 #include <pthread.h>
@@ -34,12 +35,15 @@ static const void *pieces[PIECES_MOST]; /* open addressing; NULL: free */
 
 static struct { uintptr_t begin, end; } ranges[RANGES_MOST];
 static int range_count;
-static bool of_program; /* requests of the program count too */
+static bool of_program; /* requests of the program count too, and those of the libraries for formats */
+static const char *const of_formats[] = {"libz.", "libbz2.", "libexpat.", "libjansson.", "libnifti2.", "libznz."};
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static int ranges_note(struct dl_phdr_info *object, size_t bytes, void *ignored) {
     (void)bytes, (void)ignored;
-    const bool wanted = strstr(object->dlpi_name, "libtetracubes") || (of_program && !object->dlpi_name[0]);
+    bool wanted = strstr(object->dlpi_name, "libtetracubes") || (of_program && !object->dlpi_name[0]);
+    for (size_t n = 0; of_program && n < sizeof of_formats / sizeof *of_formats; n++)
+        wanted = wanted || strstr(object->dlpi_name, of_formats[n]);
     for (int n = 0; wanted && n < object->dlpi_phnum && range_count < RANGES_MOST; n++) {
         const ElfW(Phdr) *segment = &object->dlpi_phdr[n];
         if (segment->p_type != PT_LOAD || !(segment->p_flags & PF_X)) continue;
@@ -165,6 +169,30 @@ EXPORT char *strdup(const char *text) {
     const size_t bytes = strlen(text) + 1;
     char *copy = request_fails(CALLER) ? NULL : piece_add(__libc_malloc(bytes), CALLER);
     return copy ? memcpy(copy, text, bytes) : NULL;
+}
+
+EXPORT char *strndup(const char *text, size_t most) {
+    const size_t length = strnlen(text, most);
+    char *copy = request_fails(CALLER) ? NULL : piece_add(__libc_malloc(length + 1), CALLER);
+    if (!copy) return NULL;
+    copy[length] = '\0';
+    return memcpy(copy, text, length);
+}
+
+EXPORT char *realpath(const char *path, char *resolved) {
+    char *(*of_library)(const char *, char *);
+    if (request_fails(CALLER)) return NULL;
+    *(void **)&of_library = dlsym(RTLD_NEXT, "realpath");
+    char *real = of_library(path, resolved);
+    return resolved ? real : piece_add(real, CALLER);
+}
+
+/* The text at its end is given to the caller; what it grows by is the C library's own. */
+EXPORT FILE *open_memstream(char **text, size_t *bytes) {
+    FILE *(*of_library)(char **, size_t *);
+    if (request_fails(CALLER)) return NULL;
+    *(void **)&of_library = dlsym(RTLD_NEXT, "open_memstream");
+    return of_library(text, bytes);
 }
 
 static int text_make(char **text, const char *format, va_list arguments) {

@@ -170,7 +170,10 @@ int main(int argc, char **argv) {
     scenarios_release();
     EXPECT(layer->references() == 0, "%ld references are left at the end", layer->references());
     long entries = 0;
-    for (int e = 0; e < ENTRY_COUNT; e++) entries += entries_failed[e] > 0;
+    for (int e = 0; e < ENTRY_COUNT; e++) {
+        entries += entries_failed[e] > 0;
+        if (!entries_failed[e]) printf("%s was not called\n", entry_names[e]);
+    }
     printf("%ld failures of %ld entry points, %ld of them done without\n", trials, entries, tolerated);
     if (all)
         results_write("failures", start,

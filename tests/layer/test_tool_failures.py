@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """test_tool_failures.py TOOL [memory=LIBRARY] [layer=LIBRARY] [all] - the tool when memory or the device fails
 
-Each command runs undisturbed, then once for every request of the tool's and the library's for memory that it makes (or
-every call of OpenCL), with that one failing: memory_fault.c is preloaded from LIBRARY, or layer.c loaded. The tool then
-either does without, and what it writes is the same, byte for byte, or it ends with status 1 and a message that names the
-failure; no file is left that is not whole, neither under its final name nor beside it. Never a crash. Without `all` a
-sample of requests and calls. Standard library only.
+Each command runs undisturbed, then once for every request for memory that the tool, the library and the libraries for
+formats make (or every call of OpenCL), with that one failing: memory_fault.c is preloaded from LIBRARY, or layer.c
+loaded. The tool then either does without, and what it writes is the same, byte for byte, or it ends with status 1 and a
+message that names the failure; no file is left that is not whole, neither under its final name nor beside it. Never a
+crash. Without `all` a sample of requests and calls. Standard library only.
 """
+import base64
+import bz2
 import datetime
 import gzip
 import json
@@ -18,6 +20,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zlib
 
 TOOL = None
 MEMORY_LIBRARY = None
@@ -90,8 +93,26 @@ def inputs_write(folder):
         with open(os.path.join(folder, name), "w") as out:
             out.write(content)
     raw = struct.pack(f"<{count}f", *values())
-    with open(os.path.join(folder, "b.nrrd"), "wb") as out:
-        out.write((nrrd + "gzip\n\n").encode() + gzip.compress(raw))
+    nifti = struct.pack("<i36x8h14xhh2x8f3f224xi", 348, 3, SIZE, SIZE, SIZE, 1, 1, 1, 1, 16, 32, *[1] * 8, 352, 1, 0,
+                        int.from_bytes(b"n+1\0", "little")) + bytes(4)
+    packed = zlib.compress(raw)
+    block = base64.b64encode(struct.pack("<4I", 1, len(raw), 0, len(packed))) + base64.b64encode(packed)
+    packed_files = {
+        "b.nrrd": (nrrd + "gzip\n\n").encode() + gzip.compress(raw),
+        "c.nrrd": (nrrd + "bzip2\n\n").encode() + bz2.compress(raw),
+        "a.nii": nifti + raw,
+        "a.nii.gz": gzip.compress(nifti + raw),
+        "a.mhd": f"NDims = 3\nDimSize = {dims}\nElementType = MET_FLOAT\nCompressedData = True\n"
+                 "ElementDataFile = a.zraw\n".encode(),
+        "a.zraw": packed,
+        "a.vti": f'<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian" '
+                 f'compressor="vtkZLibDataCompressor"><ImageData WholeExtent="{extent}"><Piece Extent="{extent}">'
+                 '<PointData><DataArray type="Float32" Name="bump" format="binary">'.encode() + block +
+                 b"</DataArray></PointData></Piece></ImageData></VTKFile>",
+    }
+    for name, content in packed_files.items():
+        with open(os.path.join(folder, name), "wb") as out:
+            out.write(content)
 
 
 class Failures(unittest.TestCase):
@@ -170,7 +191,8 @@ class Memory(Failures):
         super().setUp()
 
     def test_formats(self):
-        for inputs in (["@a.nrrd"], ["@b.nrrd"], ["@points.vtk"], ["@grid.vtk"], ["@cells.vtk"], ["@grid.vts"],
+        for inputs in (["@a.nrrd"], ["@b.nrrd"], ["@c.nrrd"], ["@a.nii"], ["@a.nii.gz"], ["@a.mhd"], ["@a.vti"],
+                       ["@points.vtk"], ["@grid.vtk"], ["@cells.vtk"], ["@grid.vts"],
                        ["@a.xyz", "@a.q", "--field", "density"]):
             iso = "1.5" if "@a.q" in inputs else "80"
             with self.subTest(inputs):

@@ -4,7 +4,7 @@
  * An input is one or more files with a marker between them, then OPTION_BYTES bytes of options. The first file is the
  * one that is read; any other name stands for the one that its last digit tells, 1 where it has none. Every file lies
  * in memory of its exact size, so that AddressSanitizer sees the first byte read behind its end: files.c takes the
- * place of mapping.c and, through the linker's --wrap, of munmap() and access().
+ * place of mapping.c and, through the linker's --wrap, of munmap(), access() and realpath().
  */
 #ifndef FILES_H
 #define FILES_H
