@@ -71,7 +71,7 @@ def test_promises(readme, build):
     listed = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE, text=True, check=True).stdout
     known = set(re.findall(r"Test +#\d+: (\w+)", listed))
     promises = section(readme, "| promise |", "<!-- trust:begin -->")
-    named = re.findall(r"`((?:test|fuzz|mutants)_\w+|oclgrind)`", promises)
+    named = re.findall(r"`((?:test|fuzz|mutants)_\w+|oclgrind|memcheck)`", promises)
     expect(len(named) > 20, f"README.md: only {len(named)} tests named")
     expect(set(named) <= known, f"README.md: no tests of ctest: {sorted(set(named) - known)}")
 

@@ -1,11 +1,12 @@
 /*
- * faults.c - kernels with one fault each, which Oclgrind has to report: so that a clean log means something
+ * faults.c - kernels with one fault each, which Oclgrind or valgrind has to report: so that a clean log means something
  *
- * Usage: faults none|bounds|race|groups|uninitialised|api. Exit status 0 where the kernel ran; what was found is in the
- * log.
+ * Usage: faults none|bounds|race|groups|uninitialised|unset|api. Exit status 0 where the kernel ran; what was found is
+ * in the log. uninitialised: an array in the kernel; unset: a buffer that nobody wrote.
  */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -24,6 +25,9 @@ static const char source[] =
     "    some[0] = 1;\n"
     "    out[get_global_id(0)] = some[get_global_id(0) & 1];\n"
     "}\n"
+    "kernel void unset(global uint *out) {\n"
+    "    if (out[get_global_id(0)] == 7) out[16 + get_global_id(0)] = 1;\n"
+    "}\n"
     "kernel void api(global uint *out) { out[get_global_id(0)] = 1; }\n";
 
 static cl_int run(const char *fault) {
@@ -38,7 +42,9 @@ static cl_int run(const char *fault) {
     cl_context context = clCreateContext(NULL, 1, &device, NULL, NULL, NULL);
     cl_command_queue queue = clCreateCommandQueue(context, device, 0, NULL);
     cl_program program = clCreateProgramWithSource(context, 1, &text, NULL, NULL);
-    cl_mem buffer = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof words, words, &error);
+    const bool is_set = strcmp(fault, "unset") != 0;
+    cl_mem buffer = clCreateBuffer(context, CL_MEM_READ_WRITE | (is_set ? CL_MEM_COPY_HOST_PTR : 0), sizeof words,
+                                   is_set ? words : NULL, &error);
     if (!error) error = clBuildProgram(program, 1, &device, "-cl-std=CL1.2", NULL, NULL);
     cl_kernel kernel = clCreateKernel(program, fault, error ? NULL : &error);
     if (!error) error = clSetKernelArg(kernel, 0, sizeof buffer, &buffer);
