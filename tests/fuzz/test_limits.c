@@ -270,6 +270,8 @@ static void test_links(void) {
                       meta[] = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = d.raw\n";
     mkdir(file_path("store"), 0700);
     mkdir(file_path("own"), 0700);
+    mkdir(file_path("own-too"), 0700);
+    file_text("own-too/d.raw", "12345678");
     file_text("store/d.raw", "12345678");
     file_text("store/a.nhdr", nrrd);
     file_text("own/e.raw", "12345678");
@@ -281,6 +283,8 @@ static void test_links(void) {
     link_to("../store/d.raw", "own/d.raw");
     check_file("a link out of the folder", file_path("own/a.nhdr"), "symbolic link");
     check_file("a link out of the folder", file_path("own/a.mhd"), "symbolic link");
+    link_to("../own-too/d.raw", "own/d.raw");
+    check_file("a link to a folder whose name begins alike", file_path("own/a.nhdr"), "symbolic link");
     link_to("e.raw", "own/d.raw");
     check_file("a link within the folder", file_path("own/a.nhdr"), NULL);
     check_file("a link within the folder", file_path("own/a.mhd"), NULL);
