@@ -128,12 +128,18 @@ static long double crossing_of(const walk *w, const int64_t a[3], const int64_t 
     return (isovalue - value_at(w, a)) / (value_at(w, b) - value_at(w, a));
 }
 
-static bool grid_has_coordinates(const tc_grid_options *g) { return g->axes[0] || g->points; }
+static bool grid_has_axes(const tc_grid_options *g) { return g->axes[0] || g->axes_f64[0]; }
 
-/* World coordinate of a sample, where the grid is not uniform. */
+static bool grid_has_coordinates(const tc_grid_options *g) { return grid_has_axes(g) || g->points || g->points_f64; }
+
+/* World coordinate of a sample, where the grid is not uniform, minus the mesh's origin. */
 static long double coordinate_at(const walk *w, const int64_t p[3], int row) {
-    if (w->grid->axes[0]) return (long double)w->grid->axes[row][p[row]];
-    return (long double)w->grid->points[3 * index_of(w, p) + row];
+    const tc_grid_options *g = w->grid;
+    const int64_t n = 3 * index_of(w, p) + row;
+    const long double origin = (long double)w->mesh->origin[row];
+    if (g->axes[0]) return (long double)g->axes[row][p[row]] - origin;
+    if (g->axes_f64[0]) return (long double)g->axes_f64[row][p[row]] - origin;
+    return (g->points ? (long double)g->points[n] : (long double)g->points_f64[n]) - origin;
 }
 
 static bool between_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
@@ -142,15 +148,32 @@ static bool between_is_right(const walk *w, const int64_t a[3], const int64_t b[
         long double p = coordinate_at(w, a, row), q = coordinate_at(w, b, row);
         long double room = (fabsl(p) + fabsl(q)) * 0x1p-21L;
         right = right && fabsl(p + t * (q - p) - (long double)is[row]) <= room;
-        if (t == 0 || t == 1) right = right && (long double)is[row] == (t == 1 ? q : p);
+        if (t == 0 || t == 1) right = right && is[row] == (float)(t == 1 ? q : p);
     }
     return right;
 }
 
+/* Relative to an origin, errors are those of the grid's size, not of its distance from zero. */
+static bool relative_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is,
+                              int row) {
+    const double *m = w->grid->matrix[row];
+    long double sum = (long double)m[3] - (long double)w->mesh->origin[row], room = fabsl((long double)is[row]);
+    for (int axis = 0; axis < 3; axis++) {
+        long double scale = (long double)m[axis];
+        long double p = (long double)(w->grid->first[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
+        sum += scale * p;
+        room += fabsl(scale) * 2 * ((long double)w->grid->dims[axis] + 2);
+    }
+    return fabsl(sum - (long double)is[row]) <= room * 0x1p-21L;
+}
+
 static bool position_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
+    const double *o = w->mesh->origin;
+    const bool is_moved = o[0] != 0 || o[1] != 0 || o[2] != 0;
     bool right = t >= 0 && t <= 1;
     if (grid_has_coordinates(w->grid)) return between_is_right(w, a, b, t, is);
-    for (int row = 0; row < 3; row++) {
+    for (int row = 0; row < 3 && is_moved; row++) right = right && relative_is_right(w, a, b, t, is, row);
+    for (int row = 0; row < 3 && !is_moved; row++) {
         const double *m = w->grid->matrix[row];
         long double sum = (long double)(float)m[3], room = fabsl(sum);
         for (int axis = 0; axis < 3; axis++) {
@@ -359,7 +382,10 @@ static bool matrix_mirrors(const double m[3][4]) {
 
 static bool point_counts(const tc_grid_options *g, int64_t n) {
     bool counts = !(g->blanked_samples && g->blanked_samples[n]);
-    for (int row = 0; row < 3; row++) counts = counts && fabsf(g->points[3 * n + row]) < 0x1p127f;
+    for (int row = 0; row < 3; row++) {
+        double at = g->points ? (double)g->points[3 * n + row] : g->points_f64[3 * n + row];
+        counts = counts && fabs(at) < 0x1p127;
+    }
     return counts;
 }
 
@@ -384,10 +410,15 @@ static bool grid_mirrors(const walk *w) {
     const tc_grid_options *g = w->grid;
     const int64_t *n = g->dims;
     long double sum = 0;
-    if (g->axes[0])
-        return ((g->axes[0][n[0] - 1] < g->axes[0][0]) ^ (g->axes[1][n[1] - 1] < g->axes[1][0]) ^
-                (g->axes[2][n[2] - 1] < g->axes[2][0])) != 0;
-    if (!g->points) return matrix_mirrors(g->matrix);
+    if (grid_has_axes(g)) {
+        bool mirrors = false;
+        for (int axis = 0; axis < 3; axis++) {
+            const int64_t last[3] = {n[0] - 1, n[1] - 1, n[2] - 1};
+            mirrors ^= coordinate_at(w, last, axis) < coordinate_at(w, (int64_t[3]){0, 0, 0}, axis);
+        }
+        return mirrors;
+    }
+    if (!grid_has_coordinates(g)) return matrix_mirrors(g->matrix);
     for (int64_t z = 0; z + 1 < n[2]; z++)
         for (int64_t y = 0; y + 1 < n[1]; y++)
             for (int64_t x = 0; x + 1 < n[0]; x++) sum += cube_jacobian(w, (int64_t[3]){x, y, z});

@@ -87,7 +87,8 @@ static void test_file(const char *folder, const char *name) {
     const dataset_block *b = d.blocks;
     const tc_cells cells = {.struct_size = sizeof cells,
                             .point_count = (uint64_t)b->point_count,
-                            .points = b->points,
+                            .points = b->points.f32,
+                            .points_f64 = b->points.f64,
                             .cell_count = (uint64_t)b->cell_count,
                             .types = b->cell_types,
                             .offsets = b->cell_offsets,
@@ -95,7 +96,11 @@ static void test_file(const char *folder, const char *name) {
     tc_status cut = tc_tetrahedralize(&cells, &complex);
     EXPECT(!cut && complex.tetrahedron_count, "%s: %s", name, tc_message());
     if (!cut) {
-        complex_facts facts = complex_facts_of(&complex, b->points, (uint64_t)b->point_count);
+        float *points = malloc(3 * (size_t)b->point_count * sizeof *points);
+        if (!points) exit(EXIT_FAILURE);
+        for (int64_t i = 0; i < 3 * b->point_count; i++) points[i] = (float)coordinate_at(b->points, i);
+        complex_facts facts = complex_facts_of(&complex, points, (uint64_t)b->point_count);
+        free(points);
         uint64_t border = border_triangles(b);
         EXPECT(!facts.bad_faces && !facts.bad_tetrahedra, "%s: %llu faces do not fit, %llu tetrahedra are not valid",
                name, (unsigned long long)facts.bad_faces, (unsigned long long)facts.bad_tetrahedra);

@@ -20,13 +20,17 @@ static const char *describe(const variant *v) {
 static void expect_points(const variant *v, int n, const dataset_block *block) {
     uint64_t wrong = 0, unblanked = 0;
     for (uint64_t i = 0; i < block_points(n); i++) {
-        for (int a = 0; a < 3; a++) wrong += block->points[3 * i + (uint64_t)a] != (float)plot3d_value(v, n, -1 - a, i);
+        for (int a = 0; a < 3; a++)
+            wrong += (v->value_bytes == 8 ? coordinate_at(block->points, 3 * (int64_t)i + a)
+                                          : (double)(float)coordinate_at(block->points, 3 * (int64_t)i + a)) !=
+                     plot3d_value(v, n, -1 - a, i);
         if (v->iblank) unblanked += !block->blanked_points || !block->blanked_points[i] != (iblank_value(n, i) != 0);
     }
     EXPECT(wrong == 0, "%s: %" PRIu64 " coordinates of block %d are wrong", describe(v), wrong, n);
     EXPECT(unblanked == 0, "%s: %" PRIu64 " points of block %d are blanked wrongly", describe(v), unblanked, n);
     EXPECT(v->iblank || !block->blanked_points, "%s: block %d has blanked points", describe(v), n);
-    EXPECT((uintptr_t)block->points % 4 == 0 && !block->blanked_cells, "%s: block %d", describe(v), n);
+    EXPECT((uintptr_t)block->points.f32 % 4 + (uintptr_t)block->points.f64 % 8 == 0 && !block->blanked_cells,
+           "%s: block %d", describe(v), n);
 }
 
 static void expect_field(const variant *v, int n, const dataset_block *block, int variable) {
@@ -134,8 +138,8 @@ static void expect_text_points(const char *what, const char *text, const float w
     EXPECT(status == 0, "%s: %s", what, failure_text());
     if (status) return;
     for (int i = 0; i < 12; i++)
-        EXPECT(d.blocks[0].points[i] == wanted[i], "%s: %g, not %g", what, (double)d.blocks[0].points[i],
-               (double)wanted[i]);
+        EXPECT((float)coordinate_at(d.blocks[0].points, i) == wanted[i], "%s: %g, not %g", what,
+               coordinate_at(d.blocks[0].points, i), (double)wanted[i]);
     dataset_release(&d);
 }
 
@@ -169,7 +173,7 @@ static void test_text(void) {
                         "2 2 1 0000000000000000000000000000000000000000000000000000000000000000000000000001",
                         "more than");
     expect_text_failure("infinity", "2 2 1\n1 2 3 4 5 Inf 5 5 9 9 9 9", "point 1 of block 1");
-    expect_text_failure("a number beyond f32", "2 2 1\n1 2 3 4 5 5 5 1e39 9 9 9 9", "point 3 of block 1");
+    expect_text_failure("a number beyond f64", "2 2 1\n1 2 3 4 5 5 5 1e399 9 9 9 9", "point 3 of block 1");
 }
 
 /* ----------------------------------------------------------------------------------------------------------- damage */
@@ -268,7 +272,8 @@ static void test_ambiguity(void) {
     int status = read_plot3d(file_write("either.xyz", doubles.data, doubles.size), NULL, &d);
     EXPECT(status == 0, "by its values a grid: %s", failure_text());
     if (!status) {
-        EXPECT(fabsf(d.blocks[0].points[0] - 1.0F / 3) < 1e-6F, "by its values f64: %g", (double)d.blocks[0].points[0]);
+        EXPECT(fabs(coordinate_at(d.blocks[0].points, 0) - 1.0 / 3) < 1e-6, "by its values f64: %g",
+               coordinate_at(d.blocks[0].points, 0));
         dataset_release(&d);
     }
     bytes_free(&either);
@@ -307,13 +312,14 @@ static void test_headers(void) {
 static void test_coordinates(void) {
     variant v = {BINARY, 0, 8, 1, GRID_ONLY, 0};
     bytes grid = grid_file(&v);
-    double far = 1e300;
+    double far = INFINITY;
     memcpy(grid.data + 12 + 8 * 2, &far, 8); /* point 2 is blanked */
     dataset d;
     int status = read_plot3d(file_write("far.xyz", grid.data, grid.size), NULL, &d);
     EXPECT(status == 0, "a blanked point far away: %s", failure_text());
     if (!status) {
-        EXPECT(d.blocks[0].blanked_points[2] && isfinite(d.blocks[0].points[6]), "a blanked point far away");
+        EXPECT(d.blocks[0].blanked_points[2] && isfinite(coordinate_at(d.blocks[0].points, 6)),
+               "a blanked point far away");
         dataset_release(&d);
     }
     memcpy(grid.data + 12 + 8 * 3, &far, 8);

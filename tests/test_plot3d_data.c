@@ -84,7 +84,8 @@ static void test_encodings(void) {
             uint64_t wrong = 0;
             EXPECT(block->point_count == 1152 && block->dims[0] == 8 && block->dims[1] == 12 && block->dims[2] == 12,
                    "%s: block %d", pairs[n][0], b);
-            for (int i = 0; i < 3 * 1152; i++) wrong += fabsf(block->points[i] - other->points[i]) > 1e-6F;
+            for (int i = 0; i < 3 * 1152; i++)
+                wrong += fabs(coordinate_at(block->points, i) - coordinate_at(other->points, i)) > 1e-6;
             for (int f = 0; f < 6; f++)
                 for (uint64_t i = 0; i < 1152; i++)
                     wrong += fabs(field_value(find_field(block, fields[f]), i) -

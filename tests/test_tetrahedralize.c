@@ -225,7 +225,13 @@ static void curved_and_flat(void) {
             for (int axis = 0; axis < 3; axis++) points[3 * c + axis] = (float)s->corners[c][axis];
         for (int p = 0; p < curved[n].points; p++) connectivity[2 + p] = p;
         uint8_t types[2] = {flat[n % sizeof flat], (uint8_t)curved[n].type};
-        tc_cells cells = {sizeof cells, 32, points, 2, types, offsets, connectivity, NULL, NULL};
+        tc_cells cells = {.struct_size = sizeof cells,
+                          .point_count = 32,
+                          .points = points,
+                          .cell_count = 2,
+                          .types = types,
+                          .offsets = offsets,
+                          .connectivity = connectivity};
         tc_complex complex = cut(&cells, "curved cell");
         expect_conforming(&complex, &cells, (uint64_t)s->faces, s->volume, "curved cell");
         EXPECT(complex.curved_cell_count == 1 && complex.flat_cell_count == 1, "type %d: kinds miscounted",
@@ -237,7 +243,13 @@ static void curved_and_flat(void) {
     }
     for (size_t n = 0; n < sizeof flat; n++) {
         const int64_t offsets[] = {0, 0};
-        tc_cells cells = {sizeof cells, 0, NULL, 1, &flat[n], offsets, NULL, NULL, NULL};
+        tc_cells cells = {.struct_size = sizeof cells,
+                          .point_count = 0,
+                          .points = NULL,
+                          .cell_count = 1,
+                          .types = &flat[n],
+                          .offsets = offsets,
+                          .connectivity = NULL};
         tc_complex complex = cut(&cells, "flat cell");
         EXPECT(complex.flat_cell_count == 1 && complex.tetrahedron_count == 0, "type %d is not flat", flat[n]);
         tc_complex_release(&complex);
@@ -329,7 +341,13 @@ static void one_cell_refused(uint8_t type, int64_t count, int64_t odd_point, con
     int64_t connectivity[32], offsets[2] = {0, count};
     for (int n = 0; n < 32; n++) connectivity[n] = n % 8;
     connectivity[3] = odd_point;
-    tc_cells cells = {sizeof cells, 8, points, 1, &type, offsets, connectivity, NULL, NULL};
+    tc_cells cells = {.struct_size = sizeof cells,
+                      .point_count = 8,
+                      .points = points,
+                      .cell_count = 1,
+                      .types = &type,
+                      .offsets = offsets,
+                      .connectivity = connectivity};
     refused(&cells, TC_ERROR_DATA, word);
 }
 
@@ -340,7 +358,13 @@ static void offsets_beyond(void) {
     const float points[24] = {0};
     const int64_t connectivity[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        tc_cells cells = {sizeof cells, 8, points, 2, types, cases[n], connectivity, NULL, NULL};
+        tc_cells cells = {.struct_size = sizeof cells,
+                          .point_count = 8,
+                          .points = points,
+                          .cell_count = 2,
+                          .types = types,
+                          .offsets = cases[n],
+                          .connectivity = connectivity};
         refused(&cells, TC_ERROR_DATA, "do not rise from 0 to the last one, 8");
     }
 }
@@ -353,7 +377,13 @@ static void positions(void) {
         float points[36] = {0};
         points[3] = points[7] = points[11] = 1;
         int64_t connectivity[10] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, offsets[2] = {0, 10};
-        tc_cells cells = {sizeof cells, 12, points, 1, &quadratic, offsets, connectivity, NULL, NULL};
+        tc_cells cells = {.struct_size = sizeof cells,
+                          .point_count = 12,
+                          .points = points,
+                          .cell_count = 1,
+                          .types = &quadratic,
+                          .offsets = offsets,
+                          .connectivity = connectivity};
         points[3 * 11 + n % 3] = points[3 * 9 + n % 3] = odd[n];
         tc_complex complex = cut(&cells, "odd midpoint");
         EXPECT(complex.tetrahedron_count == 1, "a midpoint matters");

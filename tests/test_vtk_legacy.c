@@ -206,13 +206,14 @@ static void expect_geometry(const char *what, const dataset_block *b, enum grid_
     if (kind == GRID_UNIFORM) EXPECT(!memcmp(b->matrix, matrix, sizeof matrix), "%s: matrix", what);
     for (int a = 0; a < 3 && kind == GRID_RECTILINEAR; a++)
         for (int64_t i = 0; i < grid_dims[a]; i++)
-            EXPECT(b->axes[a][i] == (float)test_value(a == 0   ? TC_F32
-                                                      : a == 1 ? TC_F64
-                                                               : TC_I16,
-                                                      (uint64_t)i),
+            EXPECT(coordinate_at(b->axes[a], i) == test_value(a == 0   ? TC_F32
+                                                              : a == 1 ? TC_F64
+                                                                       : TC_I16,
+                                                              (uint64_t)i),
                    "%s: axis %d", what, a);
-    for (uint64_t i = 0; i < 3 * POINTS && kind >= GRID_CURVILINEAR; i++)
-        EXPECT(b->points[i] == (float)test_value(with_offsets ? TC_F64 : TC_F32, i), "%s: coordinate %d", what, (int)i);
+    for (int64_t i = 0; i < 3 * POINTS && kind >= GRID_CURVILINEAR; i++)
+        EXPECT(coordinate_at(b->points, i) == test_value(with_offsets ? TC_F64 : TC_F32, (uint64_t)i),
+               "%s: coordinate %d", what, (int)i);
     if (kind == GRID_UNSTRUCTURED) expect_cells(what, b);
 }
 
@@ -222,9 +223,11 @@ static void touch(const dataset *d) {
     const dataset_block *b = d->blocks;
     for (int f = 0; f < b->field_count; f++)
         for (int64_t i = 0; i < value_count(b, &b->fields[f]); i++) sum = sum + value_at(&b->fields[f], i);
-    for (int64_t i = 0; b->points && i < 3 * b->point_count; i++) sum = sum + (double)b->points[i];
+    for (int64_t i = 0; (b->points.f32 || b->points.f64) && i < 3 * b->point_count; i++)
+        sum = sum + coordinate_at(b->points, i);
     for (int a = 0; a < 3; a++)
-        for (int64_t i = 0; b->axes[a] && i < b->dims[a]; i++) sum = sum + (double)b->axes[a][i];
+        for (int64_t i = 0; (b->axes[a].f32 || b->axes[a].f64) && i < b->dims[a]; i++)
+            sum = sum + coordinate_at(b->axes[a], i);
     for (int64_t i = 0; b->blanked_points && i < b->point_count; i++) sum = sum + b->blanked_points[i];
     for (int64_t i = 0; b->blanked_cells && i < b->cell_count; i++) sum = sum + b->blanked_cells[i];
     for (int64_t c = 0; b->cell_offsets && c < b->cell_count; c++)
@@ -499,7 +502,7 @@ static const struct {
     {IMAGE_B "FIELD f 1\na 1 1 string\n\x3F\xFF\xFF\xFF\xFF\xFF\xFF\xFFx", "ends within the texts"},
     {HEAD "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 3 float\n1 2 3\n", "3 coordinates along axis 1"},
     {HEAD "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 2 float\n1 nan\n", "not finite"},
-    {HEAD "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 2 double\n1 1e39\n", "not finite"},
+    {HEAD "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 2 double\n1 1e399\n", "not finite"},
     {HEAD "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 2 string\nx\ny\n", "texts for X_COORDINATES"},
     {HEAD "DATASET STRUCTURED_GRID\nDIMENSIONS 2 1 1\n", "0 POINTS, but DIMENSIONS of 2"},
     {HEAD "DATASET STRUCTURED_GRID\nDIMENSIONS 2 1 1\nPOINTS 3 float\n0 0 0 0 0 0 0 0 0\n", "3 POINTS"},

@@ -138,9 +138,9 @@ static void expect_fields(const char *what, const dataset_block *b, uint64_t poi
                b->blanked_cells[i]);
 }
 
-static uint64_t wrong_coordinates(const float *is, char name, uint64_t count) {
+static uint64_t wrong_coordinates(coordinates is, char name, uint64_t count) {
     uint64_t wrong = 0;
-    for (uint64_t i = 0; i < count; i++) wrong += (double)is[i] != coordinate(i + (uint64_t)name);
+    for (uint64_t i = 0; i < count; i++) wrong += coordinate_at(is, (int64_t)i) != coordinate(i + (uint64_t)name);
     return wrong;
 }
 

@@ -182,8 +182,10 @@ static void test_combustor(const char *data) {
         int64_t found = 0, wrong = 0;
         for (int64_t i = 0; f && i < b->point_count; i++)
             for (size_t k = 0; k < POINTS; k++) {
-                const float *p = b->points + 3 * i;
-                if (p[0] != points[k] || p[1] != points[POINTS + k] || p[2] != points[2 * POINTS + k]) continue;
+                int same = 1;
+                for (size_t a = 0; a < 3; a++)
+                    same = same && (float)coordinate_at(b->points, 3 * i + (int64_t)a) == points[a * POINTS + k];
+                if (!same) continue;
                 found++;
                 wrong += ((const float *)f->values)[i] != density[k];
                 break;

@@ -183,7 +183,12 @@ static void test_complex(uint64_t point_count, uint64_t count) {
     dataset_field fields[8] = {{0}};
     for (int i = 0; i < 8; i++)
         fields[i] = (dataset_field){.name = types[i], .components = 1 + i % 2, .type = (tc_type)i, .values = values};
-    complex_file c = {point_count, points, count, tetrahedra, fields, 8};
+    complex_file c = {.point_count = point_count,
+                      .points = points,
+                      .tetrahedron_count = count,
+                      .tetrahedra = tetrahedra,
+                      .fields = fields,
+                      .field_count = 8};
     EXPECT(complex_write(path_of("c.vtu"), &c) == 0, "%s", failure_text());
     size_t bytes;
     char *text = read_file(path_of("c.vtu"), &bytes);

@@ -218,6 +218,16 @@ typedef struct tc_grid_options {
     const uint8_t *blanked_samples; /* one per sample, nonzero: missing, as one that is not finite; NULL: none */
     const uint8_t *blanked_cells;   /* one per cube, (dims[0] - 1) (dims[1] - 1) (dims[2] - 1) of them, x fastest;
                                        nonzero: the cube is left out; NULL: none */
+
+    /* Grids far from zero. Positions are float32, whose steps grow with the distance from 0 (half a metre at 4,600 km);
+     * so positions, axes and points are taken relative to an origin in double precision, which tc_grid_origin tells and
+     * tc_mesh_data carries. It is 0, 0, 0 unless the grid lies, along an axis, farther from 0 than 8 times its own size
+     * and 512 times its smallest cell; then it is the middle of the grid, rounded. Coordinates in double precision are
+     * borrowed during tc_grid_create only. */
+    const double *axes_f64[3]; /* in place of axes */
+    const double *points_f64;  /* in place of points */
+    int has_origin;            /* nonzero: the origin is the one given here; several grids then share one */
+    double origin[3];
 } tc_grid_options;
 
 typedef struct tc_grid tc_grid;
@@ -230,6 +240,10 @@ TC_API void tc_grid_options_init(tc_grid_options *options);
  * them, so that further isovalues leave most unread. */
 TC_API tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **grid);
 TC_API void tc_grid_destroy(tc_grid *grid); /* waits for what is under way on it */
+
+/* The point in world space that positions of the grid's meshes are relative to: world = origin + position, in double
+ * precision. Of complexes too. */
+TC_API tc_status tc_grid_origin(const tc_grid *grid, double origin[3]);
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
@@ -273,12 +287,13 @@ typedef struct tc_mesh_data {
     uint64_t vertex_count;
     uint64_t triangle_count;
     uint64_t active_cell_count;
-    const float *positions;    /* 3 per vertex, world space */
+    const float *positions;    /* 3 per vertex, world space minus the origin below */
     const float *normals;      /* 3 per vertex, or NULL */
     const uint32_t *triangles; /* 3 vertex indices per triangle */
     uint32_t slab_count;       /* 1 where the grid was processed whole */
     uint32_t reserved;         /* 0 */
     tc_timings timings;
+    double origin[3]; /* as tc_grid_origin tells it: 0, 0, 0 unless the grid lies far from 0 */
 } tc_mesh_data;
 
 typedef struct tc_mesh tc_mesh;
@@ -328,6 +343,7 @@ typedef struct tc_cells {
     const int64_t *connectivity;
     const uint8_t *blanked_points; /* nonzero: missing; cells that contain one are left out whole. NULL: none */
     const uint8_t *blanked_cells;  /* nonzero: left out; NULL: none */
+    const double *points_f64;      /* in place of points: double precision */
 } tc_cells;
 
 /* A conforming tetrahedral complex: tetrahedra of one cell follow each other, in the order of the cells. Where a cell's
@@ -366,6 +382,9 @@ typedef struct tc_complex_options {
     const void *samples; /* one per point; tetrahedra with a sample that is not finite are left out */
     uint64_t tetrahedron_count;
     const uint32_t *tetrahedra; /* 4 points each, ordered as in tc_complex */
+    const double *points_f64;   /* in place of points: double precision, borrowed during tc_complex_create only */
+    int has_origin;             /* as in tc_grid_options */
+    double origin[3];
 } tc_complex_options;
 
 TC_API void tc_complex_options_init(tc_complex_options *options);
@@ -382,8 +401,8 @@ TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options
 
 /* -------------------------------------------------------------------------------------------------- on the device */
 
-/* Buffers of the context's cl_context that a mesh goes to: three floats per vertex, three indices of 32 bits per
- * triangle, as in tc_mesh_data. Buffers for nothing may be NULL. */
+/* Buffers of the context's cl_context that a mesh goes to: three floats per vertex, relative to tc_grid_origin, three
+ * indices of 32 bits per triangle, as in tc_mesh_data. Buffers for nothing may be NULL. */
 typedef struct tc_device_mesh {
     size_t struct_size; /* set by the caller: sizeof(tc_device_mesh) */
     struct _cl_mem *positions;

@@ -23,7 +23,8 @@ typedef struct complex_part {
 typedef struct complex_grid {
     uint32_t point_count;
     uint32_t tetrahedron_count;
-    const float *points;
+    const float *points; /* relative to the grid's origin */
+    float *own_points;   /* what points leads to where they are not the caller's; NULL: they are */
     const uint32_t *tetrahedra;
 
     /* Under an OpenCL engine: */

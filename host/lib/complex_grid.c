@@ -2,7 +2,9 @@
 
 #include "failure.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 void tc_complex_options_init(tc_complex_options *options) {
     if (!options) return;
@@ -15,17 +17,50 @@ static tc_status options_check(const tc_complex_options *o) {
         return (tc_status)fail(
             TC_ERROR_LIMIT, "%llu points and %llu tetrahedra: a complex may have %lu of each; cut it into parts",
             (unsigned long long)o->point_count, (unsigned long long)o->tetrahedron_count, (unsigned long)UINT32_MAX);
-    if (o->point_count && (!o->points || !o->samples))
+    if (o->points && o->points_f64)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has points and points_f64; give one of them");
+    if (o->point_count && ((!o->points && !o->points_f64) || !o->samples))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no points, or no samples at them");
     if (o->tetrahedron_count && !o->tetrahedra)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no tetrahedra");
     if (o->tetrahedron_count && !o->point_count)
         return (tc_status)fail(TC_ERROR_DATA, "the complex has tetrahedra and no points");
-    if ((uintptr_t)o->points % sizeof(float) || (uintptr_t)o->tetrahedra % sizeof(uint32_t))
+    if ((uintptr_t)o->points % sizeof(float) || (uintptr_t)o->points_f64 % sizeof(double) ||
+        (uintptr_t)o->tetrahedra % sizeof(uint32_t))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "points or tetrahedra are not aligned to their type");
     if ((uintptr_t)o->samples % tc_type_bytes(o->type))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
                                tc_type_name(o->type));
+    return origin_check(o->has_origin, o->origin);
+}
+
+static int tetrahedron_corners(const void *source, uint64_t tetrahedron, double corners[][3]) {
+    const tc_complex_options *o = source;
+    const coordinate_array points = {o->points, o->points_f64};
+    const uint32_t *v = o->tetrahedra + 4 * tetrahedron;
+    for (int n = 0; n < 4; n++) {
+        if (v[n] >= o->point_count) return 0; /* found when the tetrahedra are first read */
+        if (!isfinite(value_at(o->type, o->samples, v[n]))) return 0;
+        for (unsigned axis = 0; axis < 3; axis++) corners[n][axis] = coordinate_get(points, 3 * (uint64_t)v[n] + axis);
+    }
+    return 4;
+}
+
+/* Points relative to the origin: the caller's own where they are that already. */
+static tc_status points_take(tc_grid *grid, const tc_complex_options *o) {
+    complex_grid *c = grid->complex;
+    double *origin = grid->origin;
+    if (o->has_origin)
+        memcpy(origin, o->origin, sizeof o->origin);
+    else
+        origin_find(tetrahedron_corners, o, o->tetrahedron_count, origin);
+    c->points = o->points;
+    if (!o->points_f64 && origin[0] == 0 && origin[1] == 0 && origin[2] == 0) return TC_OK;
+    c->points = c->own_points = malloc(3 * sizeof *c->own_points * (size_t)o->point_count + 1);
+    if (!c->own_points)
+        return (tc_status)fail(TC_ERROR_MEMORY, "no memory for %llu points in float32",
+                               (unsigned long long)o->point_count);
+    coordinates_move((coordinate_array){o->points, o->points_f64}, o->point_count, 3, origin, c->own_points);
     return TC_OK;
 }
 
@@ -39,9 +74,8 @@ static tc_status complex_describe(tc_grid *grid, const tc_complex_options *o) {
     grid->dims[1] = grid->dims[2] = 1;
     c->point_count = (uint32_t)o->point_count;
     c->tetrahedron_count = (uint32_t)o->tetrahedron_count;
-    c->points = o->points;
     c->tetrahedra = o->tetrahedra;
-    return TC_OK;
+    return points_take(grid, o);
 }
 
 tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
@@ -71,6 +105,7 @@ void complex_grid_destroy(tc_grid *grid) {
     complex_grid *c = grid->complex;
     if (!c) return;
     complex_device_destroy(grid);
+    free(c->own_points);
     free(c);
 }
 

@@ -124,13 +124,13 @@ void tetrahedra_put(tetrahedron_writer *writer, const uint32_t tetrahedra[][4], 
     for (int n = 0; n < count; n++) writer->cells[place + (unsigned)n] = (uint32_t)cell;
 }
 
-double tetrahedron_volume(const float *points, const uint32_t tetrahedron[4]) {
+double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]) {
     double e[3][3];
-    const float *p0 = points + 3 * (uint64_t)tetrahedron[0];
-    for (int v = 1; v < 4; v++) {
-        const float *p = points + 3 * (uint64_t)tetrahedron[v];
-        for (int axis = 0; axis < 3; axis++) e[v - 1][axis] = (double)p[axis] - (double)p0[axis];
-    }
+    const uint64_t first = 3 * (uint64_t)tetrahedron[0];
+    for (int v = 1; v < 4; v++)
+        for (unsigned axis = 0; axis < 3; axis++)
+            e[v - 1][axis] =
+                coordinate_get(points, 3 * (uint64_t)tetrahedron[v] + axis) - coordinate_get(points, first + axis);
     return (e[0][1] * e[1][2] - e[0][2] * e[1][1]) * e[2][0] + (e[0][2] * e[1][0] - e[0][0] * e[1][2]) * e[2][1] +
            (e[0][0] * e[1][1] - e[0][1] * e[1][0]) * e[2][2];
 }

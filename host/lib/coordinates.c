@@ -37,20 +37,13 @@ static bool floats_finite(const float *at, int64_t count) { return floats_most(a
 
 static bool point_usable(const tc_grid *grid, int64_t n) { return floats_usable(grid->points + 3 * n, 3); }
 
-static bool sample_missing(const tc_grid *grid, int64_t n) {
-    if (grid->blanked_samples && grid->blanked_samples[n]) return true;
-    if (!grid->samples) return false;
-    double value = grid_value_at(grid, n);
-    return !isfinite(value) || (grid->has_nodata && value == grid->nodata);
-}
-
 /* Blanked samples are not looked for. */
 static bool chunk_misses(const tc_grid *grid, int64_t first, int64_t end) {
     bool misses = false;
     if (!grid->samples || !(grid->has_nodata || grid->type == TC_F32 || grid->type == TC_F64)) return false;
     if (grid->type == TC_F32 && !grid->has_nodata)
         return !floats_finite((const float *)grid->samples + first, end - first);
-    for (int64_t n = first; n < end && !misses; n++) misses = sample_missing(grid, n);
+    for (int64_t n = first; n < end && !misses; n++) misses = grid_sample_missing(grid, n);
     return misses;
 }
 
@@ -58,7 +51,7 @@ static void chunk_check(point_check *c, int64_t first, int64_t end) {
     if (!atomic_load(&c->excluded) && chunk_misses(c->grid, first, end)) atomic_store(&c->excluded, true);
     if (floats_usable(c->grid->points + 3 * first, 3 * (end - first))) return;
     atomic_store(&c->excluded, true);
-    while (first < end && (point_usable(c->grid, first) || sample_missing(c->grid, first))) first++;
+    while (first < end && (point_usable(c->grid, first) || grid_sample_missing(c->grid, first))) first++;
     long long fault = atomic_load(&c->fault);
     while (first < end && first < fault && !atomic_compare_exchange_weak(&c->fault, &fault, first)) {
     }
@@ -78,13 +71,14 @@ static tc_status points_check(const tc_grid *grid, bool *excluded) {
     int64_t n = atomic_load(&c.fault);
     *excluded = atomic_load(&c.excluded);
     if (n == c.count) return TC_OK;
-    const float *p = grid->points + 3 * n;
+    double p[3];
+    for (int axis = 0; axis < 3; axis++) p[axis] = coordinate_get(grid->given_points, 3 * (uint64_t)n + (uint64_t)axis);
     return (tc_status)fail(
         TC_ERROR_DATA,
         "point %lld, %lld, %lld of the grid is at %g, %g, %g: coordinates have to be finite and below "
         "1.7e38 but for missing samples; blank the sample, if there is nothing there",
         (long long)(n % grid->dims[0]), (long long)(n / grid->dims[0] % grid->dims[1]),
-        (long long)(n / grid->dims[0] / grid->dims[1]), (double)p[0], (double)p[1], (double)p[2]);
+        (long long)(n / grid->dims[0] / grid->dims[1]), p[0], p[1], p[2]);
 }
 
 /* ----------------------------------------------------------------------------------------------------- orientation */
@@ -158,7 +152,7 @@ static void cube_planes_release(cube_planes *planes) {
 
 static void samples_judge(const tc_grid *grid, int64_t z, uint8_t *out) {
     int64_t plane = grid->dims[0] * grid->dims[1], first = z * plane;
-    for (int64_t n = 0; n < plane; n++) out[n] = sample_missing(grid, first + n) || !point_usable(grid, first + n);
+    for (int64_t n = 0; n < plane; n++) out[n] = grid_sample_missing(grid, first + n) || !point_usable(grid, first + n);
 }
 
 /* The cubes between two planes of samples; none where z is past the last ones. */
@@ -208,12 +202,92 @@ static tc_status counted_add(flux *f) {
     return TC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ kinds */
+/* ---------------------------------------------------------------------------------------------------------- origin */
+
+static int cube_corners(const void *source, uint64_t cube, double corners[][3]) {
+    const tc_grid *grid = source;
+    const int64_t *dims = grid->dims, nx = dims[0] - 1, ny = dims[1] - 1, n = (int64_t)cube;
+    if (grid->blanked_cells && grid->blanked_cells[n]) return 0;
+    for (int c = 0; c < 8; c++) {
+        const int64_t x = n % nx + (c & 1), y = n / nx % ny + (c >> 1 & 1), z = n / nx / ny + (c >> 2);
+        const int64_t sample = (z * dims[1] + y) * dims[0] + x;
+        if (grid_sample_missing(grid, sample)) return 0;
+        for (int axis = 0; axis < 3; axis++)
+            corners[c][axis] = coordinate_get(grid->given_points, (uint64_t)(3 * sample + axis));
+    }
+    return 8;
+}
+
+static void axes_extent(const tc_grid *grid, extent *e) {
+    *e = extent_empty;
+    for (int axis = 0; axis < 3; axis++)
+        for (int64_t n = 0; n + 1 < grid->dims[axis]; n++) {
+            double interval[2][3] = {{0}};
+            extent one = extent_empty;
+            for (int end = 0; end < 2; end++)
+                interval[end][axis] = coordinate_get(grid->given_axes[axis], (uint64_t)(n + end));
+            extent_add(&one, (const double(*)[3])interval, 2);
+            if (one.low[axis] < e->low[axis]) e->low[axis] = one.low[axis];
+            if (one.high[axis] > e->high[axis]) e->high[axis] = one.high[axis];
+            if (one.cell[axis] < e->cell[axis]) e->cell[axis] = one.cell[axis];
+        }
+}
+
+static void origin_take(tc_grid *grid, const double *given) {
+    const int64_t *dims = grid->dims;
+    extent e;
+    if (given) {
+        for (int axis = 0; axis < 3; axis++) grid->origin[axis] = given[axis];
+    } else if (grid->kind == GRID_CURVILINEAR) {
+        origin_find(cube_corners, grid, (uint64_t)((dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1)), grid->origin);
+    } else {
+        axes_extent(grid, &e);
+        origin_choose(&e, grid->origin);
+    }
+}
+
+static tc_status own_coordinates_allocate(tc_grid *grid, uint64_t count) {
+    if (count <= SIZE_MAX / sizeof *grid->own_coordinates)
+        grid->own_coordinates = malloc((size_t)count * sizeof *grid->own_coordinates);
+    return grid->own_coordinates ? TC_OK
+                                 : (tc_status)fail(TC_ERROR_MEMORY, "no memory for %llu coordinates in float32",
+                                                   (unsigned long long)count);
+}
+
+/* Points relative to the origin: the caller's own where they are that already. */
+static tc_status points_move(tc_grid *grid) {
+    const double *o = grid->origin;
+    const uint64_t count = (uint64_t)grid_sample_count(grid);
+    grid->points = grid->given_points.f32;
+    if (grid->points && o[0] == 0 && o[1] == 0 && o[2] == 0) return TC_OK;
+    tc_status status = own_coordinates_allocate(grid, 3 * count);
+    if (status) return status;
+    coordinates_move(grid->given_points, count, 3, o, grid->own_coordinates);
+    grid->points = grid->own_coordinates;
+    return TC_OK;
+}
+
+static tc_status axes_move(tc_grid *grid) {
+    const double *o = grid->origin;
+    const int64_t *dims = grid->dims;
+    for (int axis = 0; axis < 3; axis++) grid->axes[axis] = grid->given_axes[axis].f32;
+    if (grid->axes[0] && o[0] == 0 && o[1] == 0 && o[2] == 0) return TC_OK;
+    tc_status status = own_coordinates_allocate(grid, (uint64_t)(dims[0] + dims[1] + dims[2]));
+    float *to = grid->own_coordinates;
+    for (int axis = 0; axis < 3 && !status; to += dims[axis++]) {
+        coordinates_move(grid->given_axes[axis], (uint64_t)dims[axis], 1, &o[axis], to);
+        grid->axes[axis] = to;
+    }
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- kinds */
 
 static tc_status points_take(tc_grid *grid) {
     bool excluded;
     flux f = {.grid = grid};
-    tc_status status = points_check(grid, &excluded);
+    tc_status status = points_move(grid);
+    if (!status) status = points_check(grid, &excluded);
     if (status) return status;
     if (excluded || grid->blanked_samples || grid->blanked_cells)
         status = counted_add(&f);
@@ -225,20 +299,22 @@ static tc_status points_take(tc_grid *grid) {
 
 static tc_status axes_take(tc_grid *grid) {
     double direction = 1;
-    for (int axis = 0; axis < 3; axis++) {
+    tc_status status = axes_move(grid);
+    for (int axis = 0; axis < 3 && !status; axis++) {
         const float *at = grid->axes[axis];
         for (int64_t n = 0; n < grid->dims[axis]; n++)
             if (!coordinate_usable(at[n]))
                 return (tc_status)fail(TC_ERROR_DATA,
                                        "position %lld along %c is %g: coordinates have to be finite and below 1.7e38",
-                                       (long long)n, 'x' + axis, (double)at[n]);
+                                       (long long)n, 'x' + axis, coordinate_get(grid->given_axes[axis], (uint64_t)n));
         float first = at[0], last = at[grid->dims[axis] - 1];
         direction *= last > first ? 1 : last < first ? -1 : 0;
     }
     grid->mirrored = direction < 0;
-    return TC_OK;
+    return status;
 }
 
-tc_status coordinates_take(tc_grid *grid) {
+tc_status coordinates_take(tc_grid *grid, const double *origin) {
+    origin_take(grid, origin);
     return grid->kind == GRID_RECTILINEAR ? axes_take(grid) : points_take(grid);
 }

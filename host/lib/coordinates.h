@@ -1,5 +1,6 @@
 /*
- * coordinates.h - coordinates of rectilinear and curvilinear grids: checked, and which way round the grid is
+ * coordinates.h - coordinates of rectilinear and curvilinear grids: moved to their origin (origin.h), checked, and
+ * which way round the grid is
  *
  * Winding has one sign per grid: that of the Jacobian's integral over its cubes. Over one cube that is the flux of
  * position / 3 through its six faces, a face's being the mean of its two triangulations'; faces between two cubes that
@@ -18,8 +19,9 @@
 /* Finite, and so are differences. */
 static inline bool coordinate_usable(float value) { return fabsf(value) < 0x1p127f; }
 
-/* Sets grid->mirrored. TC_ERROR_DATA for coordinates of a present sample that are not finite, or so large that their
- * difference may not be: 2^127 and beyond. Everything but the device is described already. */
-tc_status coordinates_take(tc_grid *grid);
+/* Sets the grid's origin (NULL: the one that fits it), its axes or points relative to that, and whether it is mirrored.
+ * TC_ERROR_DATA for coordinates of a present sample that are not finite, or so large that their difference may not be:
+ * 2^127 and beyond. Everything but the device is described already. */
+tc_status coordinates_take(tc_grid *grid, const double *origin);
 
 #endif

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 void tc_extract_options_init(tc_extract_options *options) {
     if (!options) return;
@@ -43,6 +44,7 @@ void tc_grid_destroy(tc_grid *grid) {
     if (!grid) return;
     complex_grid_destroy(grid);
     structured_grid_destroy(grid);
+    grid_release(grid);
     free(grid);
 }
 
@@ -109,6 +111,7 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     tc_status status = extract_options_take(&o, options);
     if (!status) status = trial_run(grid, &o, true);
     if (!status) status = grid_extract(grid, &o, mesh);
+    if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);
     if (!status) status = trial_run(grid, &o, true); /* of other kernels, where missing samples were met */
     if (status) mesh_clear(mesh);
     if (status && !*out) {

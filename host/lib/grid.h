@@ -4,7 +4,10 @@
 #ifndef GRID_H
 #define GRID_H
 
+#include "origin.h"
 #include "tetracubes.h"
+
+#include <math.h>
 
 #include <stdbool.h>
 
@@ -27,8 +30,11 @@ struct tc_grid {
     grid_kind kind;
     float matrix[12];       /* uniform: rows of the index-to-world map: m0 m1 m2 o */
     float normal_matrix[9]; /* inverse transposed, scaled by a positive number: index gradients to world directions */
+    double origin[3];       /* world coordinates minus this are what matrix, axes and points give */
     const float *axes[3];   /* rectilinear */
     const float *points;    /* curvilinear */
+    coordinate_array given_axes[3], given_points; /* as the caller gave them, while the grid is described */
+    float *own_coordinates; /* what axes or points lead to where they are not the caller's; NULL: they are */
     const uint8_t *blanked_samples, *blanked_cells; /* or NULL */
     bool mirrored;                                  /* negative determinant, or sum of the Jacobians */
     struct device_grid *device;                     /* NULL under the reference engine */
@@ -38,8 +44,12 @@ struct tc_grid {
 /* The caller's options, complete and checked. */
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
 
-/* Checks the options and fills *grid but for context and device. */
+/* Checks the options and fills *grid but for context and device; to be released in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
+void grid_release(tc_grid *grid);
+
+/* TC_ERROR_ARGUMENT for an origin that the caller gives and that is no place. */
+tc_status origin_check(int has_origin, const double origin[3]);
 
 int64_t grid_sample_count(const tc_grid *grid);
 
@@ -74,5 +84,13 @@ static inline double value_at(tc_type type, const void *values, int64_t n) {
 
 /* A sample in the host's memory. */
 static inline double grid_value_at(const tc_grid *grid, int64_t n) { return value_at(grid->type, grid->samples, n); }
+
+/* A sample that is blanked or has no value; where samples are in cl_samples only the first can be known. */
+static inline bool grid_sample_missing(const tc_grid *grid, int64_t n) {
+    if (grid->blanked_samples && grid->blanked_samples[n]) return true;
+    if (!grid->samples) return false;
+    double value = grid_value_at(grid, n);
+    return !isfinite(value) || (grid->has_nodata && value == grid->nodata);
+}
 
 #endif

@@ -4,6 +4,7 @@
 #include "failure.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, bool normals) {
     if (vertex_count > UINT32_MAX)
@@ -24,6 +25,7 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
 void mesh_clear(tc_mesh *mesh) {
     mesh->vertex_count = mesh->triangle_count = mesh->active_cell_count = 0;
     mesh->has_normals = false;
+    memset(mesh->origin, 0, sizeof mesh->origin);
     mesh->slab_count = 1;
     mesh->timings = (tc_timings){0};
 }
@@ -40,7 +42,8 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
                                 .normals = mesh->vertex_count && mesh->has_normals ? mesh->normals.memory : NULL,
                                 .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
                                 .slab_count = mesh->slab_count,
-                                .timings = mesh->timings};
+                                .timings = mesh->timings,
+                                .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
     result_give(data, &found);
     return TC_OK;
 }

@@ -14,6 +14,7 @@ struct tc_mesh {
     uint64_t triangle_count;
     uint64_t active_cell_count;
     bool has_normals;
+    double origin[3]; /* that positions are relative to */
     host_block positions;
     host_block normals;
     host_block triangles;

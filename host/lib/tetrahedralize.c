@@ -6,9 +6,9 @@
 
 #include "cell_split.h"
 #include "context.h"
-#include "coordinates.h"
 #include "failure.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef enum cell_verdict { CELL_GOOD, CELL_SKIPPED, CELL_BAD } cell_verdict;
@@ -32,12 +32,20 @@ static bool cell_blanked(const tc_cells *cells, uint64_t c, const int64_t *point
     return false;
 }
 
+static coordinate_array points_of(const tc_cells *cells) {
+    return (coordinate_array){cells->points, cells->points_f64};
+}
+
+static bool point_usable(const tc_cells *cells, uint32_t point) {
+    for (unsigned axis = 0; axis < 3; axis++)
+        if (!(fabs(coordinate_get(points_of(cells), 3 * (uint64_t)point + axis)) < 0x1p127)) return false;
+    return true;
+}
+
 /* The first of the cell's corners whose coordinates are not usable, or count. */
 static int unusable_corner(const tc_cells *cells, const uint32_t corners[], int count) {
-    for (int n = 0; n < count; n++) {
-        const float *p = cells->points + 3 * (uint64_t)corners[n];
-        if (!coordinate_usable(p[0]) || !coordinate_usable(p[1]) || !coordinate_usable(p[2])) return n;
-    }
+    for (int n = 0; n < count; n++)
+        if (!point_usable(cells, corners[n])) return n;
     return count;
 }
 
@@ -69,7 +77,7 @@ static void cell_orient(const tc_cells *cells, uint32_t tetrahedra[][4], int cou
     double sum = 0;
     bool positive = false, negative = false;
     for (int n = 0; n < count; n++) {
-        double volume = tetrahedron_volume(cells->points, tetrahedra[n]);
+        double volume = tetrahedron_volume(points_of(cells), tetrahedra[n]);
         positive = positive || volume > 0;
         negative = negative || volume < 0;
         sum += volume;
@@ -103,13 +111,13 @@ static bool cells_cut(const void *source, uint64_t first, uint64_t end, tetrahed
 static tc_status position_refuse(const tc_cells *cells, uint64_t c, const uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
     uint32_t point = corners[unusable_corner(cells, corners, type->corner_count)];
-    const float *p = cells->points + 3 * (uint64_t)point;
+    double p[3];
+    for (unsigned axis = 0; axis < 3; axis++) p[axis] = coordinate_get(points_of(cells), 3 * (uint64_t)point + axis);
     return (tc_status)fail(TC_ERROR_DATA,
                            "point %lu of cell %llu, a %s, is at %g, %g, %g: coordinates have to be finite and below "
                            "1.7e38 but for points that no cell uses; blank the point or the cell, if there is nothing "
                            "there",
-                           (unsigned long)point, (unsigned long long)c, type->name, (double)p[0], (double)p[1],
-                           (double)p[2]);
+                           (unsigned long)point, (unsigned long long)c, type->name, p[0], p[1], p[2]);
 }
 
 /* corners: as cell_look left them. */
@@ -152,12 +160,15 @@ static tc_status cells_check(const tc_cells *cells) {
                                (unsigned long)UINT32_MAX);
     if (cells->cell_count && (!cells->types || !cells->offsets))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "cells need their types and offsets");
-    if ((uintptr_t)cells->points % sizeof(float) || (uintptr_t)cells->offsets % sizeof(int64_t) ||
-        (uintptr_t)cells->connectivity % sizeof(int64_t))
+    if (cells->points && cells->points_f64)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "cells have points and points_f64; give one of them");
+    if ((uintptr_t)cells->points % sizeof(float) || (uintptr_t)cells->points_f64 % sizeof(double) ||
+        (uintptr_t)cells->offsets % sizeof(int64_t) || (uintptr_t)cells->connectivity % sizeof(int64_t))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "points, offsets or connectivity are not aligned to their type");
     if (cells->cell_count && cells->offsets[0] < 0)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the offsets of the cells begin below 0");
-    if (cells->cell_count && cells->offsets[cells->cell_count] && (!cells->connectivity || !cells->points))
+    if (cells->cell_count && cells->offsets[cells->cell_count] &&
+        (!cells->connectivity || (!cells->points && !cells->points_f64)))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "cells need their connectivity and points");
     return TC_OK;
 }

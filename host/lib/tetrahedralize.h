@@ -7,6 +7,7 @@
 #ifndef TETRAHEDRALIZE_H
 #define TETRAHEDRALIZE_H
 
+#include "origin.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>
@@ -38,6 +39,6 @@ tc_status complex_make(block_function *block, const void *source, uint64_t cell_
 void tetrahedra_put(tetrahedron_writer *writer, const uint32_t tetrahedra[][4], int count, uint64_t cell);
 
 /* Six times the volume, positive where (v1 - v0) x (v2 - v0) . (v3 - v0) is. */
-double tetrahedron_volume(const float *points, const uint32_t tetrahedron[4]);
+double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]);
 
 #endif

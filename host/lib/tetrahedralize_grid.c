@@ -9,30 +9,22 @@
 #include "grid.h"
 #include "tables.h"
 
-#include <math.h>
-
 typedef struct grid_source {
     tc_grid grid;
     bool may_miss; /* samples */
 } grid_source;
 
-static bool sample_missing(const grid_source *s, uint64_t n) {
-    if (s->grid.blanked_samples && s->grid.blanked_samples[n]) return true;
-    double value = grid_value_at(&s->grid, (int64_t)n);
-    return !isfinite(value) || (s->grid.has_nodata && value == s->grid.nodata);
-}
-
 static bool cube_missing(const grid_source *s, uint64_t cube, const uint32_t corners[8]) {
     if (s->grid.blanked_cells && s->grid.blanked_cells[cube]) return true;
     for (int c = 0; c < 8 && s->may_miss; c++)
-        if (sample_missing(s, corners[c])) return true;
+        if (grid_sample_missing(&s->grid, corners[c])) return true;
     return false;
 }
 
 static bool cube_folded(const grid_source *s, const uint32_t tetrahedra[][4]) {
     bool positive = false, negative = false;
     for (int n = 0; n < TETRAHEDRA_PER_CUBE; n++) {
-        double volume = tetrahedron_volume(s->grid.points, tetrahedra[n]);
+        double volume = tetrahedron_volume(s->grid.given_points, tetrahedra[n]);
         positive = positive || volume > 0;
         negative = negative || volume < 0;
     }
@@ -70,6 +62,15 @@ static bool cubes_cut(const void *source, uint64_t first, uint64_t end, tetrahed
     return true;
 }
 
+static tc_status source_check(const tc_grid *grid) {
+    if (!grid->samples)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize_grid takes samples, not cl_samples");
+    if (grid_sample_count(grid) > UINT32_MAX)
+        return (tc_status)fail(TC_ERROR_LIMIT, "%lld samples: the points of a complex are limited to %lu",
+                               (long long)grid_sample_count(grid), (unsigned long)UINT32_MAX);
+    return TC_OK;
+}
+
 tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *complex) {
     grid_source s;
     tc_grid_options o;
@@ -78,16 +79,13 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *com
     tc_grid_options_init(&o);
     tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: complex");
     if (!status) status = options_take(&o, sizeof o, options, "grid options");
-    if (!status) status = grid_describe(&o, &s.grid);
     if (status) return status;
-    if (!s.grid.samples)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize_grid takes samples, not cl_samples");
-    if (grid_sample_count(&s.grid) > UINT32_MAX)
-        return (tc_status)fail(TC_ERROR_LIMIT, "%lld samples: the points of a complex are limited to %lu",
-                               (long long)grid_sample_count(&s.grid), (unsigned long)UINT32_MAX);
+    status = grid_describe(&o, &s.grid);
+    if (!status) status = source_check(&s.grid);
     s.may_miss = s.grid.blanked_samples || s.grid.has_nodata || s.grid.type >= TC_F32;
     const uint64_t cubes = (uint64_t)((s.grid.dims[0] - 1) * (s.grid.dims[1] - 1) * (s.grid.dims[2] - 1));
-    status = complex_make(cubes_cut, &s, cubes, &made, &bad_cell);
+    if (!status) status = complex_make(cubes_cut, &s, cubes, &made, &bad_cell);
+    grid_release(&s.grid);
     if (!status) result_give(complex, &made);
     return status;
 }

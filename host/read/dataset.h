@@ -18,17 +18,25 @@ typedef struct dataset_field {
     const void *values;
 } dataset_field;
 
+/* Coordinates in the precision that the file has: one of the two leads anywhere. */
+typedef struct coordinates {
+    const float *f32;
+    const double *f64;
+} coordinates;
+
+static inline double coordinate_at(coordinates c, int64_t n) { return c.f64 ? c.f64[n] : (double)c.f32[n]; }
+
 enum grid_kind { GRID_UNIFORM, GRID_RECTILINEAR, GRID_CURVILINEAR, GRID_UNSTRUCTURED };
 
 typedef struct dataset_block {
     enum grid_kind kind;
     int64_t point_count, cell_count;
 
-    int64_t dims[3];      /* all but unstructured: points along x, y, z; cells are cubes between them */
-    int64_t first[3];     /* extent index of the first point */
-    double matrix[3][4];  /* uniform: index space to world, as tc_grid_options.matrix */
-    const float *axes[3]; /* rectilinear: dims[a] positions along each axis */
-    const float *points;  /* curvilinear and unstructured: x, y, z of every point */
+    int64_t dims[3];     /* all but unstructured: points along x, y, z; cells are cubes between them */
+    int64_t first[3];    /* extent index of the first point */
+    double matrix[3][4]; /* uniform: index space to world, as tc_grid_options.matrix */
+    coordinates axes[3]; /* rectilinear: dims[a] positions along each axis */
+    coordinates points;  /* curvilinear and unstructured: x, y, z of every point */
 
     const uint8_t *cell_types;   /* unstructured: VTK's numbers of cell types */
     const int64_t *cell_offsets; /* cell_count + 1: where in cell_points the points of a cell begin */

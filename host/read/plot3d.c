@@ -139,6 +139,9 @@ static void *arena_take(arena *a, uint64_t bytes) {
     return memory;
 }
 
+/* Of a coordinate: text has as many digits as it has. */
+static uint64_t point_bytes(const pairing *p) { return (uint64_t)p->grid->value_bytes; }
+
 static uint64_t field_bytes(const pairing *p) {
     return p->data->encoding != PLOT3D_TEXT && p->data->value_bytes == 8 ? 8 : 4;
 }
@@ -157,7 +160,7 @@ static uint64_t count_bytes(const pairing *p) {
     uint64_t bytes = 0;
     for (int64_t n = 0; n < p->grid->block_count; n++) {
         uint64_t points = p->grid->blocks[n].points;
-        bytes += rounded(points * 3 * sizeof(float)) + rounded(points);
+        bytes += rounded(points * 3 * point_bytes(p)) + rounded(points);
         if (!p->data) continue;
         bytes += p->data->blocks[n].variables * rounded(points * field_bytes(p));
         if (has_pressure(p)) bytes += rounded(points * sizeof(float));
@@ -167,27 +170,44 @@ static uint64_t count_bytes(const pairing *p) {
 
 /* ----------------------------------------------------------------------------------------------------------- blocks */
 
+/* A point that is not blanked and has a coordinate that is not finite; count where there is none. Those of blanked ones
+ * become 0. */
+static uint64_t settle_points(coordinates points, uint64_t count, const uint8_t *blanked) {
+    for (uint64_t i = 0; i < count; i++) {
+        int64_t at = 3 * (int64_t)i;
+        if (isfinite(coordinate_at(points, at)) && isfinite(coordinate_at(points, at + 1)) &&
+            isfinite(coordinate_at(points, at + 2)))
+            continue;
+        if (!blanked || !blanked[i]) return i;
+        for (int64_t a = at; a < at + 3; a++) {
+            if (points.f64) ((double *)(uintptr_t)points.f64)[a] = 0;
+            if (points.f32) ((float *)(uintptr_t)points.f32)[a] = 0;
+        }
+    }
+    return count;
+}
+
 static int load_points(const pairing *p, int64_t n, arena *memory, dataset_block *out) {
     const plot3d_block *from = &p->grid->blocks[n];
-    float *points = arena_take(memory, from->points * 3 * sizeof *points);
-    for (uint64_t a = 0; a < 3; a++)
-        plot3d_load_f32(p->grid_file, p->grid, from->values + a * from->points * (uint64_t)p->grid->value_bytes,
-                        from->points, points + a, 3);
-    uint8_t *blanked = is_any_blanked(p, from) ? arena_take(memory, from->points) : NULL;
-    for (uint64_t i = 0; i < from->points; i++) {
-        float *at = points + 3 * i;
-        if (blanked) blanked[i] = (uint8_t)plot3d_is_blanked(p->grid_file, p->grid, from, i);
-        if (isfinite(at[0]) && isfinite(at[1]) && isfinite(at[2])) continue;
-        if (!blanked || !blanked[i])
-            return fail(STATUS_INPUT,
-                        "%s: point %" PRIu64 " of block %" PRId64
-                        " has a coordinate that is not finite in single precision; blank the point or correct it",
-                        p->grid_file->path, i, n + 1);
-        at[0] = at[1] = at[2] = 0;
+    void *points = arena_take(memory, from->points * 3 * point_bytes(p));
+    for (uint64_t a = 0; a < 3; a++) {
+        uint64_t values = from->values + a * from->points * (uint64_t)p->grid->value_bytes;
+        if (point_bytes(p) == 8)
+            plot3d_load_f64(p->grid_file, p->grid, values, from->points, (double *)points + a, 3);
+        else
+            plot3d_load_f32(p->grid_file, p->grid, values, from->points, (float *)points + a, 3);
     }
-    out->points = points;
+    uint8_t *blanked = is_any_blanked(p, from) ? arena_take(memory, from->points) : NULL;
+    for (uint64_t i = 0; blanked && i < from->points; i++)
+        blanked[i] = (uint8_t)plot3d_is_blanked(p->grid_file, p->grid, from, i);
+    out->points = point_bytes(p) == 8 ? (coordinates){.f64 = points} : (coordinates){.f32 = points};
     out->blanked_points = blanked;
-    return 0;
+    uint64_t fault = settle_points(out->points, from->points, blanked);
+    if (fault == from->points) return 0;
+    return fail(STATUS_INPUT,
+                "%s: point %" PRIu64 " of block %" PRId64
+                " has a coordinate that is not finite; blank the point or correct it",
+                p->grid_file->path, fault, n + 1);
 }
 
 static const char *variable_name(char *names, uint64_t variable) { return names + variable * NAME_BYTES; }
@@ -205,7 +225,7 @@ static void derive_chunk(const pairing *p, const plot3d_block *from, uint64_t fi
     int has_gamma = p->data->content == PLOT3D_OVERFLOW && from->variables > GAMMA_VARIABLE;
     for (uint64_t v = 0; v < SOLUTION_VARIABLES + (has_gamma ? 1U : 0U); v++)
         plot3d_load_f64(p->data_file, p->data,
-                        from->values + (v * from->points + first) * (uint64_t)p->data->value_bytes, count, q[v]);
+                        from->values + (v * from->points + first) * (uint64_t)p->data->value_bytes, count, q[v], 1);
     for (uint64_t i = 0; i < count; i++) {
         double gamma = has_gamma ? q[GAMMA_VARIABLE][i] : GAMMA;
         double square = q[1][i] * q[1][i] + q[2][i] * q[2][i] + q[3][i] * q[3][i];
@@ -227,7 +247,7 @@ static int load_fields(const pairing *p, int64_t n, arena *memory, char *names, 
         void *values = arena_take(memory, from->points * field_bytes(p));
         uint64_t offset = from->values + v * from->points * (uint64_t)p->data->value_bytes;
         if (field_bytes(p) == 8)
-            plot3d_load_f64(p->data_file, p->data, offset, from->points, values);
+            plot3d_load_f64(p->data_file, p->data, offset, from->points, values, 1);
         else
             plot3d_load_f32(p->data_file, p->data, offset, from->points, values, 1);
         status = add_field(out, variable_name(names, v), field_bytes(p) == 8 ? TC_F64 : TC_F32, values);

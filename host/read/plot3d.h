@@ -64,10 +64,11 @@ int plot3d_is_physical(const plot3d_file *file, const plot3d_form *form);
 /* "big-endian C binary, f32, 1 block, grid with IBLANK" */
 const char *plot3d_describe(const plot3d_form *form, char text[128]);
 
-/* `count` values from an offset on. */
+/* `count` values from an offset on, to every stride-th place. */
 void plot3d_load_f32(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, float *out,
                      uint64_t stride);
-void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out);
+void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out,
+                     uint64_t stride);
 
 /* Whether the IBLANK value at that index is 0. */
 int plot3d_is_blanked(const plot3d_file *file, const plot3d_form *form, const plot3d_block *block, uint64_t index);

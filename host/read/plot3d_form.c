@@ -79,10 +79,11 @@ void plot3d_load_f32(const plot3d_file *file, const plot3d_form *form, uint64_t 
         out[i * stride] = (float)value_at(from + i * (uint64_t)bytes, bytes, big_endian);
 }
 
-void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out) {
+void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out,
+                     uint64_t stride) {
     const unsigned char *from = file->bytes + offset;
     int bytes = form->value_bytes, big_endian = form->big_endian;
-    for (uint64_t i = 0; i < count; i++) out[i] = value_at(from + i * (uint64_t)bytes, bytes, big_endian);
+    for (uint64_t i = 0; i < count; i++) out[i * stride] = value_at(from + i * (uint64_t)bytes, bytes, big_endian);
 }
 
 static int integer_bytes(const plot3d_form *form) { return form->encoding == PLOT3D_TEXT ? 8 : 4; }
@@ -104,7 +105,7 @@ int plot3d_is_physical(const plot3d_file *file, const plot3d_form *form) {
         uint64_t count = block->points * block->variables, step = count / PROBED_VALUES + 1;
         for (uint64_t i = 0; i < count; i += step) {
             double value;
-            plot3d_load_f64(file, form, block->values + i * (uint64_t)form->value_bytes, 1, &value);
+            plot3d_load_f64(file, form, block->values + i * (uint64_t)form->value_bytes, 1, &value, 1);
             double size = fabs(value);
             if (!(size == 0 || (size >= PHYSICAL_LOW && size <= PHYSICAL_HIGH))) return 0;
         }

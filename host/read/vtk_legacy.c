@@ -89,18 +89,19 @@ static int read_header(legacy *r) {
 
 /* ------------------------------------------------------------------------------------------------------ geometry */
 
-/* Coordinates as float32, which must hold them. */
-static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t components, const float **out) {
+/* Coordinates in their own precision; integers of 32 bits and more become doubles. */
+static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t components, coordinates *out) {
     void *values = NULL;
     uint64_t unfit = 0;
     int type = 0, status = legacy_type(r, &type);
     if (status) return status;
     if (type >= LEGACY_STRING) return legacy_fail(r, "has texts for %s; numbers are needed", what);
-    if ((status = legacy_array(r, what, type, count, components, TC_F32, &values, &unfit))) return status;
-    if (unfit)
-        return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite as float32; correct them", unfit,
-                           what);
-    *out = values;
+    const int wanted = type <= TC_I16 || type == TC_F32 || type == LEGACY_BIT ? TC_F32 : TC_F64;
+    if ((status = legacy_array(r, what, type, count, components, wanted, &values, &unfit))) return status;
+    const int is_real = type == TC_F32 || type == TC_F64; /* of integers the unfit ones are rounded */
+    if (unfit && is_real)
+        return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite; correct them", unfit, what);
+    *out = wanted == TC_F32 ? (coordinates){.f32 = values} : (coordinates){.f64 = values};
     return 0;
 }
 
@@ -203,6 +204,8 @@ static int read_section(legacy *r, const char *keyword, int *known) {
 
 /* ---------------------------------------------------------------------------------- the whole, once it is read */
 
+static int has_points(const dataset_block *b) { return b->points.f32 || b->points.f64; }
+
 static int count_structured(legacy *r) {
     dataset_block *b = r->block;
     int64_t points = 1, cells = 1;
@@ -212,7 +215,7 @@ static int count_structured(legacy *r) {
             return legacy_fail(r, "has DIMENSIONS of more than 2^63 points; it is damaged");
         if (b->dims[a] > 1) cells *= b->dims[a] - 1;
     }
-    if (b->kind == GRID_CURVILINEAR && (!b->points || b->point_count != points))
+    if (b->kind == GRID_CURVILINEAR && (!has_points(b) || b->point_count != points))
         return legacy_fail(r, "has %" PRId64 " POINTS, but DIMENSIONS of %" PRId64, b->point_count, points);
     b->point_count = points;
     b->cell_count = cells;
@@ -221,7 +224,7 @@ static int count_structured(legacy *r) {
 
 static int check_geometry(legacy *r) {
     dataset_block *b = r->block;
-    if (b->kind == GRID_UNSTRUCTURED) return b->points ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
+    if (b->kind == GRID_UNSTRUCTURED) return has_points(b) ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
     int status = count_structured(r);
     if (status) return status;
     for (int a = 0; a < 3; a++) {

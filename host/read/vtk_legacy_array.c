@@ -178,7 +178,7 @@ int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t 
     } else {
         if (!(*out = dataset_allocate(r->out, count * element_bytes(wanted)))) return STATUS_FAILED;
         int is_native = type == wanted || (type == LEGACY_BIT && wanted == TC_U8);
-        if (is_native && !(unfit && wanted == TC_F32))
+        if (is_native && !(unfit && wanted >= TC_F32)) /* else all are looked at: coordinates */
             status = legacy_decode(r, what, type, count, *out);
         else
             status = read_converted(r, what, type, count, wanted, *out, unfit);

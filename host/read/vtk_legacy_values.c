@@ -183,18 +183,8 @@ static uint64_t to_f32(int type, const uint8_t *from, uint64_t count, void *to) 
         CONVERT(uint16_t, float, 1);
     case TC_I16:
         CONVERT(int16_t, float, 1);
-    case TC_U32:
-        CONVERT(uint32_t, float, 1);
-    case TC_I32:
-        CONVERT(int32_t, float, 1);
-    case TC_F32:
-        CONVERT(float, float, isfinite(result));
-    case TC_F64:
-        CONVERT(double, float, isfinite(result));
-    case ELEMENT_I64:
-        CONVERT(int64_t, float, 1);
     default:
-        CONVERT(uint64_t, float, 1);
+        CONVERT(float, float, isfinite(result));
     }
 }
 
@@ -221,11 +211,22 @@ static uint64_t to_i64(int type, const uint8_t *from, uint64_t count, void *to) 
     }
 }
 
-/* The range is checked before the way back: what rounds to the power of two itself would overflow there. */
+/* Coordinates and 64-bit integers. Of the latter the range is checked before the way back: what rounds to the power of
+ * two itself would overflow there. */
 static uint64_t to_f64(int type, const uint8_t *from, uint64_t count, void *to) {
     uint64_t unfit = 0;
-    if (type == ELEMENT_I64) CONVERT(int64_t, double, result < 0x1p63 && (int64_t)result == value);
-    CONVERT(uint64_t, double, result < 0x1p64 && (uint64_t)result == value);
+    switch (type) {
+    case TC_U32:
+        CONVERT(uint32_t, double, 1);
+    case TC_I32:
+        CONVERT(int32_t, double, 1);
+    case TC_F64:
+        CONVERT(double, double, isfinite(result));
+    case ELEMENT_I64:
+        CONVERT(int64_t, double, result < 0x1p63 && (int64_t)result == value);
+    default:
+        CONVERT(uint64_t, double, result < 0x1p64 && (uint64_t)result == value);
+    }
 }
 
 static uint64_t to_u8(const uint8_t *from, uint64_t count, void *to) {

@@ -53,21 +53,33 @@ static void note_more(xml_reader *r, const xml_values *v) {
 /* ---------------------------------------------------------------------------------------------------------- values */
 
 /* Brings values of the stored type: in the file, or in memory of the dataset. */
+static int load_opened(xml_reader *r, xml_values *v, const void **values) {
+    int status = 0;
+    *values = v->in_place;
+    if (v->in_place) {
+        r->uses_file = 1;
+    } else {
+        void *memory = reader_memory(r, v->bytes);
+        if (!memory) return STATUS_FAILED;
+        *values = memory;
+        status = vtk_xml_take(v, memory);
+    }
+    note_more(r, v);
+    return status;
+}
+
 static int load_stored(xml_reader *r, const xml_array *array, uint64_t count, const void **values) {
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
-    if (status) return status;
-    *values = v.in_place;
-    if (v.in_place) {
-        r->uses_file = 1;
-    } else {
-        void *memory = reader_memory(r, v.bytes);
-        if (!memory) return STATUS_FAILED;
-        *values = memory;
-        status = vtk_xml_take(&v, memory);
-    }
-    note_more(r, &v);
-    return status;
+    return status ? status : load_opened(r, &v, values);
+}
+
+/* Doubles as they are stored; what is made of them takes half their bytes, so sharing them is bounded as copying is. */
+static int load_doubles(xml_reader *r, const xml_array *array, uint64_t count, const double **values) {
+    xml_values v;
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (!status && v.in_place) status = vtk_xml_note_taken(&r->doc, &v, v.bytes);
+    return status ? status : load_opened(r, &v, (const void **)values);
 }
 
 /* Brings values of the stored type for a short while; *owned, or NULL, is to be freed. */
@@ -116,15 +128,9 @@ static int load_briefly(xml_reader *r, const xml_array *array, uint64_t count, c
     case ELEMENT_U64:                                                                                                  \
         CONVERT(uint64_t)
 
-static void convert_to_floats(float *to, const unsigned char *from, uint64_t count, int element) {
-    typedef float converted;
-    switch (element) {
-        CONVERT_INTEGERS;
-    case TC_F64:
-        CONVERT(double);
-    default:
-        CONVERT(float);
-    }
+static void convert_to_doubles(double *to, const unsigned char *from, uint64_t count, int element) {
+    typedef double converted;
+    switch (element) { CONVERT_INTEGERS; }
 }
 
 /* Those of 64 bits without sign that exceed the signed ones become negative. */
@@ -133,16 +139,17 @@ static void convert_to_integers(int64_t *to, const unsigned char *from, uint64_t
     switch (element) { CONVERT_INTEGERS; }
 }
 
-/* Coordinates, from any type of number. */
-static int load_floats(xml_reader *r, const xml_array *array, uint64_t count, const float **values) {
+/* Coordinates, from any type of number: integers become doubles. */
+static int load_coordinates(xml_reader *r, const xml_array *array, uint64_t count, coordinates *values) {
     const unsigned char *stored = NULL;
     void *owned, *memory;
-    if (array->element == TC_F32) return load_stored(r, array, count, (const void **)values);
+    if (array->element == TC_F32) return load_stored(r, array, count, (const void **)&values->f32);
+    if (array->element == TC_F64) return load_doubles(r, array, count, &values->f64);
     int status = load_briefly(r, array, count, &stored, &owned);
-    if (!status && !(memory = reader_memory(r, count * sizeof(float)))) status = STATUS_FAILED;
+    if (!status && !(memory = reader_memory(r, count * sizeof(double)))) status = STATUS_FAILED;
     if (!status) {
-        convert_to_floats(memory, stored, count, array->element);
-        *values = memory;
+        convert_to_doubles(memory, stored, count, array->element);
+        values->f64 = memory;
     }
     free(owned);
     return status;
@@ -194,7 +201,7 @@ static int load_axes(xml_reader *r, const xml_piece *piece, dataset_block *block
                 STATUS_INPUT,
                 "%s: its Coordinates are not three arrays of single numbers, for x, y and z; the file is damaged",
                 r->doc.path);
-        status = load_floats(r, array, (uint64_t)piece->dims[a], &block->axes[a]);
+        status = load_coordinates(r, array, (uint64_t)piece->dims[a], &block->axes[a]);
     }
     return status;
 }
@@ -204,7 +211,7 @@ static int load_points(xml_reader *r, const xml_piece *piece, dataset_block *blo
     if (!array || array->components != 3)
         return fail(STATUS_INPUT, "%s: its Points are not an array of three numbers each; the file is damaged",
                     r->doc.path);
-    return load_floats(r, array, 3 * piece->point_count, &block->points);
+    return load_coordinates(r, array, 3 * piece->point_count, &block->points);
 }
 
 static int load_cell_types(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {

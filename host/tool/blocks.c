@@ -26,8 +26,14 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
     memcpy(grid->dims, from->dims, sizeof grid->dims);
     memcpy(grid->first, from->first, sizeof grid->first);
     if (from->kind == GRID_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
-    if (from->kind == GRID_RECTILINEAR) memcpy(grid->axes, from->axes, sizeof grid->axes);
-    if (from->kind == GRID_CURVILINEAR) grid->points = from->points;
+    for (int axis = 0; axis < 3 && from->kind == GRID_RECTILINEAR; axis++) {
+        grid->axes[axis] = from->axes[axis].f32;
+        grid->axes_f64[axis] = from->axes[axis].f64;
+    }
+    if (from->kind == GRID_CURVILINEAR) {
+        grid->points = from->points.f32;
+        grid->points_f64 = from->points.f64;
+    }
     grid->blanked_samples = from->blanked_points;
     grid->blanked_cells = from->blanked_cells;
     if (!b->scalar) return;
@@ -58,7 +64,8 @@ static int cut_unstructured(const options *o, prepared_block *b) {
     const dataset_block *from = b->source;
     const tc_cells cells = {.struct_size = sizeof cells,
                             .point_count = (uint64_t)from->point_count,
-                            .points = from->points,
+                            .points = from->points.f32,
+                            .points_f64 = from->points.f64,
                             .cell_count = (uint64_t)from->cell_count,
                             .types = from->cell_types,
                             .offsets = from->cell_offsets,
@@ -172,12 +179,17 @@ void blocks_release(block_list *list) {
     *list = (block_list){0};
 }
 
-static tc_status complex_grid(const prepared_block *b, tc_context *context, tc_grid **grid) {
+static tc_status complex_grid(const prepared_block *b, tc_context *context, const double *origin, tc_grid **grid) {
     tc_complex_options from;
     if (!b->complex.tetrahedron_count) return TC_OK;
     tc_complex_options_init(&from);
     from.point_count = (uint64_t)b->source->point_count;
-    from.points = b->source->points;
+    from.points = b->source->points.f32;
+    from.points_f64 = b->source->points.f64;
+    if (origin) {
+        from.has_origin = 1;
+        memcpy(from.origin, origin, sizeof from.origin);
+    }
     from.type = b->scalar->type;
     from.samples = b->scalar->samples;
     from.tetrahedron_count = b->complex.tetrahedron_count;
@@ -185,13 +197,18 @@ static tc_status complex_grid(const prepared_block *b, tc_context *context, tc_g
     return tc_complex_create(context, &from, grid);
 }
 
-int block_grid(const options *o, const block_list *list, int n, tc_context *context, tc_grid **grid) {
+int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
+               tc_grid **grid) {
     const prepared_block *b = &list->blocks[n];
     tc_grid_options from;
     *grid = NULL;
     if (b->is_skipped) return 0;
-    if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, grid)), n, list->count);
+    if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, origin, grid)), n, list->count);
     describe_grid(b, &from);
+    if (origin) {
+        from.has_origin = 1;
+        memcpy(from.origin, origin, sizeof from.origin);
+    }
     return block_status(input_status(o, tc_grid_create(context, &from, grid)), n, list->count);
 }
 

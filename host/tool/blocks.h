@@ -29,8 +29,10 @@ typedef struct block_list {
 int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out);
 void blocks_release(block_list *list);
 
-/* A grid of block n; *grid NULL where there is nothing to contour. */
-int block_grid(const options *o, const block_list *list, int n, tc_context *context, tc_grid **grid);
+/* A grid of block n, its positions relative to the origin (NULL: one of its own); *grid NULL where there is nothing to
+ * contour. */
+int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
+               tc_grid **grid);
 
 /* Whether a vertex may rightly have several fans of triangles: beside missing cells, and where cells meet in a point or
  * an edge only. */

@@ -47,13 +47,14 @@ static bounds bounds_of(const dataset_block *b) {
     bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int axis = 0; b->kind == GRID_RECTILINEAR && axis < 3; axis++)
         for (int64_t n = 0; n < b->dims[axis]; n++) {
-            all.low[axis] = fmin(all.low[axis], (double)b->axes[axis][n]);
-            all.high[axis] = fmax(all.high[axis], (double)b->axes[axis][n]);
+            all.low[axis] = fmin(all.low[axis], coordinate_at(b->axes[axis], n));
+            all.high[axis] = fmax(all.high[axis], coordinate_at(b->axes[axis], n));
         }
     if (b->kind == GRID_UNIFORM) include_corners(&all, b);
     for (int64_t n = 0; (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) && n < b->point_count; n++) {
-        const float *p = b->points + 3 * n;
-        include(&all, (double[]){(double)p[0], (double)p[1], (double)p[2]});
+        double p[3];
+        for (int axis = 0; axis < 3; axis++) p[axis] = coordinate_at(b->points, 3 * n + axis);
+        include(&all, p);
     }
     return all;
 }

@@ -6,6 +6,7 @@
 #include "progress.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,16 +34,43 @@ void engine_close(engine *e) {
     *e = (engine){0};
 }
 
+static int make_grids(const options *o, const block_list *blocks, const double *origin, engine *e) {
+    int status = 0;
+    for (int n = 0; n < blocks->count && !status; n++) {
+        tc_grid_destroy(e->grids[n]);
+        e->grids[n] = NULL;
+        status = block_grid(o, blocks, n, e->context, origin, &e->grids[n]);
+    }
+    return status;
+}
+
+/* Where blocks have chosen origins of their own, one mesh needs one: the middle of them. Whether they differ. */
+static int common_origin(const engine *e, double origin[3]) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    int differ = 0;
+    for (int n = 0; n < e->block_count; n++) {
+        double own[3];
+        if (!e->grids[n] || tc_grid_origin(e->grids[n], own)) continue;
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fmin(low[axis], own[axis]);
+            high[axis] = fmax(high[axis], own[axis]);
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        origin[axis] = low[axis] + (high[axis] - low[axis]) / 2;
+        differ = differ || low[axis] < high[axis];
+    }
+    return differ;
+}
+
 int engine_upload(const options *o, const block_list *blocks, engine *e) {
+    double origin[3];
     e->grids = calloc((size_t)blocks->count + 1, sizeof *e->grids);
     e->parts = calloc((size_t)blocks->count + 1, sizeof *e->parts);
     if (!e->grids || !e->parts) return fail(STATUS_FAILED, "out of memory for %d blocks", blocks->count);
     e->block_count = blocks->count;
-    for (int n = 0; n < blocks->count; n++) {
-        int status = block_grid(o, blocks, n, e->context, &e->grids[n]);
-        if (status) return status;
-    }
-    return 0;
+    int status = make_grids(o, blocks, NULL, e);
+    return status || !common_origin(e, origin) ? status : make_grids(o, blocks, origin, e);
 }
 
 int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
@@ -101,6 +129,7 @@ static int join(joined_mesh *j, const tc_mesh_data *part, int normals, tc_mesh_d
         memcpy(j->normals + 3 * sum->vertex_count, part->normals, 3 * part->vertex_count * sizeof *j->normals);
     uint32_t first = (uint32_t)sum->vertex_count, *to = j->triangles + 3 * sum->triangle_count;
     for (uint64_t n = 0; n < 3 * part->triangle_count; n++) to[n] = part->triangles[n] + first;
+    memcpy(sum->origin, part->origin, sizeof sum->origin); /* every part's */
     sum->vertex_count = vertices;
     sum->triangle_count = triangles;
     sum->active_cell_count += part->active_cell_count;

@@ -182,6 +182,10 @@ static void describe_mesh(const options *o, const tc_mesh_data *m, surface_repor
     s->slab_count = m->slab_count;
     if (o->quiet && !o->json) return; /* nobody will read it */
     mesh_summarize(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->summary);
+    for (int axis = 0; axis < 3; axis++) {
+        s->origin[axis] = m->origin[axis];
+        for (int end = 0; end < 2; end++) s->summary.bounds[end][axis] += m->origin[axis];
+    }
     s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
 }
 

@@ -83,6 +83,10 @@ static const option table[] = {
      "VTP); structured grids only"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
+    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT, VALUE_POINT, IN(origin_at), NULL,
+     "write coordinates relative to this point of the input's space (default: the\n"
+     "input's own; STL, which holds float32 alone, of data far from zero relative\n"
+     "to a point near it, which is told)"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
      "classify only: count vertices, triangles and active cells, make no mesh"},
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,

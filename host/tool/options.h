@@ -54,6 +54,7 @@ typedef struct options {
     int big_endian;
     uint64_t skip;
     double spacing[3], origin[3];
+    double origin_at[3]; /* where given: coordinates of the output are relative to it */
 
     uint64_t given; /* bit n: row n of the table stood on the command line */
     int verify, check, json, count, soup, normals, quiet, help;

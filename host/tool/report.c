@@ -75,6 +75,7 @@ static void add_mesh(json_t *object, const surface_report *s) {
     json_object_set_new(
         object, "bounds",
         json_pack("[o, o]", report_reals(s->summary.bounds[0], 3), report_reals(s->summary.bounds[1], 3)));
+    json_object_set_new(object, "origin", report_reals(s->origin, 3));
     json_object_set_new(object, "hash", json_string(hash));
 }
 
@@ -155,6 +156,8 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->has_mesh) {
         printf("  bounds      %.7g %.7g %.7g to %.7g %.7g %.7g\n", m->bounds[0][0], m->bounds[0][1], m->bounds[0][2],
                m->bounds[1][0], m->bounds[1][1], m->bounds[1][2]);
+        if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0)
+            printf("  origin      %.15g %.15g %.15g\n", s->origin[0], s->origin[1], s->origin[2]);
         printf("  hash        %016" PRIx64 "\n", s->hash);
         printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
                s->readback_ms);

@@ -20,8 +20,9 @@ typedef struct surface_report {
     double classify_ms, emit_ms, readback_ms;
     uint32_t slab_count;
     int has_mesh;         /* 0: counted only; then the rest is not filled */
-    mesh_summary summary; /* this and the hash: not where no report is printed */
+    mesh_summary summary; /* bounds in world space. This and the hash: not where no report is printed */
     uint64_t hash;
+    double origin[3]; /* that positions in memory, and so hash and volume of an open surface, are relative to */
     int has_topology;
     mesh_topology topology;
     int has_verdict;

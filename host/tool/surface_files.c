@@ -1,5 +1,6 @@
 #include "surface_files.h"
 
+#include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -42,7 +43,8 @@ static char *file_name(const options *o, const typed_isovalue *iso, int block) {
 
 int surface_files_check(const options *o) {
     const mesh_field some = {.name = "", .components = 1};
-    const mesh_write_options how = {o->format, o->soup, &some, o->carry != NULL};
+    const mesh_write_options how = {
+        .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (o->carry && !o->output) return fail(STATUS_USAGE, "--carry puts fields into the mesh's file: give -o FILE");
     if (o->separate_blocks && !o->output) return fail(STATUS_USAGE, "--blocks names files: give -o FILE");
     if (!o->output) return 0;
@@ -125,7 +127,16 @@ static char *describe_files(const options *o, const typed_isovalue *iso, int blo
 
 int surface_files_write(const options *o, const typed_isovalue *iso, const tc_mesh_data *mesh, const engine *made_by,
                         const mesh_field *fields, int field_count, char **written) {
-    const mesh_write_options how = {o->format, o->soup, fields, field_count};
+    const mesh_write_options how = {.format = o->format,
+                                    .soup = o->soup,
+                                    .fields = fields,
+                                    .field_count = field_count,
+                                    .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+    if (!o->quiet && mesh_write_is_relative(o->output, mesh, &how))
+        message(
+            "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %.15g,%.15g,%.15g "
+            "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
+            mesh->origin[0], mesh->origin[1], mesh->origin[2]);
     *written = o->separate_blocks ? describe_files(o, iso, made_by->block_count) : file_name(o, iso, ALL_BLOCKS);
     if (!*written) return STATUS_FAILED;
     return o->separate_blocks ? write_parts(o, iso, mesh, made_by, &how) : mesh_write(*written, mesh, &how);

@@ -14,6 +14,7 @@
 #include "report.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,33 +65,78 @@ static int cut(conversion *c) {
 
 /* --------------------------------------------------------------------------------------------------------- joining */
 
-/* Positions of a block's points, as the library computes them for vertices. */
-static void place_points(const dataset_block *b, float *to) {
+/* World coordinate r of a point of a uniform grid, in float32 as the library computes it for vertices. */
+static float uniform_f32(const dataset_block *b, const int64_t p[3], int r) {
+    const double *m = b->matrix[r];
+    const float x = (float)(b->first[0] + p[0]), y = (float)(b->first[1] + p[1]), z = (float)(b->first[2] + p[2]);
+    return (((float)m[0] * x + (float)m[1] * y) + (float)m[2] * z) + (float)m[3];
+}
+
+static double uniform_f64(const dataset_block *b, const int64_t p[3], int r) {
+    const double *m = b->matrix[r];
+    const double x = (double)(b->first[0] + p[0]), y = (double)(b->first[1] + p[1]), z = (double)(b->first[2] + p[2]);
+    return ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
+}
+
+/* Whether float32 would move points by more than 2^-12 of a cell: at the corners, where numbers are largest. */
+static int uniform_needs_f64(const dataset_block *b) {
+    for (int corner = 0; corner < 8; corner++)
+        for (int r = 0; r < 3; r++) {
+            int64_t p[3];
+            double cell = 0;
+            for (int axis = 0; axis < 3; axis++) {
+                p[axis] = corner >> axis & 1 ? b->dims[axis] - 1 : 0;
+                cell = fmax(cell, fabs(b->matrix[r][axis]));
+            }
+            if (fabs(uniform_f64(b, p, r) - (double)uniform_f32(b, p, r)) > cell * 0x1p-12) return 1;
+        }
+    return 0;
+}
+
+static int needs_f64(const dataset_block *b) {
+    if (b->kind == GRID_UNIFORM) return uniform_needs_f64(b);
+    return b->kind == GRID_RECTILINEAR ? b->axes[0].f64 || b->axes[1].f64 || b->axes[2].f64 : b->points.f64 != NULL;
+}
+
+/* World coordinate r of a structured grid's point. */
+static double place(const dataset_block *b, const int64_t p[3], int r, int is_f64) {
+    if (b->kind == GRID_RECTILINEAR) return coordinate_at(b->axes[r], p[r]);
+    return is_f64 ? uniform_f64(b, p, r) : (double)uniform_f32(b, p, r);
+}
+
+static void put_place(const complex_file *file, uint64_t n, double value) {
+    if (file->points_f64)
+        ((double *)(uintptr_t)file->points_f64)[n] = value;
+    else
+        ((float *)(uintptr_t)file->points)[n] = (float)value;
+}
+
+/* Positions of a block's points, to the file's from number n on. */
+static void place_points(const dataset_block *b, const complex_file *file, uint64_t n) {
     if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) {
-        memcpy(to, b->points, 3 * sizeof *to * (size_t)b->point_count);
+        for (int64_t at = 0; at < 3 * b->point_count; at++) put_place(file, n++, coordinate_at(b->points, at));
         return;
     }
-    for (int64_t k = 0; k < b->dims[2]; k++)
-        for (int64_t j = 0; j < b->dims[1]; j++)
-            for (int64_t i = 0; i < b->dims[0]; i++, to += 3)
-                for (int r = 0; r < 3; r++) {
-                    const double *m = b->matrix[r];
-                    const float x = (float)(b->first[0] + i), y = (float)(b->first[1] + j);
-                    const float z = (float)(b->first[2] + k);
-                    if (b->kind == GRID_RECTILINEAR)
-                        to[r] = b->axes[r][r == 0 ? i : r == 1 ? j : k];
-                    else
-                        to[r] = (((float)m[0] * x + (float)m[1] * y) + (float)m[2] * z) + (float)m[3];
-                }
+    int64_t p[3];
+    for (p[2] = 0; p[2] < b->dims[2]; p[2]++)
+        for (p[1] = 0; p[1] < b->dims[1]; p[1]++)
+            for (p[0] = 0; p[0] < b->dims[0]; p[0]++)
+                for (int r = 0; r < 3; r++) put_place(file, n++, place(b, p, r, file->points_f64 != NULL));
 }
 
 static int join_points(conversion *c) {
-    float *points = dataset_allocate(&c->data, c->file.point_count * 3 * sizeof *points);
+    int is_f64 = 0;
+    for (int n = 0; n < c->data.block_count; n++) is_f64 = is_f64 || needs_f64(&c->data.blocks[n]);
+    void *points = dataset_allocate(&c->data, c->file.point_count * 3 * (is_f64 ? sizeof(double) : sizeof(float)));
+    uint64_t first = 0;
     if (!points) return STATUS_FAILED;
-    c->file.points = points;
+    if (is_f64)
+        c->file.points_f64 = points;
+    else
+        c->file.points = points;
     for (int n = 0; n < c->data.block_count; n++) {
-        place_points(&c->data.blocks[n], points);
-        points += 3 * c->data.blocks[n].point_count;
+        place_points(&c->data.blocks[n], &c->file, first);
+        first += 3 * (uint64_t)c->data.blocks[n].point_count;
     }
     return 0;
 }

@@ -10,6 +10,8 @@
 #include "decimal.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { DIGITS = 9, LEAST_POWER = -30, MOST_POWER = 53, LEAST_FIXED = -5 };
@@ -108,4 +110,15 @@ char *put_u32_text(char *to, uint32_t value) {
     int count = digit_count(value);
     put_digits(to, value, count);
     return to + count;
+}
+
+char *put_double_text(char *to, double value) {
+    char text[40];
+    int length = 0;
+    for (int digits = 15; digits <= 17; digits++) {
+        length = snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    for (int n = 0; n < length; n++) to[n] = (char)(text[n] == ',' ? '.' : text[n]); /* some locales' point */
+    return to + length;
 }

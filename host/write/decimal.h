@@ -4,11 +4,14 @@
 
 #include <stdint.h>
 
-enum { DECIMAL_MOST = 16 }; /* bytes of the longest number */
+enum { DECIMAL_MOST = 16, DECIMAL_F64_MOST = 24 }; /* bytes of the longest number */
 
 /* Nine significant digits, trailing zeros dropped: what reads back as the same float, like "%.9g". "nan", "inf" and
  * "-inf" for what is no number. Returns the address behind; no zero byte is appended. */
 char *put_float_text(char *to, float value);
+
+/* The fewest digits, 15 to 17, that read back as the same double. Slower: for meshes that need it. */
+char *put_double_text(char *to, double value);
 
 char *put_u32_text(char *to, uint32_t value);
 

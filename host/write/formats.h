@@ -20,7 +20,9 @@ typedef struct shown_mesh {
     const tc_mesh_data *mesh;
     int soup; /* vertices of the file are the triangles' corners, one after the other */
     const mesh_field *fields;
-    int field_count; /* 0 where the format takes none */
+    int field_count;  /* 0 where the format takes none */
+    double offset[3]; /* coordinates of the file minus those of the mesh */
+    int is_moved;     /* the offset is not 0: coordinates are doubles where the format has them */
 } shown_mesh;
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are written as numbers lie in memory");
@@ -40,6 +42,12 @@ static inline uint32_t corner_vertex(const shown_mesh *s, uint64_t c) {
 
 static inline uint64_t file_vertex_count(const shown_mesh *s) {
     return s->soup ? 3 * s->mesh->triangle_count : s->mesh->vertex_count;
+}
+
+/* The coordinates of a vertex of the mesh in the file. */
+static inline void shown_position(const shown_mesh *s, uint64_t vertex, double out[3]) {
+    for (uint64_t axis = 0; axis < 3; axis++)
+        out[axis] = s->offset[axis] + (double)s->mesh->positions[3 * vertex + axis];
 }
 
 /* Copies to an address of any alignment; returns the address behind. */

@@ -23,6 +23,8 @@ typedef struct mesh_write_options {
     int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
     const mesh_field *fields;
     int field_count;
+    const double *origin_at; /* three world coordinates that become 0, 0, 0 in the file; NULL: world coordinates, of
+                                STL, which holds float32 alone, those relative to the mesh's origin */
 } mesh_write_options;
 
 /* 0 where path's ending (or options->format) is a format that can be written, with the fields that are given, else
@@ -30,14 +32,19 @@ typedef struct mesh_write_options {
  * below. */
 int mesh_write_check(const char *path, const mesh_write_options *options);
 
-/* Writes positions, normals (where the mesh has them and the format takes them: PLY, OBJ, VTP) and triangles, whose
- * indices must be below vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
+/* Whether the file would hold coordinates relative to the mesh's origin, because its format has no other. */
+int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
+
+/* Writes positions (in double precision where they differ from those of the mesh by an offset), normals (where the mesh
+ * has them and the format takes them: PLY, OBJ, VTP) and triangles, whose indices must be below vertex_count. Returns 0
+ * or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */
 typedef struct complex_file {
     uint64_t point_count;
-    const float *points; /* x, y, z each */
+    const float *points;      /* x, y, z each */
+    const double *points_f64; /* in place of points */
     uint64_t tetrahedron_count;
     const uint32_t *tetrahedra;         /* 4 points each */
     const struct dataset_field *fields; /* of the points: host/read/dataset.h */

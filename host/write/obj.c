@@ -1,7 +1,8 @@
 /*
  * obj.c - Wavefront OBJ, text
  *
- *     v x y z          every vertex, numbers that read back as the same floats
+ *     v x y z          every vertex, numbers that read back as the same floats, or doubles where the mesh lies far from
+ *                      zero
  *     vn x y z         every normal, where the mesh has them
  *     f a b c          indices from 1; a//a b//b c//c with normals
  */
@@ -11,7 +12,7 @@
 #include <stdio.h>
 
 enum {
-    VECTOR_MOST = 3 + 3 * (1 + DECIMAL_MOST), /* bytes of the longest line */
+    VECTOR_MOST = 3 + 3 * (1 + DECIMAL_F64_MOST), /* bytes of the longest line */
     FACE_MOST = 2 + 3 * (1 + 10 + 2 + 10),
 };
 
@@ -33,6 +34,23 @@ static unsigned char *encode_vectors(const void *source, uint64_t first, uint64_
         for (int axis = 0; axis < 3; axis++) {
             *at++ = ' ';
             at = put_float_text(at, vector[axis]);
+        }
+        *at++ = '\n';
+    }
+    return (unsigned char *)at;
+}
+
+/* Positions as doubles. */
+static unsigned char *encode_positions(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const shown_mesh *s = source;
+    char *at = (char *)to;
+    for (uint64_t v = first; v < end; v++) {
+        double position[3];
+        shown_position(s, source_vertex(s, v), position);
+        *at++ = 'v';
+        for (int axis = 0; axis < 3; axis++) {
+            *at++ = ' ';
+            at = put_double_text(at, position[axis]);
         }
         *at++ = '\n';
     }
@@ -71,7 +89,10 @@ void obj_write(output *o, const shown_mesh *s) {
     int length = snprintf(header, sizeof header, "# tetracubes isosurface: %llu vertices, %llu triangles\n",
                           (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count);
     output_bytes(o, header, (uint64_t)length);
-    write_vectors(o, s, "v", s->mesh->positions);
+    if (s->is_moved)
+        output_records(o, file_vertex_count(s), VECTOR_MOST, encode_positions, s);
+    else
+        write_vectors(o, s, "v", s->mesh->positions);
     if (s->mesh->normals) write_vectors(o, s, "vn", s->mesh->normals);
     output_records(o, s->mesh->triangle_count, FACE_MOST, encode_faces, s);
 }

@@ -1,7 +1,8 @@
 /*
  * ply.c - PLY 1.0, binary little-endian (Turk, Stanford, 1994)
  *
- *     vertex  float x y z [nx ny nz] [fields]    12 or 24 bytes, 4 for each value of a field
+ *     vertex  float x y z [nx ny nz] [fields]    12 or 24 bytes, 4 for each value of a field; x y z as double, 12 more
+ *                                                bytes, where the mesh lies far from zero
  *     face    list uchar uint vertex_indices     13 bytes
  *
  * Indices are uint: int would end at 2^31, and readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
@@ -66,22 +67,32 @@ static void add_properties(file_text *header, const shown_mesh *s) {
 }
 
 static void make_header(const shown_mesh *s, file_text *header) {
+    const char *type = s->is_moved ? "double" : "float";
     text_add(header,
              "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
-             "property float x\nproperty float y\nproperty float z\n%s",
-             (unsigned long long)file_vertex_count(s),
+             "property %s x\nproperty %s y\nproperty %s z\n%s",
+             (unsigned long long)file_vertex_count(s), type, type, type,
              s->mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "");
     add_properties(header, s);
     text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
              (unsigned long long)s->mesh->triangle_count);
 }
 
+static size_t position_bytes(const shown_mesh *s) { return s->is_moved ? 3 * sizeof(double) : VECTOR_BYTES; }
+
+static unsigned char *put_position(const shown_mesh *s, uint64_t vertex, unsigned char *to) {
+    double position[3];
+    if (!s->is_moved) return put_bytes(to, s->mesh->positions + 3 * vertex, VECTOR_BYTES);
+    shown_position(s, vertex, position);
+    return put_bytes(to, position, sizeof position);
+}
+
 static unsigned char *encode_vertices(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
-    const float *positions = s->mesh->positions, *normals = s->mesh->normals;
+    const float *normals = s->mesh->normals;
     for (uint64_t v = first; v < end; v++) {
         uint64_t vertex = source_vertex(s, v);
-        to = put_bytes(to, positions + 3 * vertex, VECTOR_BYTES);
+        to = put_position(s, vertex, to);
         if (normals) to = put_bytes(to, normals + 3 * vertex, VECTOR_BYTES);
         for (int i = 0; i < s->field_count; i++) {
             size_t components = (size_t)s->fields[i].components;
@@ -105,7 +116,8 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
 void ply_write(output *o, const shown_mesh *s) {
     file_text header = {0};
     make_header(s, &header);
-    size_t vertex_bytes = (s->mesh->normals ? 2 * VECTOR_BYTES : VECTOR_BYTES) + (size_t)value_count(s) * sizeof(float);
+    size_t vertex_bytes =
+        position_bytes(s) + (s->mesh->normals ? VECTOR_BYTES : 0) + (size_t)value_count(s) * sizeof(float);
     uint64_t vertex_count = file_vertex_count(s), face_count = s->mesh->triangle_count;
     if (header.has_failed) {
         o->error = ENOMEM;

@@ -25,13 +25,17 @@ static void facet_normal(const float *a, const float *b, const float *c, float n
 }
 
 static unsigned char *encode_triangles(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
-    const tc_mesh_data *mesh = source;
+    const shown_mesh *s = source;
+    const tc_mesh_data *mesh = s->mesh;
     for (uint64_t t = first; t < end; t++) {
         const float *corners[3];
         float vectors[4][3];
         for (int k = 0; k < 3; k++) corners[k] = mesh->positions + 3 * (uint64_t)mesh->triangles[3 * t + (uint64_t)k];
         facet_normal(corners[0], corners[1], corners[2], vectors[0]);
-        for (int k = 0; k < 3; k++) memcpy(vectors[1 + k], corners[k], sizeof vectors[0]);
+        for (int k = 0; k < 3; k++)
+            for (int axis = 0; axis < 3; axis++)
+                vectors[1 + k][axis] =
+                    s->is_moved ? (float)(s->offset[axis] + (double)corners[k][axis]) : corners[k][axis];
         to = put_bytes(to, vectors, sizeof vectors);
         to = put_bytes(to, &(uint16_t){0}, 2);
     }
@@ -45,5 +49,5 @@ void stl_write(output *o, const shown_mesh *s) {
     memcpy(header + HEADER_BYTES, &count, sizeof count);
     output_expect(o, sizeof header + (uint64_t)count * TRIANGLE_BYTES);
     output_bytes(o, header, sizeof header);
-    output_records(o, count, TRIANGLE_BYTES, encode_triangles, s->mesh);
+    output_records(o, count, TRIANGLE_BYTES, encode_triangles, s);
 }

@@ -26,6 +26,16 @@ static unsigned char *encode_values(const void *source, uint64_t first, uint64_t
     return to;
 }
 
+static unsigned char *encode_positions(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const shown_mesh *s = source;
+    for (uint64_t v = first; v < end; v++) {
+        double position[3];
+        shown_position(s, source_vertex(s, v), position);
+        to = put_bytes(to, position, sizeof position);
+    }
+    return to;
+}
+
 static int is_wide(const shown_mesh *s) { return vtk_needs_wide(file_vertex_count(s), 3 * s->mesh->triangle_count); }
 
 static unsigned char *encode_corners(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
@@ -50,6 +60,17 @@ static void add_values(vtk_file *f, const char *name, shown_values *values) {
                                   .record_bytes = (size_t)values->components * sizeof(float),
                                   .encode = is_plain ? NULL : encode_values,
                                   .source = is_plain ? (const void *)values->values : values});
+}
+
+/* In double precision. */
+static void add_positions(vtk_file *f, const shown_mesh *s) {
+    vtk_array_add(f, &(vtk_array){.name = "Points",
+                                  .type = "Float64",
+                                  .components = 3,
+                                  .record_count = file_vertex_count(s),
+                                  .record_bytes = 3 * sizeof(double),
+                                  .encode = encode_positions,
+                                  .source = s});
 }
 
 static void add_triangles(vtk_file *f, const shown_mesh *s) {
@@ -89,7 +110,10 @@ void vtp_write(output *o, const shown_mesh *s) {
         add_values(&f, s->fields[i].name, &fields[i]);
     }
     text_add(&f.text, "      </PointData>\n      <Points>\n");
-    add_values(&f, "Points", &points);
+    if (s->is_moved)
+        add_positions(&f, s);
+    else
+        add_values(&f, "Points", &points);
     text_add(&f.text, "      </Points>\n      <Polys>\n");
     add_triangles(&f, s);
     text_add(&f.text, "      </Polys>\n    </Piece>\n");

@@ -90,11 +90,11 @@ int complex_write(const char *path, const complex_file *c) {
     for (int i = 0; i < c->field_count; i++) add_field(&f, c, &c->fields[i]);
     text_add(&f.text, "      </PointData>\n      <Points>\n");
     vtk_array_add(&f, &(vtk_array){.name = "Points",
-                                   .type = "Float32",
+                                   .type = c->points_f64 ? "Float64" : "Float32",
                                    .components = 3,
                                    .record_count = c->point_count,
-                                   .record_bytes = 12,
-                                   .source = c->points});
+                                   .record_bytes = c->points_f64 ? 24 : 12,
+                                   .source = c->points_f64 ? (const void *)c->points_f64 : c->points});
     text_add(&f.text, "      </Points>\n      <Cells>\n");
     add_cells(&f, c);
     text_add(&f.text, "      </Cells>\n    </Piece>\n");

@@ -15,10 +15,14 @@ typedef struct format {
     const char *name;
     void (*write)(output *o, const shown_mesh *s);
     int takes_fields;
+    int has_doubles; /* for coordinates */
 } format;
 
-static const format formats[] = {
-    {"ply", ply_write, 1}, {"stl", stl_write, 0}, {"obj", obj_write, 0}, {"vtp", vtp_write, 1}, {NULL, NULL, 0}};
+static const format formats[] = {{"ply", ply_write, 1, 1},
+                                 {"stl", stl_write, 0, 0},
+                                 {"obj", obj_write, 0, 1},
+                                 {"vtp", vtp_write, 1, 1},
+                                 {NULL, NULL, 0, 0}};
 
 /* Values per vertex, of all fields together: a vertex must fit a block of the output many times. */
 enum { FIELD_VALUES_MOST = 4096 };
@@ -79,6 +83,25 @@ int mesh_write_check(const char *path, const mesh_write_options *options) {
     return choose_format(path, options, &f);
 }
 
+static int is_far(const tc_mesh_data *mesh) {
+    return mesh->origin[0] != 0 || mesh->origin[1] != 0 || mesh->origin[2] != 0;
+}
+
+int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
+    const format *f;
+    if (choose_format(path, options, &f)) return 0;
+    return is_far(mesh) && !f->has_doubles && !(options && options->origin_at);
+}
+
+static void set_offset(shown_mesh *s, const mesh_write_options *options, const format *f) {
+    const double *at = options ? options->origin_at : NULL;
+    if (!at && !f->has_doubles) return;
+    for (int axis = 0; axis < 3; axis++) {
+        s->offset[axis] = s->mesh->origin[axis] - (at ? at[axis] : 0);
+        if (s->offset[axis] != 0) s->is_moved = 1;
+    }
+}
+
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
@@ -91,6 +114,7 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = output_open(&o, path);
     if (status) return status;
+    set_offset(&shown, options, f);
     f->write(&o, &shown);
     return output_close(&o);
 }

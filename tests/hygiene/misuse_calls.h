@@ -33,6 +33,7 @@ typedef struct arguments {
     float *values;
     uint64_t value_count;
     int *count_at, index, count;
+    double *origin_at, origin[3];
 } arguments;
 
 typedef struct world {
@@ -83,7 +84,13 @@ static void arguments_fill(const world *w, arguments *a) {
     a->complex_options.samples = complex_samples;
     a->complex_options.tetrahedron_count = TETRAHEDRA;
     a->complex_options.tetrahedra = tetrahedra;
-    a->cells = (tc_cells){sizeof a->cells, POINTS, points, CELLS, types, offsets, connectivity, NULL, NULL};
+    a->cells = (tc_cells){.struct_size = sizeof a->cells,
+                          .point_count = POINTS,
+                          .points = points,
+                          .cell_count = CELLS,
+                          .types = types,
+                          .offsets = offsets,
+                          .connectivity = connectivity};
     a->field = (tc_field){sizeof a->field, TC_F32, 1, field_values};
     a->device_mesh = (tc_device_mesh){.struct_size = sizeof a->device_mesh};
     a->counts.struct_size = sizeof a->counts;
@@ -94,6 +101,7 @@ static void arguments_fill(const world *w, arguments *a) {
     a->cells_at = &a->cells, a->field_at = &a->field, a->device_mesh_at = &a->device_mesh;
     a->counts_at = &a->counts, a->mesh_data_at = &a->mesh_data, a->info_at = &a->info;
     a->tuning_at = &a->tuning, a->complex_at = &a->complex, a->count_at = &a->count;
+    a->origin_at = a->origin;
     a->values = values;
     a->value_count = w->expected.vertex_count;
 }
@@ -180,6 +188,12 @@ static tc_status call_tc_grid_create(arguments *a, bool *zero) {
     tc_grid **place = a->grid_place ? &made : NULL;
     tc_status status = tc_grid_create(a->context, a->grid_options_at, place);
     return grid_end(a, status, place ? made : NULL, zero);
+}
+
+static tc_status call_tc_grid_origin(arguments *a, bool *zero) {
+    tc_status status = tc_grid_origin(a->grid, a->origin_at);
+    *zero = !a->origin_at || all_zero(a->origin, sizeof a->origin);
+    return status;
 }
 
 static tc_status call_tc_complex_create(arguments *a, bool *zero) {

@@ -100,7 +100,9 @@ typedef struct place {
         AT(call, grid_options.nodata, any_f64), AT(call, grid_options.cl_samples, LISTED({8, ARGUMENT})),              \
         AT(call, grid_options.cl_samples_offset, LISTED({UINT64_MAX, OK})), AT(call, grid_options.axes[0], absent),    \
         AT(call, grid_options.points, absent), AT(call, grid_options.blanked_samples, absent),                         \
-        AT(call, grid_options.blanked_cells, absent)
+        AT(call, grid_options.blanked_cells, absent), AT(call, grid_options.axes_f64[1], LISTED({8, ARGUMENT})),       \
+        AT(call, grid_options.points_f64, absent), AT(call, grid_options.has_origin, LISTED({1, OK | ARGUMENT})),      \
+        AT(call, grid_options.origin[0], any_f64)
 
 #define OPTIONS_OF_EXTRACTION(call)                                                                                    \
     AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \
@@ -148,6 +150,11 @@ static const place places[] = {
     AT(tc_complex_create, complex_options.tetrahedron_count, too_many),
     AT(tc_complex_create, complex_options.tetrahedra, null),
     AT(tc_complex_create, complex_options.tetrahedra, NULL),
+    AT(tc_complex_create, complex_options.points_f64, LISTED({8, ARGUMENT})),
+    AT(tc_complex_create, complex_options.has_origin, LISTED({1, OK | ARGUMENT})),
+    AT(tc_complex_create, complex_options.origin[2], any_f64),
+    AT(tc_grid_origin, grid, null),
+    AT(tc_grid_origin, origin_at, null),
     OPTIONS_OF_EXTRACTION(tc_count),
     AT(tc_count, extract_options.normals, any_i32),
     AT(tc_count, counts_at, null),
@@ -185,6 +192,7 @@ static const place places[] = {
     AT(tc_tetrahedralize, cells.connectivity, NULL),
     AT(tc_tetrahedralize, cells.blanked_points, absent),
     AT(tc_tetrahedralize, cells.blanked_cells, absent),
+    AT(tc_tetrahedralize, cells.points_f64, LISTED({8, ARGUMENT})),
     AT(tc_tetrahedralize_grid, complex_at, null),
     OPTIONS_OF_GRIDS(tc_tetrahedralize_grid),
 };
@@ -424,7 +432,13 @@ static void test_others(const world *w) {
     tc_mesh_destroy(NULL);
     tc_complex_release(NULL);
     tc_complex zeroed = {0}, made = {.struct_size = sizeof made};
-    tc_cells cells = {sizeof cells, POINTS, points, CELLS, types, offsets, connectivity, NULL, NULL};
+    tc_cells cells = {.struct_size = sizeof cells,
+                      .point_count = POINTS,
+                      .points = points,
+                      .cell_count = CELLS,
+                      .types = types,
+                      .offsets = offsets,
+                      .connectivity = connectivity};
     tc_complex_release(&zeroed);
     EXPECT(tc_tetrahedralize(&cells, &made) == TC_OK && made.tetrahedron_count > 1, "%s", tc_message());
     tc_complex_release(&made);

@@ -58,9 +58,10 @@ static void check_type(tc_type type, const void *values) {
     CHECK((uintptr_t)values % tc_type_bytes(type) == 0);
 }
 
-static void check_floats(const float *values, int64_t count) {
-    CHECK(values != NULL || count == 0);
-    if (values) touch(values, (uint64_t)count * sizeof *values);
+static void check_coordinates(coordinates c, int64_t count) {
+    CHECK(!c.f32 + !c.f64 == 1 || (count == 0 && !c.f32 + !c.f64 == 2));
+    if (c.f32) touch(c.f32, (uint64_t)count * sizeof *c.f32);
+    if (c.f64) touch(c.f64, (uint64_t)count * sizeof *c.f64);
 }
 
 static void check_cells(const dataset_block *b) {
@@ -89,8 +90,8 @@ static void check_geometry(const dataset_block *b) {
         CHECK(b->point_count == points);
         CHECK(b->cell_count == cubes || b->cell_count == cells || points == 0);
     }
-    for (int a = 0; a < 3 && b->kind == GRID_RECTILINEAR; a++) check_floats(b->axes[a], b->dims[a]);
-    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) check_floats(b->points, 3 * b->point_count);
+    for (int a = 0; a < 3 && b->kind == GRID_RECTILINEAR; a++) check_coordinates(b->axes[a], b->dims[a]);
+    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) check_coordinates(b->points, 3 * b->point_count);
     for (int n = 0; n < 12 && b->kind == GRID_UNIFORM; n++) CHECK(isfinite(b->matrix[n / 4][n % 4]));
     if (b->blanked_points) touch(b->blanked_points, (uint64_t)b->point_count);
     if (b->blanked_cells) touch(b->blanked_cells, (uint64_t)b->cell_count);

@@ -1,0 +1,271 @@
+#!/usr/bin/env python3
+"""test_cli_far.py TOOL [reference] - coordinates far from zero, from file to file
+
+A small grid of every kind is written twice, near zero and at UTM coordinates, in double precision. What is written of
+its surface must be the same shape at the right place: VTP and PLY in doubles, OBJ in text, STL relative to a point that
+is told or chosen. With `reference` what needs an OpenCL device is left out. Standard library only.
+"""
+import itertools
+import json
+import math
+import os
+import re
+import struct
+import sys
+import unittest
+
+import test_cli
+from test_cli_grids import (GridCase, HEXAHEDRON, attributes, bump, data_array, hexahedra, lattice, structured_text,
+                            vtk_file)
+
+DIMS = (9, 8, 9)
+UTM = (500000.0, 4649776.0, 200.0)
+CELL = 0.25
+ISO = "1.5"
+
+
+def placed(at, dims=DIMS, first=(0, 0, 0)):
+    """Points of a slightly bent lattice, exact in double precision wherever it lies."""
+    bent = [(x + (y % 2) / 8, y, z + (x % 3) / 16) for x, y, z in lattice(dims, first)]
+    return [tuple(at[axis] + CELL * p[axis] for axis in range(3)) for p in bent]
+
+
+def field(first=(0, 0, 0), dims=DIMS):
+    return [("bump", "f64", [bump(p) for p in lattice(dims, first)])]
+
+
+def vtu(at, extra=()):
+    points, cells = placed(at) + list(extra), hexahedra(DIMS)
+    values = [("bump", "f64", field()[0][2] + [0.0] * len(extra))]
+    flat = list(itertools.chain(*points))
+    arrays = (data_array("connectivity", "i32", list(itertools.chain(*cells)))
+              + data_array("offsets", "i32", [8 * (n + 1) for n in range(len(cells))])
+              + data_array("types", "u8", [HEXAHEDRON] * len(cells)))
+    return vtk_file("UnstructuredGrid", f'><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
+                    f'{attributes("PointData", values)}<Points>{data_array("Points", "f64", flat, 3)}</Points>'
+                    f"<Cells>{arrays}</Cells></Piece>")
+
+
+def vts_piece(at, first, dims):
+    flat = list(itertools.chain(*placed(at, dims, first)))
+    extent = " ".join(f"{first[axis]} {first[axis] + dims[axis] - 1}" for axis in range(3))
+    return (f'<Piece Extent="{extent}">{attributes("PointData", field(first, dims))}'
+            f'<Points>{data_array("Points", "f64", flat, 3)}</Points></Piece>')
+
+
+def vts(at):
+    """Two pieces that share a plane."""
+    whole = " ".join(f"0 {n - 1}" for n in DIMS)
+    return vtk_file("StructuredGrid", f' WholeExtent="{whole}">' + vts_piece(at, (0, 0, 0), (5, 8, 9))
+                    + vts_piece(at, (4, 0, 0), (5, 8, 9)))
+
+
+def vtr(at):
+    axes = "".join(data_array("xyz"[axis], "f64", [at[axis] + CELL * n + (n % 2) / 16 for n in range(DIMS[axis])])
+                   for axis in range(3))
+    return structured_text("RectilinearGrid", DIMS, (0, 0, 0), f"<Coordinates>{axes}</Coordinates>", field())
+
+
+def vti(at):
+    more = ' Origin="{!r} {!r} {!r}" Spacing="{!r} {!r} {!r}"'.format(*at, CELL, CELL, CELL)
+    return structured_text("ImageData", DIMS, (0, 0, 0), "", field(), more=more)
+
+
+def legacy(at):
+    flat = " ".join(f"{value!r}" for value in itertools.chain(*placed(at)))
+    values = " ".join(f"{value!r}" for value in field()[0][2])
+    count = math.prod(DIMS)
+    return ("# vtk DataFile Version 3.0\nfar\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS {} {} {}\n".format(*DIMS)
+            + f"POINTS {count} double\n{flat}\nPOINT_DATA {count}\nSCALARS bump double\nLOOKUP_TABLE default\n{values}\n")
+
+
+KINDS = {"far.vtu": vtu, "far.vts": vts, "far.vtr": vtr, "far.vti": vti, "far.vtk": legacy}
+
+
+def read_ply(path):
+    with open(path, "rb") as f:
+        content = f.read()
+    end = content.index(b"end_header\n") + 11
+    header = content[:end].decode()
+    count = int(re.search(r"element vertex (\d+)", header)[1])
+    faces = int(re.search(r"element face (\d+)", header)[1])
+    kinds = {"float": "f", "double": "d"}
+    layout = "<" + "".join(kinds[kind] for kind in re.findall(r"property (float|double) ", header))
+    size = struct.calcsize(layout)
+    points = [struct.unpack_from(layout, content, end + n * size)[:3] for n in range(count)]
+    at = end + count * size
+    assert len(content) == at + 13 * faces
+    return points, [struct.unpack_from("<3I", content, at + 13 * n + 1) for n in range(faces)], layout[1:4]
+
+
+def read_vtp(path):
+    with open(path, "rb") as f:
+        content = f.read()
+    appended = content.index(b"_", content.index(b"<AppendedData")) + 1
+    header = content[:appended].decode("latin-1")
+
+    def array(name):
+        element = next(e for e in re.findall(r"<DataArray[^>]*>", header) if f'Name="{name}"' in e)
+        at = appended + int(re.search(r'offset="(\d+)"', element)[1])
+        kind = re.search(r'type="(\w+)"', element)[1]
+        code = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q"}[kind]
+        size = struct.unpack_from("<Q", content, at)[0]
+        return struct.unpack_from(f"<{size // struct.calcsize(code)}{code}", content, at + 8), code
+    flat, code = array("Points")
+    corners = array("connectivity")[0]
+    return list(zip(*[iter(flat)] * 3)), list(zip(*[iter(corners)] * 3)), code * 3
+
+
+def read_obj(path):
+    points, faces = [], []
+    with open(path, encoding="ascii") as f:
+        for line in f:
+            word, *rest = line.split()
+            if word == "v":
+                points.append(tuple(map(float, rest)))
+            elif word == "f":
+                faces.append(tuple(int(corner.split("/")[0]) - 1 for corner in rest))
+    return points, faces, "ddd"
+
+
+def read_stl(path):
+    with open(path, "rb") as f:
+        content = f.read()
+    count = struct.unpack_from("<I", content, 80)[0]
+    points = []
+    for n in range(count):
+        values = struct.unpack_from("<12f", content, 84 + 50 * n)
+        points += [values[3:6], values[6:9], values[9:12]]
+    return points, [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(count)], "fff"
+
+
+READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
+
+
+def measures(points, faces, at=(0, 0, 0)):
+    """Area, and volume of the cone to `at`."""
+    area = volume = 0
+    for face in faces:
+        a, b, c = ([points[v][axis] - at[axis] for axis in range(3)] for v in face)
+        u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
+        n = [u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3] for k in range(3)]
+        area += math.hypot(*n) / 2
+        volume += sum(n[k] * a[k] for k in range(3)) / 6
+    return area, volume
+
+
+class Far(GridCase):
+    def both(self, name, *more):
+        """Reports of the grid near and far."""
+        make = KINDS[name]
+        near = self.surface(self.write("near" + name[3:], make((0.0, 0.0, 0.0))), "--iso", ISO)[1]
+        far = self.surface(self.write(name, make(UTM)), "--iso", ISO, *more)[1]
+        return near, far
+
+    def setUp(self):
+        super().setUp()
+        self.needs_xml()
+
+    def test_every_kind_keeps_its_shape(self):
+        for name in KINDS:
+            with self.subTest(file=name):
+                near, far = self.both(name)
+                for key in ("vertices", "triangles", "boundary_edges", "euler_characteristic", "components"):
+                    self.assertEqual(near[key], far[key], key)
+                self.assertGreater(near["triangles"], 100)
+                self.assertLess(abs(far["area"] / near["area"] - 1), 1e-6)
+                self.assertEqual([far[key] for key in ("misoriented_edges", "nonmanifold_edges")], [0, 0])
+                for axis in range(3):
+                    for end in range(2):
+                        self.assertAlmostEqual(far["bounds"][end][axis], near["bounds"][end][axis] + UTM[axis], delta=1e-5)
+                self.assertEqual(near["origin"], [0, 0, 0])
+                self.assertNotEqual(far["origin"][1], 0)
+
+    def test_files_hold_full_coordinates(self):
+        for name, ending in itertools.product(KINDS, ("ply", "vtp", "obj")):
+            with self.subTest(file=name, written=ending):
+                near, _ = self.both(name)
+                out = self.path("out." + ending)
+                self.expect(0, "extract", self.path(name), "--iso", ISO, "-o", out, "--engine", "reference")
+                points, faces, layout = READERS[ending](out)
+                self.assertEqual(layout, "ddd")
+                area, _ = measures(points, faces)
+                self.assertLess(abs(area / near["area"] - 1), 1e-6)
+                for axis in range(3):
+                    low, high = min(p[axis] for p in points), max(p[axis] for p in points)
+                    self.assertAlmostEqual(low, near["bounds"][0][axis] + UTM[axis], delta=1e-5)
+                    self.assertAlmostEqual(high, near["bounds"][1][axis] + UTM[axis], delta=1e-5)
+
+    def test_near_files_stay_float32(self):
+        source = self.write("near.vtu", vtu((0.0, 0.0, 0.0)))
+        for ending in ("ply", "vtp"):
+            out = self.path("out." + ending)
+            self.expect(0, "extract", source, "--iso", ISO, "-o", out, "--engine", "reference")
+            self.assertEqual(READERS[ending](out)[2], "fff")
+
+    def test_stl(self):
+        near, far = self.both("far.vtu")
+        source, out = self.path("far.vtu"), self.path("out.stl")
+        result = self.expect(0, "extract", source, "--iso", ISO, "-o", out, "--engine", "reference")
+        self.assertRegex(result.stderr, r"relative to 500000,\d+,\d+.*--origin-at")
+        points, faces, _ = read_stl(out)
+        self.assertLess(abs(measures(points, faces)[0] / near["area"] - 1), 1e-5)
+        for axis in range(3):
+            self.assertAlmostEqual(min(p[axis] for p in points) + far["origin"][axis], far["bounds"][0][axis], delta=1e-5)
+        result = self.expect(0, "extract", source, "--iso", ISO, "-o", out, "--quiet", "--engine", "reference")
+        self.assertEqual(result.stderr, "")
+
+    def test_origin_at(self):
+        near, _ = self.both("far.vtu")
+        at = [value - 3 for value in UTM]
+        for ending, reader in READERS.items():
+            with self.subTest(written=ending):
+                out = self.path("out." + ending)
+                result = self.expect(0, "extract", self.path("far.vtu"), "--iso", ISO, "-o", out, "--origin-at",
+                                     ",".join(map(repr, at)), "--engine", "reference")
+                self.assertNotIn("relative", result.stderr)
+                points, faces, _ = reader(out)
+                self.assertLess(abs(measures(points, faces)[0] / near["area"] - 1), 1e-5)
+                for axis in range(3):
+                    self.assertAlmostEqual(min(p[axis] for p in points), near["bounds"][0][axis] + 3, delta=1e-5)
+        self.refuses(2, "extract", "x.vtu", "--iso", "1", "--origin-at", "1,2", says="--origin-at")
+
+    def test_raw(self):
+        raw = self.path("sphere.raw")
+        self.expect(0, "generate", "sphere", "--dims", "24,22,20", "--type", "u8", "-o", raw)
+        shape = [raw, "--dims", "24,22,20", "--type", "u8", "--iso", "100", "--spacing", "0.01,0.01,0.01"]
+        near = self.surface(*shape)[1]
+        far = self.surface(*shape, "--origin", "1e9,1e9,1e9")[1]
+        self.assertEqual(near["hash"], far["hash"])
+        self.assertEqual(far["origin"], [1e9, 1e9, 1e9])
+
+    def test_unused_point_at_zero(self):
+        alone = self.surface(self.write("a.vtu", vtu(UTM)), "--iso", ISO)[1]
+        beside = self.surface(self.write("b.vtu", vtu(UTM, extra=[(0.0, 0.0, 0.0)])), "--iso", ISO)[1]
+        self.assertEqual(alone["hash"], beside["hash"])
+
+    def test_tetrahedralize(self):
+        near, far = self.both("far.vts")
+        for name in KINDS:
+            with self.subTest(file=name):
+                out = self.path("cut.vtu")
+                self.expect(0, "tetrahedralize", self.write(name, KINDS[name](UTM)), "-o", out)
+                with open(out, "rb") as f:
+                    self.assertRegex(f.read(4096), rb'type="Float64" Name="Points"')
+                direct = self.surface(self.path(name), "--iso", ISO)[1]
+                cut = self.surface(out, "--iso", ISO)[1]
+                self.assertEqual(direct["triangles"], cut["triangles"])
+                self.assertLess(abs(direct["area"] / cut["area"] - 1), 1e-6)
+                info = json.loads(self.expect(0, "info", out, "--json").stdout)
+                self.assertGreaterEqual(info["blocks"][0]["bounds"][0][1], UTM[1])
+
+    def test_info_gives_doubles(self):
+        info = json.loads(self.expect(0, "info", self.write("far.vtu", vtu(UTM)), "--json").stdout)
+        self.assertEqual(info["blocks"][0]["bounds"][0], list(UTM))
+
+
+if __name__ == "__main__":
+    test_cli.TOOL = os.path.abspath(sys.argv[1])
+    test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]
+    print("all checks" if test_cli.HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
+    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])
