@@ -220,7 +220,7 @@ static void test_fill_values(void) {
         const double fill = fills[n / 2 % 5];
         const enum reason reason = (enum reason)(n / 10);
         surface a, b;
-        if (reason != BLANKED_SAMPLES && kind == COMPLEX && !isfinite(fill)) continue;
+        if (reason != BLANKED_SAMPLES && kind == COMPLEX && !(fabs(fill) < 1e6)) continue; /* these turn cells over */
         if (reason == BLANKED_CELLS && !isfinite(fill)) continue; /* refused: the points are there */
         subject_make(&there, kind, far_place);
         points_leave_out(&there, reason);
