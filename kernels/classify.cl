@@ -97,15 +97,14 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
                      global brick_state *bricks, global uint *active, global uint *state, global ulong *scratch,
                      uint scratch_words) {
     local uint shared[4];
-#if WORK_ITEMS > 1
-    local brick_range found[BRICKS_AT_ONCE];
-    local row_report rows[WORK_ITEMS];
-#endif
+    local sign_room for_sign;
+    local count_room for_count;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
     tile_words k = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
     active += s.active_offset;
-    uint number = 0, first_own = s.tile_count, last_own = s.tile_count, cell_count = 0, nonfinite = 0;
+    uint number = 0, cell_count = 0, nonfinite = 0;
+    own_tiles own = {NO_TILE, NO_TILE};
     while (number < s.tile_count) {
         group_barrier();
         if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
@@ -116,43 +115,25 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             tile t = tile_locate(&s, number);
             emission sums = {0, 0, 0};
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
-                layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite
-#if WORK_ITEMS > 1
-                           ,
-                           found
-#endif
-                );
+                layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &for_sign);
             halo_make(&s, t, samples, ranges, k.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_count(&s, t, z, k, cells, ranges, offsets, triangle_offsets, &sums,
-                            &tiles[TILE_WORDS * number + TILE_BRICKS]
-#if WORK_ITEMS > 1
-                            ,
-                            rows
-#endif
-                );
+                            &tiles[TILE_WORDS * number + TILE_BRICKS], &for_count);
             cell_count += sums.cells;
             if (get_local_id(0) == 0) {
                 scan_post_sum(tiles, number, TILE_VERTICES, sums.vertices);
                 scan_post_sum(tiles, number, TILE_TRIANGLES, sums.triangles);
             }
-#if WORK_ITEMS == 1
-            if (first_own == s.tile_count)
-                first_own = number;
+            if (SETTLES_LATER)
+                own_append(&own, number, tiles);
             else
-                tiles[TILE_WORDS * last_own + TILE_NEXT] = number;
-            tiles[TILE_WORDS * number + TILE_NEXT] = s.tile_count;
-            last_own = number;
-#else
-            tile_settle(&s, number, samples, cells, bricks, active, head, tiles, shared);
-#endif
+                tile_settle(&s, number, samples, cells, bricks, active, head, tiles, shared);
         }
     }
-#if WORK_ITEMS == 1
-    for (uint own = first_own; own < s.tile_count; own = tiles[TILE_WORDS * own + TILE_NEXT])
-        tile_settle(&s, own, samples, cells, bricks, active, head, tiles, shared);
-#endif
+    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
+        tile_settle(&s, n, samples, cells, bricks, active, head, tiles, shared);
     if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
     if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }

@@ -47,15 +47,6 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     return vload16(0, samples);
 }
 
-#if WORK_ITEMS == 1
-/* Asks for samples of a cluster whose tetrahedra are there: those of every fourth one, which others are next to. */
-inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
-    if (cluster_size(c, n) < CLUSTER_TETRAHEDRA) return;
-    for (uint m = 0; m < CLUSTER_POINTS; m += m % 16 < 3 ? 1 : 13)
-        line_prefetch(in.samples + in.tetrahedra[(ulong)CLUSTER_POINTS * n + m]);
-}
-#endif
-
 /* The least key of all and the greatest; side by side, as the least of the complements. */
 inline_always brick_range keys_range(BITS16 low, BITS16 high) {
     PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);

@@ -16,12 +16,6 @@ typedef struct tile_tools {
  * at this distance, what that leads to at half of it. */
 enum { FETCH_AHEAD = 16 };
 
-#if WORK_ITEMS > 1
-#define line_prefetch(address) ((void)(address))
-#endif
-
-inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* of one that is not 0 */
-
 /* The group's next number. Called by all of it. */
 inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     group_barrier();
@@ -34,11 +28,10 @@ inline_always uint ticket_take(global uint *ticket, local uint *shared) {
 
 /* What work-items before this one have; *running becomes what all have on top of it. */
 inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums) {
-#if WORK_ITEMS == 1
-    uint2 before = *running;
-    *running += value;
-    return before;
-#else
+    if (WORK_ITEMS == 1) {
+        *running += value;
+        return *running - value;
+    }
     sums[get_local_id(0)] = value;
     group_barrier();
     if (get_local_id(0) == 0) {
@@ -54,7 +47,6 @@ inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums)
     *running += sums[WORK_ITEMS];
     group_barrier();
     return before;
-#endif
 }
 
 /* What all tiles before tile `number` have, once that is settled. */

@@ -38,11 +38,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         uint end = min(run + run_bricks, active_count);
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
             uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
-#if WORK_ITEMS == 1
-            if (n + 2 < active_count) brick_prefetch(&s, active[n + 2], brick_corner(&s, active[n + 2]), k1);
-            if (n + 1 < active_count)
-                samples_prefetch(&s, brick_corner(&s, active[n + 1]), bricks[active[n + 1]].rows, samples);
-#endif
+            next_prefetch(&s, active + n, active_count - n, k1, samples);
             if (n < end && number >= s.brick_first && number < s.brick_last)
                 brick_emit(&s, number, brick_corner(&s, number), in, k1, cases, mesh, &work);
         }

@@ -9,28 +9,22 @@
  * A row has three active cubes, more or less. So as many indices are copied as most cases have. Positions and triangles
  * go through private memory, batch by batch, and from there to the mesh in whole cache lines.
  */
-#if WORK_ITEMS == 1
 
 #define CASE_BITS  9
 #define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
-
-/* Sixteen words of 4 bytes, of any kind, anywhere. */
-typedef uint16 __attribute__((aligned(4), may_alias)) words16;
 
 /* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
 inline_always void lines_store(const void *words, uint count, global void *out) {
     const uint *from = (const uint *)words;
     global uint *to = (global uint *)out;
     uint n = 0, ahead = min(count, (uint)(-(size_t)to / 4 % 16));
-#pragma clang loop vectorize(disable) unroll(disable)
-    for (; n < ahead; n++) to[n] = from[n];
+    loop_short for (; n < ahead; n++) to[n] = from[n];
     for (; n + 16 <= count; n += 16) {
         uint16 line = *(const words16 *)(from + n);
         line_store(line, (global uint16 *)(to + n));
     }
-#pragma clang loop vectorize(disable) unroll(disable)
-    for (; n < count; n++) to[n] = from[n];
+    loop_short for (; n < count; n++) to[n] = from[n];
 }
 
 /* --------------------------------------------------------------------------------------------------------- vertices */
@@ -103,19 +97,11 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 #ifdef MASK_REGISTERS
 inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
     bytes64 patterns = 0;
-#pragma unroll
-    for (uint n = 0; n < 4; n++) {
-        patterns |= __builtin_astype(__builtin_ia32_cvtmask2b512(row[n]), bytes64) & (bytes64)(char)(1 << n);
-        patterns |= __builtin_astype(__builtin_ia32_cvtmask2b512(deep[n]), bytes64) & (bytes64)(char)(16 << n);
+    loop_unrolled for (uint n = 0; n < 4; n++) {
+        patterns |= bits_spread(row[n]) & (bytes64)(char)(1 << n);
+        patterns |= bits_spread(deep[n]) & (bytes64)(char)(16 << n);
     }
     return patterns;
-}
-
-/* Of sixteen items those in the mask, one after another; stores all that fits behind them. */
-inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
-    *(words16 *)out =
-        __builtin_astype(__builtin_ia32_compresssi512_mask(as_int16(items), (int16)0, (ushort)mask), words16);
-    return (uint)popcount((ushort)mask);
 }
 
 inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
@@ -168,25 +154,21 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
 #ifdef MASK_REGISTERS /* compilers know no such shuffle by name */
 inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {
     int16 lane = convert_int16(vload16(0, lanes_named));
-    int16 here = __builtin_ia32_vpermi2vard512(as_int16(rows[0]), lane, as_int16(rows[1]));
-    int16 deep = __builtin_ia32_vpermi2vard512(as_int16(rows[2]), lane, as_int16(rows[3]));
+    int16 here = words_shuffled(rows[0], lane, rows[1]), deep = words_shuffled(rows[2], lane, rows[3]);
     return as_uint16((lane & (2 * NUMBER_LANES)) != 0 ? deep : here);
 }
 
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
     words16 rows[4];
-#pragma unroll
-    for (uint n = 0; n < 4; n++) rows[n] = *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
+    loop_unrolled for (uint n = 0; n < 4; n++) rows[n] = *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
     *(words16 *)out = numbers_shuffled(rows, entry + 1);
     *(words16 *)(out + 15) = numbers_shuffled(rows, entry + 16);
 }
 #else
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
-#pragma clang loop vectorize(disable) unroll(full)
-    for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+    loop_copied for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_place[entry[1 + n]]];
     if (3 * entry[0] > CASE_STEP)
-#pragma clang loop vectorize(disable) unroll(full)
-        for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+        loop_copied for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_place[entry[1 + n]]];
 }
 #endif
 
@@ -236,6 +218,13 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
     line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up + deep));
 }
 
+/* Of the bricks that follow the first in the list. */
+inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
+                                 global const BITS *samples) {
+    if (count > 2) brick_prefetch(s, active[2], brick_corner(s, active[2]), k1);
+    if (count > 1) samples_prefetch(s, brick_corner(s, active[1]), k1.bricks[active[1]].rows, samples);
+}
+
 inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
                               global const uchar *cases, mesh_buffers mesh, brick_work *work) {
     brick_signs signs;
@@ -254,5 +243,3 @@ inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays 
     count = cubes_list(s, state.rows, work);
     triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
 }
-
-#endif

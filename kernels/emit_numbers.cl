@@ -9,7 +9,6 @@
  * A row has an edge of each type, more or less. So lists get one item of a row at the least: a branch that cannot be
  * foreseen costs more. What is too much is overwritten by what comes next.
  */
-#if WORK_ITEMS == 1
 
 #define NUMBER_STEP NUMBER_TYPES(HYBRID)
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
@@ -17,11 +16,6 @@
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
 #define CASE_ITEMS  (HYBRID ? 18 : 30) /* indices that a cube has at the most */
-
-#ifdef MASK_REGISTERS
-/* A byte for each sample of a row. */
-typedef char bytes64 __attribute__((ext_vector_type(64)));
-#endif
 
 /* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
 typedef struct brick_signs {
@@ -134,8 +128,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     for (; mask; mask &= mask - 1) {
         uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
-#pragma unroll
-        for (uint type = 0; type < EDGE_TYPES; type++) {
+        loop_unrolled for (uint type = 0; type < EDGE_TYPES; type++) {
             const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
@@ -237,5 +230,3 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
     }
 }
-
-#endif

@@ -4,7 +4,6 @@
  * Vertices are stored one by one. The numbers of a cube's 18 vertices are population counts of the crossed edges at
  * lower x in the four rows of samples that the cubes lie between.
  */
-#if WORK_ITEMS > 1
 
 #define CUBE_EDGES 18
 
@@ -154,11 +153,13 @@ typedef struct brick_work {
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) { work->none = 0; }
 
+/* Others of the group work while one waits for memory. */
+inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
+                                 global const BITS *samples) {}
+
 /* The work-item's row of brick `number`. */
 inline_always void brick_emit(const slab *s, uint number, corner brick, grid_arrays in, row_results k1,
                               global const uchar *cases, mesh_buffers mesh, brick_work *work) {
     uint place = (uint)get_local_id(0) % BRICK_WORDS;
     if (k1.bricks[number].rows >> place & 1) row_emit(s, brick, number, place, in, k1, cases, mesh);
 }
-
-#endif

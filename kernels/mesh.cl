@@ -5,8 +5,6 @@
  * edge type's does, plus the crossed edges of that type at lower x.
  */
 
-inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
-
 typedef struct mesh_buffers {
     global float *positions;
     global float *normals;

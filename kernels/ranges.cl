@@ -4,14 +4,6 @@
  *
  * Of 64-bit samples keys are the upper half, so that a key in doubt counts as mixed. From the build: BITS, FLOATING.
  */
-#if FLOATING == 32
-typedef int signed_bits;
-#define SIGNED16 int16
-#elif FLOATING == 64
-typedef long signed_bits;
-#define SIGNED16 long16
-#endif
-
 #if FLOATING
 #define KEY_SIGN ((BITS)1 << (FLOATING - 1))
 /* From here on keys are infinite or NaN, up to its complement too. */

@@ -51,3 +51,20 @@ inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, 
     }
     return *tile == 0;
 }
+
+/* The tiles of a group that posts the sums of all before it looks back, in the order in which it took them. */
+#define SETTLES_LATER (WORK_ITEMS == 1)
+#define NO_TILE       0xffffffffu
+
+typedef struct own_tiles {
+    uint first, last;
+} own_tiles;
+
+inline_always void own_append(own_tiles *own, uint number, global uint *tiles) {
+    if (own->first == NO_TILE)
+        own->first = number;
+    else
+        tiles[TILE_WORDS * own->last + TILE_NEXT] = number;
+    tiles[TILE_WORDS * number + TILE_NEXT] = NO_TILE;
+    own->last = number;
+}

@@ -4,61 +4,7 @@
  * A sample is inside when it is >= the isovalue. For every type the samples that are inside are one run of bit patterns
  * (floats order like integers within a sign), so the test is (bits - low) <= span in unsigned integers: exact whatever
  * the device does with subnormals, and the same text for all types. Bits past the end of a row are 0.
- *
- * From the build: BITS, the unsigned type as wide as a sample; FLOATING; WORK_ITEMS; MISSING; HYBRID.
  */
-#pragma OPENCL FP_CONTRACT OFF
-#ifdef FP64
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#endif
-
-#define PASTE2(a, b) a##b
-#define PASTE(a, b)  PASTE2(a, b)
-#define BITS16       PASTE(BITS, 16)
-
-#ifndef inline_always /* tools that run kernels unoptimised define it empty */
-#define inline_always static inline __attribute__((always_inline))
-#endif
-
-/* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.
- */
-#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(NO_AVX512)
-#define MASK_REGISTERS
-#endif
-
-/* Bit-sliced code runs over LANES rows of 64 samples at once: the eight of a plane of a brick where a work-item has
- * bricks to itself, one where it shares them. */
-#if WORK_ITEMS == 1
-#define group_barrier()
-#define LANES 8
-typedef ulong8 lanes;
-
-/* A work-item alone leaves nothing to vectorise across work-items; Intel's compiler for CPUs tries for minutes. */
-#ifdef cl_intel_vec_len_hint
-#define kernel __kernel __attribute__((intel_vec_len_hint(1)))
-#endif
-
-/* Asks for the cache line at an address, which need not be one of the buffer's. Tools may define it empty, too. */
-#ifndef line_prefetch
-#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
-#endif
-
-/* Stores a vector as large as a cache line, at its start, without reading the line into the caches. */
-#ifndef line_store
-#define line_store(value, place) __builtin_nontemporal_store(value, place)
-#endif
-#else
-#define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
-#define LANES           1
-typedef ulong lanes;
-#endif
-
-#if FLOATING == 32
-#define EXPONENT 0x7f800000u
-#elif FLOATING == 64
-#define EXPONENT 0x7ff0000000000000ul
-#endif
-
 /* 0xFF or 0 per sample. */
 inline_always char16 inside_mask(BITS16 bits, const slab *s) {
     return convert_char16((bits - (BITS)s->inside_low) <= (BITS16)(BITS)s->inside_span);
@@ -74,17 +20,17 @@ inline_always char16 missing_mask(BITS16 bits, const slab *s) {
     return missing;
 }
 
-/* Bit n of the result for byte n of the mask, as AVX-512 has it; elsewhere each byte keeps one bit, and the product
- * sums the bytes of a half into its highest one. */
-#ifdef MASK_REGISTERS
-inline_always uint mask_pack(char16 mask) { return __builtin_ia32_cvtb2mask128(mask); }
-#else
+/* Bit n of the result for byte n of the mask: each byte keeps one bit, and the product sums the bytes of a half into its
+ * highest one. Where the processor has an instruction for that, extensions.cl defines it. */
+#ifndef mask_pack
 inline_always uint mask_pack(char16 mask) {
     ulong2 kept = as_ulong2(mask) & 0x8040201008040201ul;
     ulong2 bytes = (kept * 0x0101010101010101ul) >> 56;
     return (uint)(bytes.x | bytes.y << 8);
 }
 #endif
+
+inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
 
 inline_always ulong row_start(const slab *s, uint y, uint z) {
     return s->sample_offset + ((ulong)(z - s->sample_z) * s->ny + y) * s->nx;

@@ -9,6 +9,7 @@
 #include "grid.h"
 #include "kernel_sources.h"
 #include "program_cache.h"
+#include "text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,48 +66,54 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-enum { SOURCE_COUNT = 11 };
+/* Sources of each text, in order; the rest of a list is NULL. */
+enum { SOURCES_MOST = 20 };
 
-static const char *const classify_sources[SOURCE_COUNT] = {kernel_source_slab,
-                                                           kernel_source_words,
-                                                           kernel_source_tetrahedra,
-                                                           kernel_source_cells,
-                                                           kernel_source_ranges,
-                                                           kernel_source_sign,
-                                                           kernel_source_count,
-                                                           kernel_source_scan,
-                                                           kernel_source_classify,
-                                                           "",
-                                                           ""};
-static const char *const emit_sources[SOURCE_COUNT] = {kernel_source_slab,
-                                                       kernel_source_words,
-                                                       kernel_source_tetrahedra,
-                                                       kernel_source_cells,
-                                                       kernel_source_crossing,
-                                                       kernel_source_vertex,
-                                                       kernel_source_mesh,
-                                                       kernel_source_emit_numbers,
-                                                       kernel_source_emit_brick,
-                                                       kernel_source_emit_rows,
-                                                       kernel_source_emit};
-static const char *const complex_sources[SOURCE_COUNT] = {kernel_source_slab,
-                                                          kernel_source_words,
-                                                          kernel_source_ranges,
-                                                          kernel_source_scan,
-                                                          kernel_source_crossing,
-                                                          kernel_source_complex_job,
-                                                          kernel_source_complex_cluster,
-                                                          kernel_source_complex_tile,
-                                                          kernel_source_complex_classify,
-                                                          kernel_source_complex_join,
-                                                          kernel_source_complex_emit};
+static const char *const classify_sources[][SOURCES_MOST] = {
+    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
+                    kernel_source_words, kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
+                    kernel_source_sign, kernel_source_sign_alone, kernel_source_count, kernel_source_count_alone,
+                    kernel_source_scan, kernel_source_classify},
+    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
+                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges, kernel_source_sign,
+                     kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups, kernel_source_scan,
+                     kernel_source_classify},
+};
+static const char *const emit_sources[][SOURCES_MOST] = {
+    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
+                    kernel_source_words, kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing,
+                    kernel_source_vertex, kernel_source_mesh, kernel_source_emit_numbers, kernel_source_emit_brick,
+                    kernel_source_emit},
+    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
+                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing, kernel_source_vertex,
+                     kernel_source_mesh, kernel_source_emit_rows, kernel_source_emit},
+};
+static const char *const complex_sources[][SOURCES_MOST] = {
+    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
+                    kernel_source_words, kernel_source_ranges, kernel_source_scan, kernel_source_crossing,
+                    kernel_source_complex_job, kernel_source_complex_cluster, kernel_source_complex_tile,
+                    kernel_source_complex_count, kernel_source_complex_count_alone, kernel_source_complex_classify,
+                    kernel_source_complex_join, kernel_source_complex_join_alone, kernel_source_complex_number,
+                    kernel_source_complex_emit},
+    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
+                     kernel_source_ranges, kernel_source_scan, kernel_source_crossing, kernel_source_complex_job,
+                     kernel_source_complex_cluster, kernel_source_complex_tile, kernel_source_complex_count,
+                     kernel_source_complex_count_groups, kernel_source_complex_classify, kernel_source_complex_join,
+                     kernel_source_complex_join_groups, kernel_source_complex_number, kernel_source_complex_emit},
+};
 
-static program_recipe recipe_of(const program *p) { return (program_recipe){p->sources, SOURCE_COUNT, p->options}; }
+static kernel_text text_of(const tc_context *context) { return text_for(context->options.work_items); }
+
+static program_recipe recipe_of(const program *p) {
+    program_recipe recipe = {p->sources, 0, p->options};
+    while (recipe.source_count < SOURCES_MOST && p->sources[recipe.source_count]) recipe.source_count++;
+    return recipe;
+}
 
 static tc_status source_build(const tc_context *context, program *p) {
     cl_int error;
-    p->program =
-        cl->CreateProgramWithSource(context->context, SOURCE_COUNT, (const char **)(size_t)p->sources, NULL, &error);
+    p->program = cl->CreateProgramWithSource(context->context, recipe_of(p).source_count,
+                                             (const char **)(size_t)p->sources, NULL, &error);
     if (error) return context_fail(context, "handing the kernels to the device", error);
     error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
     return error ? build_fail(context, p, error) : TC_OK;
@@ -142,8 +149,9 @@ static void program_release(program *p) {
     free(p);
 }
 
-/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: none is made. */
-static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCE_COUNT],
+/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: none
+ * is made. */
+static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCES_MOST],
                              const char *name, bool cells, program **out) {
     for (program *p = context->programs; p; p = p->next)
         if (!strcmp(p->options, options)) {
@@ -170,7 +178,7 @@ tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method meth
     char options[sizeof context->programs->options];
     program *p;
     classify_options_write(context, type, method, missing, options, sizeof options);
-    tc_status status = program_get(context, options, classify_sources, "classify", missing, &p);
+    tc_status status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
     if (!status) out->classify = p->kernel, out->cells = p->cells;
     return status;
 }
@@ -180,7 +188,7 @@ tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method me
     char options[sizeof context->programs->options];
     program *p;
     emit_options_write(context, grid, method, missing, normals, options, sizeof options);
-    tc_status status = program_get(context, options, emit_sources, "emit", false, &p);
+    tc_status status = program_get(context, options, emit_sources[text_of(context)], "emit", false, &p);
     if (!status) out->emit = p->kernel;
     return status;
 }
@@ -199,7 +207,7 @@ tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, cl_kerne
     program *p = NULL;
     emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
     strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
-    tc_status status = program_get(context, options, complex_sources, NULL, false, &p);
+    tc_status status = program_get(context, options, complex_sources[text_of(context)], NULL, false, &p);
     if (!status) status = complex_kernels_create(context, p);
     if (!status) *out = p->complex;
     return status;

@@ -2,6 +2,7 @@
 
 #include "cache.h"
 #include "failure.h"
+#include "text.h"
 
 #include <errno.h>
 #include <stddef.h>
@@ -30,7 +31,8 @@ static uint32_t work_items_limit(const tc_context *context) {
 }
 
 static bool work_items_fit(const tc_context *context, uint32_t count) {
-    return (count == 1 || count % 32 == 0) && count <= work_items_limit(context);
+    if (count == 1) return text_rule_of(&context->info)->takes_alone;
+    return count % 32 == 0 && count <= work_items_limit(context);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ file */
@@ -126,11 +128,13 @@ static void kept_take(tc_context *context) {
 /* Polls of an unfinished tile. Recomputing one costs a CPU as long as about 2^17 polls take. */
 static const uint32_t spins = 1u << 14, spins_cpu = 1u << 17;
 
-/* A work-item per tile on CPUs, a work-item per row of a brick elsewhere; groups to fill the device. */
+/* A work-item per tile where the text for that is taken, a work-item per row of a brick elsewhere, on CPUs of one
+ * brick; groups to fill the device. */
 static void defaults_take(tc_context *context) {
     tc_context_options *o = &context->options;
-    bool cpu = !strcmp(context->info.type, "cpu");
-    if (!o->work_items) o->work_items = cpu ? 1 : context->info.max_work_group_size < 128 ? 32 : 128;
+    const bool cpu = !strcmp(context->info.type, "cpu");
+    const bool alone = text_rule_of(&context->info)->text == TEXT_ALONE;
+    if (!o->work_items) o->work_items = alone ? 1 : cpu || context->info.max_work_group_size < 128 ? 32 : 128;
     if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
     if (!o->spin_limit) o->spin_limit = cpu ? spins_cpu : spins;
     if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
@@ -140,6 +144,12 @@ tc_status tuning_choose(tc_context *context) {
     const tc_context_options *o = &context->options;
     kept_take(context);
     defaults_take(context);
+    if (o->work_items == 1 && !work_items_fit(context, 1))
+        return (tc_status)fail(
+            TC_ERROR_ARGUMENT,
+            "work_items 1: the compiler of %s is known not to take the kernels for one work-item per "
+            "group; a multiple of 32, or 0 for the default",
+            context->info.platform);
     if (!work_items_fit(context, o->work_items))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %u on this device",
                                o->work_items, work_items_limit(context));

@@ -1,0 +1,44 @@
+/*
+ * common.cl - what all kernels begin with
+ *
+ * There are two texts of the kernels. One is for groups of work-items: plain OpenCL C 1.2, with vectors of 2, 3, 4, 8
+ * and 16 elements, which every compiler takes and which can be translated to SPIR-V. The other is for a work-item alone
+ * in its group, as processors want it: extensions.cl holds what it takes from compilers beyond OpenCL C. Files named
+ * _groups or _alone, and those that say so, belong to one of them, the others to both. host/lib/text.c tells which
+ * device gets which.
+ *
+ * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
+ * WORK_ITEMS, of a group; MISSING; HYBRID.
+ */
+#pragma OPENCL FP_CONTRACT OFF
+#ifdef FP64
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
+
+/* Vectors longer than the processor's registers would be passed in another way to functions compiled elsewhere, of
+ * which there are none. */
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
+#define PASTE2(a, b) a##b
+#define PASTE(a, b)  PASTE2(a, b)
+#define BITS16       PASTE(BITS, 16)
+
+#ifndef inline_always /* tools that run kernels unoptimised define it empty */
+#define inline_always static inline __attribute__((always_inline, unused))
+#endif
+
+#if FLOATING == 32
+#define EXPONENT 0x7f800000u
+#elif FLOATING == 64
+#define EXPONENT 0x7ff0000000000000ul
+#endif
+
+#if FLOATING == 32
+typedef int signed_bits;
+#define SIGNED16 int16
+#elif FLOATING == 64
+typedef long signed_bits;
+#define SIGNED16 long16
+#endif

@@ -1,0 +1,63 @@
+/*
+ * complex_count.cl - the first stage of kernel 1 of complexes: which tetrahedra the surface passes through
+ *
+ * A first visit reads every tetrahedron once and keeps the range of its cluster's samples; later ones read only the
+ * clusters whose range holds the isovalue. How the clusters of a tile are gone through: complex_count_alone.cl,
+ * complex_count_groups.cl.
+ */
+
+/* What kernel 1 works on. */
+typedef struct cluster_arrays {
+    complex_arrays in;
+    global brick_range *ranges;
+    global cluster_state *clusters;
+    global uint *active, *head;
+} cluster_arrays;
+
+/* Active clusters that a work-item lists at once: work-items meet at the list's end. */
+#define LIST_BATCH (WORK_ITEMS == 1 ? 64 : 1)
+
+/* What a work-item has seen of clusters: sums over them, and active ones that are not listed yet. */
+typedef struct cluster_sums {
+    uint crossed, invalid, active_count, active[LIST_BATCH];
+} cluster_sums;
+
+inline_always void clusters_append(cluster_arrays a, cluster_sums *sums) {
+    uint place = atomic_add(&a.head[HEAD_ACTIVE_CLUSTERS], sums->active_count);
+    for (uint n = 0; n < sums->active_count; n++) a.active[place + n] = sums->active[n];
+    sums->active_count = 0;
+}
+
+inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) {
+    if (LIST_BATCH == 1) {
+        a.active[atomic_inc(&a.head[HEAD_ACTIVE_CLUSTERS])] = n;
+        return;
+    }
+    sums->active[sums->active_count++] = n;
+    if (sums->active_count == LIST_BATCH) clusters_append(a, sums);
+}
+
+/* Whether the surface may pass through a cluster; the first visit keeps its range. A recount does not know whether that
+ * is there yet. */
+inline_always bool cluster_mixed(tile_tools k, uint n, cluster_arrays a, bool recount, cluster_sums *sums) {
+    if (k.s->ranges_known) return range_sign(k.s, a.ranges[n]) == SIGN_MIXED;
+    if (recount) return cluster_valid(k.c, n, a.in.tetrahedra + (ulong)CLUSTER_POINTS * n);
+    uint invalid = 0;
+    brick_range range = cluster_range(k.s, k.c, n, a.in, &invalid);
+    a.ranges[n] = range;
+    sums->invalid |= invalid;
+    return !invalid && range_sign(k.s, range) == SIGN_MIXED;
+}
+
+/* Counts a cluster for the whole group's sums *running; none: the work-item has no cluster. */
+inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a, bool recount, uint2 *running,
+                               cluster_sums *sums) {
+    cluster_report report = {0, 0, 0, 0};
+    if (!none) report = cluster_count(k.s, k.c, n, a.in);
+    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, k.sums);
+    if (recount || !report.active) return;
+    cluster_state state = {report.patterns, before.x, before.y};
+    a.clusters[n] = state;
+    cluster_append(n, a, sums);
+    sums->crossed += report.edges;
+}

@@ -1,0 +1,57 @@
+/*
+ * complex_count_alone.cl - clusters of a tile where a work-item has it to itself: what the next ones need is asked for
+ */
+
+/* Asks for samples of a cluster whose tetrahedra are there: those of every fourth one, which others are next to. */
+inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
+    if (cluster_size(c, n) < CLUSTER_TETRAHEDRA) return;
+    for (uint m = 0; m < CLUSTER_POINTS; m += m % 16 < 3 ? 1 : 13)
+        line_prefetch(in.samples + in.tetrahedra[(ulong)CLUSTER_POINTS * n + m]);
+}
+
+/* As range_sign() of ranges[0] to [15] is SIGN_MIXED, a bit each. */
+inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges) {
+    uint16 first = vload16(0, (global const uint *)ranges), second = vload16(1, (global const uint *)ranges);
+    uint16 low = (uint16)(first.even, second.even), high = (uint16)(first.odd, second.odd);
+    int16 mixed = (low < s->key_inside) & (high >= s->key_outside);
+#if FLOATING
+    mixed |= (high >= KEY_INFINITY) | (low <= ~KEY_INFINITY);
+#endif
+    return mask_pack(convert_char16(mixed));
+}
+
+/* Bit m: cluster first + m is below end and mixed by its range, which is known; its tetrahedra are asked for. */
+inline_always ulong mixed_prefetch(tile_tools k, uint first, uint end, cluster_arrays a) {
+    ulong mixed = 0;
+    if (first + 64 <= end)
+        for (uint m = 0; m < 64; m += 16) mixed |= (ulong)ranges_mixed(k.s, a.ranges + first + m) << m;
+    else
+        for (uint m = 0; first + m < end; m++)
+            mixed |= (ulong)(range_sign(k.s, a.ranges[first + m]) == SIGN_MIXED) << m;
+    for (ulong rest = mixed; rest; rest &= rest - 1) {
+        global const uint *points = a.in.tetrahedra + (ulong)CLUSTER_POINTS * (first + lowest_bit(rest));
+        for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
+    }
+    return mixed;
+}
+
+/* Active tetrahedra and triangles of a tile; recount: nothing is stored. */
+inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
+    uint first = number * k.c->tile_clusters, end = min(first + k.c->tile_clusters, k.c->cluster_count);
+    uint2 running = 0;
+    if (!k.s->ranges_known) {
+        for (uint n = first; n < end; n++)
+            if (cluster_mixed(k, n, a, recount, sums)) cluster_add(k, n, false, a, recount, &running, sums);
+        return running;
+    }
+    ulong next = mixed_prefetch(k, first, end, a);
+    for (uint start = first; start < end; start += 64) {
+        ulong mixed = next;
+        next = mixed_prefetch(k, start + 64, end, a);
+        for (; mixed; mixed &= mixed - 1) {
+            if (mixed & (mixed - 1)) cluster_prefetch(k.c, start + lowest_bit(mixed & (mixed - 1)), a.in);
+            cluster_add(k, start + lowest_bit(mixed), false, a, recount, &running, sums);
+        }
+    }
+    return running;
+}

@@ -1,0 +1,22 @@
+/*
+ * complex_join_groups.cl - edges joined where the work-items of a group share a tile
+ */
+
+kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
+                         global uint *state, global uint *table, global uint *entries) {
+    local uint shared[4];
+    uint number = 0, full = 0;
+    while (number < c.active_tiles) {
+        number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
+        uint first = number * c.tile_actives, count = 0;
+        if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
+        for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
+            uint a = first + n, edges = edges_of(a, active, cases);
+            for (uint place = 4 * a; place < 4 * a + edges; place++) {
+                uint entry = edge_hash(edge_points(active, place, cases)) & c.table_mask;
+                entries[place] = edge_enter(&c, place, entry, active, cases, table, &full);
+            }
+        }
+    }
+    if (full) atomic_or(&state[HEAD_FULL], 1u);
+}

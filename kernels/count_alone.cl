@@ -1,0 +1,172 @@
+/*
+ * count_alone.cl - counting where a work-item has bricks to itself: it skips those that are uniform and whose
+ * neighbours are the same
+ */
+
+/* Samples of rows that exist. */
+inline_always lanes rows_valid(const slab *s, uint y, uint w) {
+    return lanes_select(LANE_NUMBERS + y < (lanes)s->ny) & word_valid(s, w);
+}
+
+/* Whether the samples that follow a uniform brick in x, y or z have one on the other side. Those of its tile that are
+ * uniform too have not where they are on its side. */
+inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, uint sign) {
+    const ulong uniform = sign_word(sign);
+    for (uint n = 1; n < 8; n++) {
+        const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
+        if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
+        const uint found = up < t.y1 && deep < t.z1 ? k.bricks[brick_index(s, up, deep, across)].sign : SIGN_MIXED;
+        if (found == sign) continue;
+        if (found != SIGN_MIXED) return true;
+        const ulong columns = n & 1 ? 1 : word_valid(s, across);
+        const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
+        const uint stride = up < t.y1 ? BRICK_ROWS : s->words_x; /* from plane to plane */
+        global const ulong *row = tile_row(s, t, up, deep, across, k);
+        lanes differ = 0;
+        ulong differs = 0;
+        for (uint plane = 0; plane < planes; plane++, row += stride)
+            if (n & 2)
+                differs |= *row ^ uniform;
+            else
+                differ |= vload8(0, row) ^ uniform;
+        if (n & 2 ? differs & columns : lanes_any(differ & rows_valid(s, up, across) & columns)) return true;
+    }
+    return false;
+}
+
+/* Whether a brick emits something, or, where it is mixed, may. The bricks at higher x, y and z tell at once where they
+ * are of this tile and on its side. */
+inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+    const uint number = brick_index(s, y, z, w), sign = k.bricks[number].sign;
+    if (sign == SIGN_MIXED) return true;
+    const uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
+    const uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
+    global const brick_state *here = k.bricks + number, *behind = here + deep;
+    const uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
+                        (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
+                        (behind[up + across].sign ^ sign);
+    const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);
+    return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign);
+}
+
+/* The words that cubes of a brick take from one brick: where those of its planes are, and of the plane after. */
+typedef struct column {
+    global const ulong *first, *after;
+    uint stride; /* from plane to plane */
+    lanes valid; /* samples that exist */
+} column;
+
+/* Outside the grid all words are 0. */
+inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+    global const ulong *none = brick_words(0, SIGN_OUTSIDE, k.words);
+    column c = {none, none, 0, 0};
+    if (w >= s->words_x || y >= s->ny) return c;
+    const uint end = min(z + BRICK_PLANES, t.z1);
+    c.first = tile_row(s, t, y, z, w, k), c.stride = y < t.y1 ? BRICK_ROWS : s->words_x;
+    if (end < s->nz) c.after = tile_row(s, t, y, end, w, k);
+    c.valid = rows_valid(s, y, w);
+    return c;
+}
+
+/* Of the brick, of that at higher x, and of the rows after both. */
+typedef struct brick_columns {
+    column at, next, last, last_next;
+} brick_columns;
+
+inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+    brick_columns c = {column_of(s, t, y, z, w, k), column_of(s, t, y, z, w + 1, k),
+                       column_of(s, t, y + BRICK_ROWS, z, w, k), column_of(s, t, y + BRICK_ROWS, z, w + 1, k)};
+    return c;
+}
+
+inline_always global const ulong *column_row(column c, uint plane, bool after) {
+    return after ? c.after : c.first + plane * c.stride;
+}
+
+/* Rows y to y + 7 and y + 1 to y + 8 of a plane, which may be the one after the brick. */
+inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
+    lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
+    lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
+    ulong last = *column_row(c.last, plane, after) & c.last.valid.s0;
+    ulong last_next = *column_row(c.last_next, plane, after) & c.last_next.valid.s0;
+    *a = rows_shifted(at, next);
+    *b = rows_shifted(lanes_up(at, last), lanes_up(next, last_next));
+}
+
+/* Of each lane, what the lanes before it have in all. */
+inline_always lanes lanes_before(lanes x) {
+    x = (lanes)(0, x.s0123, x.s456);
+    x += (lanes)(0, x.s0123, x.s456);
+    x += (lanes)(0, 0, x.s0123, x.s45);
+    return x + (lanes)(0, 0, 0, 0, x.s0123);
+}
+
+/* Counts a brick, stores where in it each row's output begins and returns which rows emit. */
+inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, tile_words k, global const ulong *cells,
+                               global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
+    const uint number = brick_index(s, y, z, w), planes = min((uint)BRICK_PLANES, t.z1 - z);
+    const brick_columns columns = columns_of(s, t, y, z, w, k);
+    uint mask = 0;
+    lanes cells_seen = 0, begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
+    sample_rows a, b, c, d;
+    plane_rows(columns, 0, false, &a, &b);
+    for (uint plane = 0; plane < planes; plane++) {
+        plane_rows(columns, plane + 1, plane + 1 == planes, &c, &d);
+        cube_rows r = cube_rows_of(s, y, z + plane, w, a, b, c, d);
+        a = c, b = d;
+        row_counts rows = rows_count(s, &r, y, z + plane, w, cells);
+        lanes both = rows.vertices | rows.triangles << 32;
+        if (!lanes_any(both)) continue;
+        lanes before = lanes_before(both) + begins;
+        vstore8(rows.packed + (before & 0xfffffffful), BRICK_PLANES * number + plane, offsets);
+        vstore8(convert_ushort8(before >> 32), BRICK_PLANES * number + plane, triangle_offsets);
+        begins = (lanes)(before.s7 + both.s7);
+        mask |= lanes_nonzero(both) << (BRICK_ROWS * plane);
+        cells_seen += rows.cells;
+    }
+    sums->cells += (uint)lanes_sum(cells_seen);
+    sums->vertices += (uint)begins.s0, sums->triangles += (uint)(begins.s0 >> 32);
+    return mask;
+}
+
+/* Whether a run of bricks and those at higher x, y and z are known to be all on one side: nothing of it emits. */
+inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, uint count,
+                               global const brick_range *ranges) {
+    const uint up = y + BRICK_ROWS < s->ny ? s->words_x : 0;
+    const uint deep = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
+    const uint across = w + count < s->words_x ? count : count - 1;
+    if (z + BRICK_PLANES >= s->z1 && s->z1 < s->nz) return false;
+    if (!s->ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
+    global const brick_range *here = ranges + s->range_offset + brick_index(s, y, z, w);
+    uint sign = run_sign(s, here, count);
+    return sign != SIGN_MIXED && run_sign(s, here + up, count) == sign && run_sign(s, here + deep, count) == sign &&
+           run_sign(s, here + up + deep, count) == sign && range_sign(s, here[across]) == sign &&
+           range_sign(s, here[up + across]) == sign && range_sign(s, here[deep + across]) == sign &&
+           range_sign(s, here[up + deep + across]) == sign;
+}
+
+/* What a group needs of local memory: nothing here. */
+typedef struct count_room {
+    uint none;
+} count_room;
+
+/* Counts the layer that begins with plane z, brick by brick; *sums runs on from brick to brick. What comes before a
+ * brick is stored within the tile. *emitting: how many bricks of the tile emit something. */
+inline_always void layer_count(const slab *s, tile t, uint z, tile_words k, global const ulong *cells,
+                               global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
+                               emission *sums, global uint *emitting, local count_room *room) {
+    global brick_state *first = &k.bricks[brick_index(s, t.y0, z, 0)];
+    first->vertices = sums->vertices, first->triangles = sums->triangles;
+    for (uint y = t.y0; y < t.y1; y += BRICK_ROWS)
+        for (uint run = 0; run < s->words_x; run += RUN_BRICKS_X) {
+            uint end = min(run + RUN_BRICKS_X, s->words_x);
+            if (run_skipped(s, t, y, z, run, end - run, ranges)) continue;
+            for (uint w = run; w < end; w++) {
+                if (!brick_emits(s, t, y, z, w, k)) continue;
+                global brick_state *b = &k.bricks[brick_index(s, y, z, w)];
+                b->vertices = sums->vertices, b->triangles = sums->triangles;
+                b->rows = brick_count(s, t, y, z, w, k, cells, offsets, triangle_offsets, sums);
+                *emitting += b->rows != 0;
+            }
+        }
+}

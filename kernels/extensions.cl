@@ -1,0 +1,97 @@
+/*
+ * extensions.cl - what the text for a work-item alone takes from compilers beyond OpenCL C 1.2: vectors of 64 elements,
+ * built-in functions, hints. Compilers built on Clang know it; see host/lib/text.c
+ */
+
+/* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.
+ */
+#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(NO_AVX512)
+#define MASK_REGISTERS
+#endif
+
+/* A work-item alone leaves nothing to vectorise across work-items; Intel's compiler for CPUs tries for minutes. */
+#ifdef cl_intel_vec_len_hint
+#define kernel __kernel __attribute__((intel_vec_len_hint(1)))
+#endif
+
+/* Asks for the cache line at an address, which need not be one of the buffer's. Tools may define it empty, too. */
+#ifndef line_prefetch
+#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
+#endif
+
+/* Stores a vector as large as a cache line, at its start, without reading the line into the caches. */
+#ifndef line_store
+#define line_store(value, place) __builtin_nontemporal_store(value, place)
+#endif
+
+/* Of the loop that follows. */
+#define loop_unrolled _Pragma("unroll")
+#define loop_copied   _Pragma("clang loop vectorize(disable) unroll(full)")
+#define loop_short    _Pragma("clang loop vectorize(disable) unroll(disable)")
+
+/* ---------------------------------------------------------------------------------------------------------- vectors */
+
+/* Sixteen words of 4 bytes, of any kind, anywhere. */
+typedef uint16 __attribute__((aligned(4), may_alias)) words16;
+
+/* 64 samples of a row, and a byte for each. */
+typedef BITS samples64 __attribute__((ext_vector_type(64)));
+typedef BITS samples64_unaligned __attribute__((ext_vector_type(64), aligned(sizeof(BITS))));
+typedef char bytes64 __attribute__((ext_vector_type(64)));
+
+/* Keys of a cache line's samples, of large ones 16. */
+#define LINE_KEYS (sizeof(BITS) < 4 ? 64 / sizeof(BITS) : 16)
+typedef BITS line_keys __attribute__((ext_vector_type(LINE_KEYS)));
+
+constant const samples64 lane64 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+                                   16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
+                                   32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
+                                   48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+
+#if FLOATING
+/* All bits of a sample are its sign. */
+inline_always samples64 signs64(samples64 bits) {
+    typedef signed_bits signed64 __attribute__((ext_vector_type(64)));
+    return __builtin_astype(__builtin_astype(bits, signed64) >> (FLOATING - 1), samples64);
+}
+#endif
+
+/* Bit n for sample n that is at most the other. */
+inline_always ulong at_most64(samples64 samples, samples64 most) {
+    bytes64 is = __builtin_convertvector(samples <= most, bytes64);
+#ifdef MASK_REGISTERS
+    return __builtin_ia32_cvtb2mask512(is);
+#else
+    ulong8 mask = __builtin_astype(is, ulong8);
+    return as_ulong(convert_uchar8(((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56));
+#endif
+}
+
+/* Elements 1 to 7 of one, then the other. OpenCL C's own form, a vector of vectors, makes slower code. */
+inline_always ulong8 ulongs_joined(ulong8 x, ulong last) {
+    return __builtin_shufflevector(x, (ulong8)last, 1, 2, 3, 4, 5, 6, 7, 8);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- masks */
+
+#ifdef MASK_REGISTERS
+
+#define mask_pack(mask)  ((uint)__builtin_ia32_cvtb2mask128(mask))
+#define lanes_nonzero(x) ((uint)__builtin_ia32_cvtq2mask512((x) != 0ul))
+
+/* All bits of byte n are bit n. */
+inline_always bytes64 bits_spread(ulong bits) { return __builtin_astype(__builtin_ia32_cvtmask2b512(bits), bytes64); }
+
+/* Of sixteen items those in the mask, one after another; stores all that fits behind them. */
+inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
+    *(words16 *)out =
+        __builtin_astype(__builtin_ia32_compresssi512_mask(as_int16(items), (int16)0, (ushort)mask), words16);
+    return (uint)popcount((ushort)mask);
+}
+
+/* Of the 32 words of both, those that lanes name by their lower five bits. */
+inline_always int16 words_shuffled(words16 low, int16 lane, words16 high) {
+    return __builtin_ia32_vpermi2vard512(as_int16(low), lane, as_int16(high));
+}
+
+#endif

@@ -1,0 +1,18 @@
+/*
+ * lanes_groups.cl - bit-sliced code where the work-items of a group share bricks: a row at a time
+ */
+#define LANES 1
+typedef ulong lanes;
+
+#define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+
+/* Others of the group work while one waits for memory. */
+#ifndef line_prefetch
+#define line_prefetch(address) ((void)(address))
+#endif
+
+#define LANE_NUMBERS            0ul
+#define lanes_select(condition) ((condition) ? ~0ul : 0ul) /* all bits or none */
+#define lanes_popcount(x)       popcount(x)
+#define lanes_any(x)            (x)
+#define lanes_sum(x)            (x)

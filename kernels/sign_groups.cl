@@ -1,0 +1,97 @@
+/*
+ * sign_groups.cl - signs of bricks where the work-items of a group share them: four take a row of 64 samples
+ */
+#define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
+#define ROW_PARTS      4 /* of 16 samples */
+
+/* 16 samples of a row from 16 * part on; those past its end repeat the first. */
+inline_always BITS16 row_part_load(global const BITS *samples, const slab *s, uint y, uint z, uint part) {
+    const BITS16 lane = (BITS16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
+    uint left = min(s->nx - 16 * part, 16u);
+    return lane < (BITS16)(BITS)left ? bits : (BITS16)bits.s0;
+}
+
+/* A work-item's part of a brick's words and range. */
+inline_always void part_visit(const slab *s, uint y, uint z, uint part, global const BITS *samples, global ulong *word,
+                              local brick_range *range) {
+    ((global ushort *)word)[part % ROW_PARTS] = (ushort)word_part(samples, s, y, z, part);
+    if (s->ranges_known || 16 * part >= s->nx) return;
+    BITS16 keys = keys16(row_part_load(samples, s, y, z, part), s);
+    atomic_min(&range->low, keys_least(keys));
+    atomic_max(&range->high, keys_most(keys));
+}
+
+/* What a group needs of local memory. */
+typedef struct sign_room {
+    brick_range found[BRICKS_AT_ONCE];
+} sign_room;
+
+/* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. No variable lives across a barrier, as
+ * compilers have gone wrong on that. */
+inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
+                              global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
+                              local sign_room *room) {
+    local brick_range *found = room->found;
+    const uint first = brick_index(s, y0, z, 0);
+    const uint count = (y1 - y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
+    for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
+        {
+            uint lid = (uint)get_local_id(0), number = first + min(n + lid, count - 1);
+            if (lid < BRICKS_AT_ONCE) {
+                found[lid].low = s->ranges_known ? ranges[s->range_offset + number].low : ~0u;
+                found[lid].high = s->ranges_known ? ranges[s->range_offset + number].high : 0;
+            }
+        }
+        group_barrier();
+        for (uint step = 0; step < ROW_PARTS; step++) {
+            uint item = step * WORK_ITEMS + (uint)get_local_id(0), b = item / (ROW_PARTS * BRICK_WORDS);
+            uint place = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
+            uint y = y0 + number / s->words_x * BRICK_ROWS + place % BRICK_ROWS, zp = z + place / BRICK_ROWS;
+            bool wanted = number < count && y < s->ny && zp < s->z1;
+            if (wanted && s->ranges_known) wanted = range_sign(s, found[b]) == SIGN_MIXED;
+            if (wanted)
+                part_visit(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
+                           words + (ulong)BRICK_WORDS * (first + number) + place, &found[b]);
+        }
+        group_barrier();
+        {
+            uint lid = (uint)get_local_id(0), number = first + n + lid;
+            if (lid < BRICKS_AT_ONCE && n + lid < count) {
+                brick_range range = found[lid];
+                brick_sign_store(number, range_sign(s, range), bricks);
+                if (!s->ranges_known) ranges[s->range_offset + number] = range; /* else other groups read it */
+#if FLOATING && !MISSING
+                *nonfinite |= !range_finite(range);
+#endif
+            }
+        }
+        group_barrier();
+    }
+}
+
+/* A row of words, each `stride` words after the last. */
+inline_always void row_words_spread(const slab *s, uint y, uint z, global const BITS *samples,
+                                    global const brick_range *ranges, global ulong *out, uint stride) {
+    for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
+        uint part = first + (uint)get_local_id(0), w = part / ROW_PARTS;
+        if (w < s->words_x) {
+            uint sign = sign_known(s, y, z, w, ranges);
+            uint bits = sign == SIGN_MIXED ? word_part(samples, s, y, z, part)
+                                           : (uint)((sign_word(sign) & word_valid(s, w)) >> (16 * (part % ROW_PARTS)));
+            ((global ushort *)(out + (ulong)stride * w))[part % ROW_PARTS] = (ushort)bits;
+        }
+    }
+}
+
+inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
+                                  global const brick_range *ranges, global ulong *out) {
+    row_words_spread(s, y, z, samples, ranges, out, 1);
+}
+
+/* The words of the rows y to y + 7, below y1, brick by brick. */
+inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
+                                   global const brick_range *ranges, global ulong *out) {
+    for (uint n = 0; n < BRICK_ROWS && y + n < y1; n++)
+        row_words_spread(s, y + n, z, samples, ranges, out + n, BRICK_ROWS);
+}
