@@ -10,6 +10,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
+enum { NOTICES_MOST = 64 };
+
 typedef struct dataset_memory {
     struct dataset_memory *next;
     void *memory;
@@ -52,15 +54,30 @@ int dataset_field_add(dataset_block *block, dataset_field **out) {
     return 0;
 }
 
+/* Takes the text over. 0 where memory runs out: then nothing has changed. */
+static int add_notice(dataset *d, char *text) {
+    const size_t used = strlen(d->notice);
+    char **notices = realloc(d->notices, ((size_t)d->notice_count + 1) * sizeof *notices);
+    if (!notices) return 0;
+    d->notices = notices;
+    notices[d->notice_count++] = text;
+    if (used + strlen(text) + sizeof "; " <= sizeof d->notice) stpcpy(stpcpy(d->notice + used, used ? "; " : ""), text);
+    return 1;
+}
+
 void dataset_notice(dataset *d, const char *format, ...) {
-    char text[sizeof d->notice];
-    size_t used = strlen(d->notice);
+    char *text = NULL;
     va_list arguments;
+    if (d->notice_count > NOTICES_MOST) return;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    int length = d->notice_count < NOTICES_MOST
+                     ? vasprintf(&text, format, arguments)
+                     : asprintf(&text, "more notices than these %d are left out", NOTICES_MOST);
     va_end(arguments);
-    if (used + strlen(text) + 3 > sizeof d->notice) return;
-    stpcpy(stpcpy(d->notice + used, used ? "; " : ""), text);
+    if (length < 0 || !add_notice(d, text)) {
+        if (length >= 0) free(text);
+        d->notice_lost = 1;
+    }
 }
 
 void dataset_release(dataset *d) {
@@ -73,5 +90,7 @@ void dataset_release(dataset *d) {
     free(d->blocks);
     if (d->mapping) munmap(d->mapping, d->mapping_bytes);
     volume_release(&d->image);
+    for (int n = 0; n < d->notice_count; n++) free(d->notices[n]);
+    free(d->notices);
     *d = (dataset){0};
 }

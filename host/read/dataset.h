@@ -50,9 +50,12 @@ typedef struct dataset_block {
 typedef struct dataset {
     dataset_block *blocks;
     int block_count;
-    char format[24];  /* "NRRD", "VTK legacy", "VTK XML", "Plot3D", ... */
-    char space[64];   /* the file's name of its world space, or "" */
-    char notice[256]; /* something the user should know about how the file was read, or "" */
+    char format[24]; /* "NRRD", "VTK legacy", "VTK XML", "Plot3D", ... */
+    char space[64];  /* the file's name of its world space, or "" */
+
+    char **notices;                /* what the user should know about how the file was read: dataset_notice */
+    int notice_count, notice_lost; /* lost: there was no memory for one */
+    char notice[256];              /* the same in one text, joined by "; ", as far as there is room; or "" */
 
     volume image; /* of the readers of uniform images: owns what their one block points to */
     void *mapping;
@@ -78,7 +81,8 @@ char *dataset_text(dataset *d, const char *text);
 int dataset_block_add(dataset *d, dataset_block **out);
 int dataset_field_add(dataset_block *block, dataset_field **out);
 
-/* Adds to the notice: sentences are joined by "; ", what has no room is left out. */
+/* Adds a text to the notices: half a sentence that does not name the input, whose name is put before it. Of very many
+ * the rest is left out, with a last one that says so. */
 void dataset_notice(dataset *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -186,7 +186,7 @@ static int wrap_image(dataset *d) {
     *f = (dataset_field){.name = "", .components = 1, .type = v->type, .values = v->samples};
     memcpy(d->format, v->format, sizeof d->format);
     memcpy(d->space, v->space, sizeof d->space);
-    memcpy(d->notice, v->notice, sizeof d->notice);
+    if (v->notice[0]) dataset_notice(d, "%s", v->notice);
     return 0;
 }
 
@@ -227,6 +227,8 @@ int dataset_read(const read_request *request, dataset *out) {
         status = refuse_unknown(request->path, &file);
     }
     mapping_close(&file);
+    if (!status && out->notice_lost)
+        status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
     if (status) dataset_release(out);
     return status;
 }

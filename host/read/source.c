@@ -129,11 +129,11 @@ static int read_text(const char *path, const unsigned char *text, size_t size, i
     return 0;
 }
 
-/* Notes, once, that a file holds more than was used. */
-static void notice_rest(const char *path, uint64_t rest, volume *out) {
+/* Notes, once, that a file ("it": the input itself) holds more than was used. */
+static void notice_rest(const char *name, uint64_t rest, volume *out) {
     if (rest && !*out->notice)
         snprintf(out->notice, sizeof out->notice,
-                 "%.160s holds more data than its header asks for; the rest is not used", path);
+                 "%.160s holds more data than its header asks for; the rest is not used", name);
 }
 
 static int open_part(const source *from, const char *path, mapping *m) {
@@ -158,7 +158,9 @@ static int load_part(const source *from, const char *path, const layout *l, uint
         status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element), &more);
     else
         status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes, &more);
-    if (!status) notice_rest(path, from->encoding == ENCODING_RAW ? available - bytes : (uint64_t)more, out);
+    if (!status)
+        notice_rest(from->files.count ? path : "it",
+                    from->encoding == ENCODING_RAW ? available - bytes : (uint64_t)more, out);
 cleanup:
     mapping_close(&m);
     return status;
@@ -193,7 +195,7 @@ static int load_raw(const source *from, const char *path, const layout *l, volum
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
         goto cleanup;
-    notice_rest(path, m.size - start - l->bytes, out);
+    notice_rest(from->files.count ? path : "it", m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
         out->samples = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;

@@ -47,7 +47,8 @@ static void *reader_memory(xml_reader *r, uint64_t bytes) {
 }
 
 static void note_more(xml_reader *r, const xml_values *v) {
-    if (v->more) dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", v->label);
+    const char *path_end = v->more ? strstr(v->label, ": its array") : NULL; /* notices do not name the input */
+    if (path_end) dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", path_end + 2);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- values */

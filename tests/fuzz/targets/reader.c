@@ -112,7 +112,9 @@ static void check_dataset(const dataset *d) {
         check_geometry(b);
         for (int f = 0; f < b->field_count; f++) check_field(b, &b->fields[f]);
     }
-    touch(d->notice, strlen(d->notice) + strlen(d->format) + strlen(d->space));
+    for (int n = 0; n < d->notice_count; n++) touch(d->notices[n], strlen(d->notices[n]));
+    touch(d->format, strlen(d->format));
+    touch(d->space, strlen(d->space));
 }
 
 /* What the tool does next: the samples of one field, and all fields that may be carried. */
