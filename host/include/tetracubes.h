@@ -203,7 +203,9 @@ typedef struct tc_grid_options {
     double matrix[3][4]; /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
                             (triangles keep their outward side); default: identity. Used as float32 */
     int has_nodata;      /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
-    double nodata;       /* missing corner is left out whole */
+    double nodata;       /* missing corner is left out whole. Rounded to float where samples are f32, so that the
+                            decimal number that stands for a sample equals it (-999.9, 0.1, 1e20); exact otherwise: a
+                            number that no sample can have, 0.5 or -1 of u8, is equal to none. Not finite: none */
     struct _cl_mem *cl_samples; /* instead of samples: a buffer of the context's cl_context, retained until
                                    tc_grid_destroy; commands that write it come first in the context's queue, or are
                                    complete. Not for the reference engine */

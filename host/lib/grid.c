@@ -218,7 +218,7 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->cl_samples = o->cl_samples;
     grid->cl_samples_offset = o->cl_samples_offset;
     grid->has_nodata = o->has_nodata != 0;
-    grid->nodata = o->nodata;
+    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata; /* 0.1 is no f32, its nearest is one */
     grid->blanked_samples = o->blanked_samples;
     grid->blanked_cells = o->blanked_cells;
     status = coordinates_check(o);
