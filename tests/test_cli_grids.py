@@ -19,7 +19,7 @@ import test_cli
 DATA = os.environ.get("TETRACUBES_DATA")
 BLOCK_KEYS = {"kind", "points", "cells", "dims", "first", "cell_types", "bounds", "blanked_points", "blanked_cells",
               "fields"}
-CONVERTED_KEYS = {"input", "output", "blocks", "points", "cells", "tetrahedra", "flat_cells", "curved_cells",
+CONVERTED_KEYS = {"notices", "input", "output", "blocks", "points", "cells", "tetrahedra", "flat_cells", "curved_cells",
                   "blanked_cells", "inverted_cells", "folded_cells", "folded_faces", "fields", "total_ms"}
 VTK_TYPES = {"u8": "UInt8", "i16": "Int16", "i32": "Int32", "f32": "Float32", "f64": "Float64"}
 HEXAHEDRON_ORDER = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]

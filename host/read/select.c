@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "nodata.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -149,42 +150,59 @@ static int take_component(dataset *d, const dataset_block *b, const dataset_fiel
     return 0;
 }
 
-static int is_missing(const dataset_field *f, uint64_t n, const field_request *request) {
+/* What values of a field are compared with. */
+typedef struct missing_value {
+    int is_there;
+    double value;
+} missing_value;
+
+/* The request's nodata, where some value of the field equals it. */
+static missing_value find_nodata(const dataset_block *b, const dataset_field *f, const field_request *request) {
+    const uint64_t count = tuple_count(b, f);
+    missing_value m;
+    m.is_there = nodata_of_type(f->type, request->nodata, &m.value) && request->has_nodata &&
+                 nodata_find(f->type, f->values, count, m.value) < count;
+    return m;
+}
+
+static int is_missing(const dataset_field *f, uint64_t n, const missing_value *nodata) {
     double value = value_at(f->type, f->values, n);
-    return !isfinite(value) || (request->has_nodata && value == request->nodata);
+    return !isfinite(value) || (nodata->is_there && value == nodata->value);
 }
 
 /* Adds to a mask of points or cells, which may be NULL, those whose value is missing; the old one where there is none.
  */
-static int mask_missing(dataset *d, const dataset_block *b, const dataset_field *f, const field_request *request,
+static int mask_missing(dataset *d, const dataset_block *b, const dataset_field *f, const missing_value *nodata,
                         const uint8_t **mask) {
     uint64_t count = tuple_count(b, f), n = 0;
-    int may_be_missing = request->has_nodata || f->type == TC_F32 || f->type == TC_F64;
-    while (may_be_missing && n < count && !is_missing(f, n, request)) n++;
+    int may_be_missing = nodata->is_there || f->type == TC_F32 || f->type == TC_F64;
+    while (may_be_missing && n < count && !is_missing(f, n, nodata)) n++;
     if (!may_be_missing || n == count) return 0;
     uint8_t *merged = dataset_allocate(d, count);
     if (!merged) return STATUS_FAILED;
-    for (n = 0; n < count; n++) merged[n] = (*mask && (*mask)[n]) || is_missing(f, n, request);
+    for (n = 0; n < count; n++) merged[n] = (*mask && (*mask)[n]) || is_missing(f, n, nodata);
     *mask = merged;
     return 0;
 }
 
 static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_field *f, const field_request *request,
-                           scalar_block *out) {
+                           scalar_block *out, int *has_nodata) {
     dataset_field one, at_points;
     *out = (scalar_block){.blanked_points = b->blanked_points, .blanked_cells = b->blanked_cells};
     int status = take_component(d, b, f, request->component, &one);
     if (status) return status;
+    const missing_value nodata = find_nodata(b, &one, request);
+    *has_nodata |= nodata.is_there;
     if (f->on_cells) {
-        status = mask_missing(d, b, &one, request, &out->blanked_cells);
+        status = mask_missing(d, b, &one, &nodata, &out->blanked_cells);
         if (!status) status = average_to_points(d, b, out->blanked_cells, &one, &at_points);
         if (status) return status;
         one = at_points;
     } else if (b->kind == GRID_UNSTRUCTURED) {
-        if ((status = mask_missing(d, b, &one, request, &out->blanked_points))) return status;
+        if ((status = mask_missing(d, b, &one, &nodata, &out->blanked_points))) return status;
     } else {
-        out->has_nodata = request->has_nodata;
-        out->nodata = request->nodata;
+        out->has_nodata = nodata.is_there;
+        out->nodata = nodata.value;
     }
     out->type = one.type;
     out->samples = one.values;
@@ -202,7 +220,7 @@ int scalar_select(dataset *d, const char *path, const field_request *request, sc
     for (int n = 0; n < d->block_count && !status; n++) {
         const dataset_field *f = chosen_field(&d->blocks[n], chosen);
         status = check_component(d, path, f, request->component);
-        if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n]);
+        if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n], &out->has_nodata);
         if (f->components > 1) out->component = request->component;
         out->is_averaged |= f->on_cells;
     }

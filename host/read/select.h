@@ -14,7 +14,7 @@
 typedef struct field_request {
     const char *name; /* NULL: the only one there is */
     int component;    /* of a field with several, from 0; -1 where not given */
-    int has_nodata;   /* values equal to nodata are missing, as are those that are not finite */
+    int has_nodata;   /* values equal to nodata (nodata.h) are missing, as are those that are not finite */
     double nodata;
 } field_request;
 
@@ -23,15 +23,16 @@ typedef struct scalar_block {
     tc_type type;
     const void *samples;                           /* one per point */
     const uint8_t *blanked_points, *blanked_cells; /* as in dataset_block */
-    int has_nodata; /* structured blocks: samples that are nodata or not finite are still to be left out; unstructured
-                       ones have them among blanked_points */
-    double nodata;
+    int has_nodata; /* structured blocks: samples that are nodata (there are some) or not finite are still to be left
+                       out; unstructured ones have them among blanked_points */
+    double nodata;  /* in the type of the samples */
 } scalar_block;
 
 typedef struct scalar {
     const char *name;
     int component;   /* -1 of a field that has one */
     int is_averaged; /* of cells */
+    int has_nodata;  /* some value equals the request's nodata */
     scalar_block *blocks;
 } scalar;
 

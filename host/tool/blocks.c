@@ -5,6 +5,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
+#include "notice.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -100,7 +101,7 @@ static uint64_t count_set(const uint8_t *mask, int64_t count) {
 }
 
 static void tell(uint64_t count, const char *what) {
-    if (count) message("%" PRIu64 " %s", count, what);
+    if (count) notice("%" PRIu64 " %s", count, what);
 }
 
 /* Whether the cell may be cut in more ways than one, linear or not. */
@@ -141,10 +142,10 @@ static void tell_all(const block_list *list) {
     tell(inverted, "cells of negative volume are turned over");
     tell(folded, "cells are folded: their tetrahedra overlap");
     if (list->count > 1 && has_ambiguous_cells(list))
-        message("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
+        notice("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
     tell(blanked_points, "points are blanked: cells with one of them are left out");
     tell(blanked_cells, "blanked cells are left out");
-    if (!list->tetrahedron_count && all_cut) message("nothing to contour: no cell of three dimensions is left");
+    if (!list->tetrahedron_count && all_cut) notice("nothing to contour: no cell of three dimensions is left");
 }
 
 static int cut(const options *o, prepared_block *b) {
@@ -169,7 +170,7 @@ int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, blo
         out->cell_count += cells;
         out->tetrahedron_count += b->is_cut ? b->complex.tetrahedron_count : 5 * cells;
     }
-    if (!o->quiet) tell_all(out);
+    if (notice_wanted()) tell_all(out);
     return 0;
 }
 

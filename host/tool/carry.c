@@ -35,7 +35,7 @@ static int select_one(const options *o, dataset *d, carried *out, const char *na
     if (status) return status;
     for (int n = 0; n < out->count; n++)
         if (strcmp(out->from[n].name, from->name) == 0) return fail(STATUS_USAGE, "--carry: '%s' is given twice", name);
-    if (from->is_averaged) input_tell_average(o, d, from->name);
+    if (from->is_averaged) input_tell_average(d, from->name);
     out->fields[out->count++] = (mesh_field){from->name, from->components, NULL};
     return 0;
 }

@@ -79,7 +79,7 @@ static const char *type_name(int type, char text[16]) {
 /* Range of one component; 0 where it has no finite value. */
 static int range_of(const dataset_block *b, const dataset_field *f, int component, double range[2]) {
     uint64_t tuples = (uint64_t)(f->on_cells ? b->cell_count : b->point_count);
-    const sample_array all = {f->type, f->values, tuples * (uint64_t)f->components};
+    const sample_array all = {.type = f->type, .samples = f->values, .count = tuples * (uint64_t)f->components};
     return statistics_range(&all, component, f->components, range);
 }
 
@@ -139,7 +139,7 @@ static void field_text(const dataset_block *b, const dataset_field *f) {
     for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
         double range[2];
         if (range_of(b, f, c, range))
-            printf("%s %.9g to %.9g", c ? ";" : ",", range[0], range[1]);
+            printf("%s %s to %s", c ? ";" : ",", report_number(range[0]).text, report_number(range[1]).text);
         else
             printf("%s nothing finite", c ? ";" : ",");
     }
@@ -162,11 +162,12 @@ static void cells_text(const dataset_block *b) {
 
 void describe_place_text(const dataset *d, const dataset_block *b) {
     printf("spacing      ");
-    for (int axis = 0; axis < 3; axis++) printf(" %.9g", describe_spacing(b, axis));
+    for (int axis = 0; axis < 3; axis++) printf(" %s", report_number(describe_spacing(b, axis)).text);
     printf("\nworld space   %s\n", d->space[0] ? d->space : "not named");
     for (int r = 0; r < 3; r++)
-        printf("%s%.9g i + %.9g j + %.9g k + %.9g\n", r ? "              " : "index->world  ", b->matrix[r][0],
-               b->matrix[r][1], b->matrix[r][2], b->matrix[r][3]);
+        printf("%s%s i + %s j + %s k + %s\n", r ? "              " : "index->world  ",
+               report_number(b->matrix[r][0]).text, report_number(b->matrix[r][1]).text,
+               report_number(b->matrix[r][2]).text, report_number(b->matrix[r][3]).text);
 }
 
 static void block_text(const dataset *d, const dataset_block *b) {
@@ -184,8 +185,10 @@ static void block_text(const dataset *d, const dataset_block *b) {
     if (b->kind == GRID_UNIFORM) describe_place_text(d, b);
     if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
     if (b->point_count)
-        printf("bounds        %.9g %.9g %.9g to %.9g %.9g %.9g\n", all.low[0], all.low[1], all.low[2], all.high[0],
-               all.high[1], all.high[2]);
+        printf("bounds        %s %s %s to %s %s %s\n", report_coordinate(all.low[0]).text,
+               report_coordinate(all.low[1]).text, report_coordinate(all.low[2]).text,
+               report_coordinate(all.high[0]).text, report_coordinate(all.high[1]).text,
+               report_coordinate(all.high[2]).text);
     printf(b->field_count ? "fields\n" : "fields        none\n");
     for (int n = 0; n < b->field_count; n++) field_text(b, &b->fields[n]);
 }
@@ -195,17 +198,4 @@ void describe_blocks_text(const dataset *d) {
         if (d->block_count > 1) printf("block %d of %d\n", n, d->block_count);
         block_text(d, &d->blocks[n]);
     }
-}
-
-int describe_digits(const dataset *d) {
-    int digits = 15;
-    for (int n = 0; n < d->block_count; n++)
-        for (int m = 0; m < d->blocks[n].field_count; m++)
-            for (int c = 0; c < d->blocks[n].fields[m].components; c++) {
-                double range[2];
-                if (!range_of(&d->blocks[n], &d->blocks[n].fields[m], c, range)) continue;
-                for (int end = 0; end < 2; end++)
-                    if (report_digits(range[end]) > digits) digits = report_digits(range[end]);
-            }
-    return digits;
 }

@@ -18,7 +18,4 @@ double describe_spacing(const dataset_block *b, int axis);
 /* Of a uniform block: spacing, world space and matrix, as lines. */
 void describe_place_text(const dataset *d, const dataset_block *b);
 
-/* Significant digits that all numbers of the blocks need to read back exactly. */
-int describe_digits(const dataset *d);
-
 #endif

@@ -18,9 +18,11 @@
 #include "faces.h"
 #include "input.h"
 #include "mesh_check.h"
+#include "notice.h"
 #include "progress.h"
 #include "report.h"
 #include "surface_files.h"
+#include "surface_notices.h"
 #include "verify.h"
 
 #include <pthread.h>
@@ -88,8 +90,8 @@ static int read_input(job *j) {
 static int fall_back(job *j, int status) {
     if (status != STATUS_FAILED || progress_cancelled()) return status;
     if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
-    if (!j->o->quiet) message("%s", failure_text());
-    if (!j->o->quiet) message("the reference engine takes over");
+    notice("%s", failure_text());
+    notice("the reference engine takes over");
     engine_close(&j->main);
     j->report.engine = TC_ENGINE_REFERENCE;
     j->report.device[0] = '\0';
@@ -168,6 +170,7 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
     s->triangle_count = counts.triangle_count;
     s->active_cell_count = counts.active_cell_count;
     s->classify_ms = counts.classify_ms;
+    if (!status) status = surface_tell_empty(&j->data, &j->field, s);
     return status ? status : progress_status();
 }
 
@@ -204,20 +207,21 @@ static int verify_surface(job *j, const tc_extract_options *how, const tc_mesh_d
  * of it, and nothing else is wrong, *good is set. */
 static int explain_faults(const job *j, const surface_report *s, int *good) {
     const mesh_topology *t = &s->topology;
+    void (*tell)(const char *format, ...) __attribute__((format(printf, 1, 2)));
     complex_faces crossed;
     int status = blocks_check_faces(&j->blocks, &s->iso->value, &crossed);
     if (status) return status;
     int is_explained = crossed.folded_faces && crossed.folded_faces == t->misoriented_edges;
     *good = is_explained && !t->nonmanifold_edges && !t->orphan_vertices && !t->invalid_triangles;
-    if (*good && j->o->quiet) return 0;
+    tell = *good ? notice : message; /* the second with --quiet too */
     if (crossed.folded_faces)
-        message("isovalue %s: cells of the input overlap or have no volume: the surface crosses %llu faces that have "
-                "both cells on the same side%s",
-                s->iso->text, (unsigned long long)crossed.folded_faces,
-                is_explained ? "; these are its misoriented edges" : "");
+        tell("isovalue %s: cells of the input overlap or have no volume: the surface crosses %llu faces that have "
+             "both cells on the same side%s",
+             s->iso->text, (unsigned long long)crossed.folded_faces,
+             is_explained ? "; these are its misoriented edges" : "");
     if (crossed.crowded_faces)
-        message("isovalue %s: cells of the input overlap: the surface crosses %llu faces of three cells or more",
-                s->iso->text, (unsigned long long)crossed.crowded_faces);
+        tell("isovalue %s: cells of the input overlap: the surface crosses %llu faces of three cells or more",
+             s->iso->text, (unsigned long long)crossed.crowded_faces);
     return 0;
 }
 
@@ -262,6 +266,8 @@ static int make_surface(job *j, surface_report *s) {
     if (status) return status;
     add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
     describe_mesh(j->o, &mesh, s);
+    if ((status = surface_tell_empty(&j->data, &j->field, s))) return status;
+    if ((status = surface_tell_degenerate(&j->data, &j->field, &mesh, s))) return status;
     if (j->o->verify && (status = verify_surface(j, &how, &mesh, s))) return status;
     if (j->o->check && (status = check_surface(j, &mesh, s, &good))) return status;
     if ((status = progress_status())) return status;
@@ -300,8 +306,7 @@ int extract_run(const options *o) {
     j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
     int status = check_usage(o);
     if (status) goto cleanup;
-    if (o->engine == TC_ENGINE_REFERENCE && o->device && !o->quiet)
-        message("--device has no effect with --engine reference");
+    if (o->engine == TC_ENGINE_REFERENCE && o->device) notice("--device has no effect with --engine reference");
     if ((status = read_and_start(&j))) goto cleanup;
     if ((status = cut(&j))) goto cleanup;
     if ((status = upload(&j))) goto cleanup;

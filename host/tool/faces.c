@@ -1,9 +1,9 @@
 #include "faces.h"
 
 #include "average.h"
-#include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "notice.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -48,8 +48,8 @@ int blocks_check_faces(const block_list *list, const double *isovalue, complex_f
 
 void faces_tell(const complex_faces *faces) {
     if (faces->folded_faces)
-        message("%" PRIu64 " faces are folded: both cells lie on the same side; a surface there is not oriented",
-                faces->folded_faces);
+        notice("%" PRIu64 " faces are folded: both cells lie on the same side; a surface there is not oriented",
+               faces->folded_faces);
     if (faces->crowded_faces)
-        message("%" PRIu64 " faces have three cells or more; a surface there is not a manifold", faces->crowded_faces);
+        notice("%" PRIu64 " faces have three cells or more; a surface there is not a manifold", faces->crowded_faces);
 }

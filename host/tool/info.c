@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
+#include "notice.h"
 #include "progress.h"
 #include "report.h"
 #include "statistics.h"
@@ -39,16 +40,6 @@ static json_t *suggestions_json(const statistics *s) {
     return array;
 }
 
-/* So many that range and isovalues read back exactly. */
-static int exact_digits(const statistics *s) {
-    suggestion good[SUGGESTIONS_MAX];
-    int count = statistics_suggest(s, good), digits = report_digits(s->minimum), needed = report_digits(s->maximum);
-    if (needed > digits) digits = needed;
-    for (int n = 0; n < count; n++)
-        if ((needed = report_digits(good[n].isovalue)) > digits) digits = needed;
-    return digits;
-}
-
 /* The one structured block that the object's dims, first, spacing and matrix are of; NULL where there is none. */
 static const dataset_block *only_block(const dataset *d) {
     return d->block_count == 1 && d->blocks->kind != GRID_UNSTRUCTURED ? d->blocks : NULL;
@@ -74,13 +65,14 @@ static void add_field(json_t *object, const facts *f) {
     json_object_set_new(object, "range",
                         s->finite_count ? report_reals((double[]){s->minimum, s->maximum}, 2) : json_null());
     json_object_set_new(object, "nonfinite", json_integer((json_int_t)s->nonfinite_count));
+    json_object_set_new(object, "missing", json_integer((json_int_t)s->missing_count));
     json_object_set_new(object, "histogram", histogram_json(s));
     json_object_set_new(object, "isovalues", suggestions_json(s));
 }
 
 static int print_json(const facts *f) {
-    int digits = exact_digits(&f->s), of_blocks = describe_digits(f->d);
     json_t *object = json_object();
+    for (int n = 0; n < f->d->notice_count; n++) notice("%s: %s", f->path, f->d->notices[n]);
     json_object_set_new(object, "input", report_string(f->path));
     json_object_set_new(object, "format", json_string(f->d->format));
     add_grid(object, only_block(f->d));
@@ -88,7 +80,8 @@ static int print_json(const facts *f) {
     json_object_set_new(object, "notice", report_string(f->d->notice));
     add_field(object, f);
     json_object_set_new(object, "blocks", describe_blocks_json(f->d));
-    return report_print(object, of_blocks > digits ? of_blocks : digits);
+    report_add_notices(object);
+    return report_print(object, 15);
 }
 
 /* Neighbouring bins are merged into rows; bars show square roots, since most volumes are mostly air. */
@@ -102,7 +95,7 @@ static void print_chart(const statistics *s) {
     printf("histogram     (from, count, bar of its square root)\n");
     for (int r = 0; r * merged < s->bin_count; r++) {
         int width = (int)lround(CHART_WIDTH * sqrt((double)rows[r] / (double)most));
-        printf("  %11.5g %11" PRIu64 " %.*s\n", s->low + r * merged * s->width, rows[r], width,
+        printf("  %22s %11" PRIu64 " %.*s\n", report_number(s->low + r * merged * s->width).text, rows[r], width,
                "##################################################");
     }
 }
@@ -111,7 +104,7 @@ static void print_suggestions(const statistics *s) {
     suggestion good[SUGGESTIONS_MAX];
     int count = statistics_suggest(s, good);
     printf("isovalues     %s\n", count ? "worth trying:" : "none: no value separates the samples");
-    for (int n = 0; n < count; n++) printf("  %11.7g %s\n", good[n].isovalue, good[n].reason);
+    for (int n = 0; n < count; n++) printf("  %22s %s\n", report_number(good[n].isovalue).text, good[n].reason);
 }
 
 static void print_image(const facts *f) {
@@ -132,8 +125,10 @@ static void print_field(const facts *f) {
         return;
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
-    if (s->finite_count) printf("range         %.9g to %.9g\n", s->minimum, s->maximum);
+    if (s->finite_count)
+        printf("range         %s to %s\n", report_number(s->minimum).text, report_number(s->maximum).text);
     if (s->nonfinite_count) printf("not finite    %" PRIu64 " samples, treated as missing\n", s->nonfinite_count);
+    if (s->missing_count) printf("missing       %" PRIu64 " samples, blanked or equal to --nodata\n", s->missing_count);
     if (s->bin_count) print_chart(s);
     print_suggestions(s);
 }
@@ -145,20 +140,19 @@ static void print_text(const facts *f) {
         print_image(f);
     else
         describe_blocks_text(f->d);
-    if (f->d->notice[0]) printf("notice        %s\n", f->d->notice);
+    for (int n = 0; n < f->d->notice_count; n++) printf("notice        %s\n", f->d->notices[n]);
     print_field(f);
 }
 
 /* Over the points of all blocks. */
 static int find_statistics(facts *f) {
-    int count = f->field ? f->d->block_count : 0;
-    sample_array *arrays = calloc((size_t)count + 1, sizeof *arrays);
-    if (!arrays) return fail(STATUS_FAILED, "out of memory for %d blocks", count);
-    for (int n = 0; n < count; n++) {
-        const scalar_block *b = &f->field->blocks[n];
-        arrays[n] = (sample_array){b->type, b->samples, (uint64_t)f->d->blocks[n].point_count};
-    }
-    statistics_of(arrays, count, &f->s);
+    if (!f->field) return 0;
+    sample_array *arrays = input_samples(f->d, f->field);
+    if (!arrays) return STATUS_FAILED;
+    statistics_of(arrays, f->d->block_count, &f->s);
+    if (f->s.finite_count > 1 && f->s.minimum == f->s.maximum)
+        notice("%s: the field%s%s is constant: every sample is %s", f->path, f->field->name[0] ? " " : "",
+               f->field->name, report_number(f->s.minimum).text);
     free(arrays);
     return 0;
 }
@@ -176,10 +170,10 @@ int info_run(const options *o) {
         status = input_select(o, &d, &field);
         f.field = &field;
     }
+    f.path = request.path;
     if (!status) status = find_statistics(&f);
     if (!status) status = progress_status();
     if (status) goto cleanup;
-    f.path = request.path;
     if (o->json)
         status = print_json(&f);
     else

@@ -4,6 +4,9 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "mapping.h"
+#include "notice.h"
+#include "report.h"
+#include "statistics.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -47,21 +50,35 @@ int input_read(const options *o, dataset *d) {
     *d = (dataset){0};
     int status = input_request(o, &request);
     if (!status) status = dataset_read(&request, d);
-    if (!status && d->notice[0] && !o->quiet) message("%s: %s", request.path, d->notice);
+    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", request.path, d->notices[n]);
     return status;
 }
 
-void input_tell_average(const options *o, const dataset *d, const char *name) {
-    if (!o->quiet)
-        message("field '%s' is of cells: averaged to the points between them%s", name,
-                d->block_count > 1 ? ", in each piece alone: surfaces of neighbouring pieces may not meet" : "");
+void input_tell_average(const dataset *d, const char *name) {
+    notice("field '%s' is of cells: averaged to the points between them%s", name,
+           d->block_count > 1 ? ", in each piece alone: surfaces of neighbouring pieces may not meet" : "");
 }
 
 int input_select(const options *o, dataset *d, scalar *out) {
     const field_request request = {o->field, o->component, o->has_nodata, o->nodata};
     int status = scalar_select(d, o->operands[0], &request, out);
-    if (!status && out->is_averaged) input_tell_average(o, d, out->name);
+    if (!status && out->is_averaged) input_tell_average(d, out->name);
+    if (!status && o->has_nodata && !out->has_nodata)
+        notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", report_number(o->nodata).text,
+               out->is_averaged ? "cell's value" : "sample", out->name[0] ? "field '" : "the input", out->name,
+               out->name[0] ? "'" : "");
     return status;
+}
+
+sample_array *input_samples(const dataset *d, const scalar *field) {
+    sample_array *arrays = calloc((size_t)d->block_count + 1, sizeof *arrays);
+    if (!arrays) fail(STATUS_FAILED, "out of memory for %d blocks", d->block_count);
+    for (int n = 0; arrays && n < d->block_count; n++) {
+        const scalar_block *b = &field->blocks[n];
+        arrays[n] = (sample_array){b->type,           b->samples,    (uint64_t)d->blocks[n].point_count,
+                                   b->blanked_points, b->has_nodata, b->nodata};
+    }
+    return arrays;
 }
 
 int input_overwrite_check(const options *o, const char *path) {

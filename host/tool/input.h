@@ -9,14 +9,18 @@
 /* The options of the inputs as their reader wants them; refuses none or too many, and raw options without --dims. */
 int input_request(const options *o, read_request *request);
 
-/* Reads the inputs; notices of the reader go to standard error. *d is to be released where 0 is returned. */
+/* Reads the inputs; notices of the reader become notices of the run. *d is to be released where 0 is returned. */
 int input_read(const options *o, dataset *d);
 
-/* Chooses the field by --field, --component and --nodata, with a notice where it had to be averaged. */
+/* Chooses the field by --field, --component and --nodata, with notices where it had to be averaged,
+ * and where --nodata is nowhere in it. */
 int input_select(const options *o, dataset *d, scalar *out);
 
+/* The field's samples, an array per block, for statistics; from malloc, NULL with its failure's text without memory. */
+struct sample_array *input_samples(const dataset *d, const scalar *field);
+
 /* The notice that a field of cells was averaged. */
-void input_tell_average(const options *o, const dataset *d, const char *name);
+void input_tell_average(const dataset *d, const char *name);
 
 /* STATUS_USAGE where path, the output, is one of the inputs or, once they are read, a file that they name: it must not
  * replace what it is made from. */

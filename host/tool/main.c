@@ -7,6 +7,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
+#include "notice.h"
 #include "output.h"
 #include "progress.h"
 #include "report.h"
@@ -175,11 +176,13 @@ static int run_command(const command *c, int argc, char **argv) {
     } else if (!status) {
         progress_begin(o.quiet);
         report_begin();
+        notice_begin(o.quiet, o.json);
         output_stop_when(progress_cancelled);
         status = c->run(&o);
         if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();
         if (status && truncation_seen()) status = truncation_status(); /* whatever came of it */
         progress_clear();
+        notice_end();
     }
     options_release(&o);
     return status;

@@ -106,9 +106,9 @@ static const option table[] = {
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
      "check the mesh itself: manifold, oriented; Euler characteristic, area,\n"
      "volume (boundary edges are reported, they are no fault)"},
-    {"--nodata", NULL, "V", COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NODATA, IN(nodata), NULL,
+    {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
-     "a missing corner is left out"},
+     "a missing corner is left out; of f32 samples the float nearest to V counts"},
     {"--component", NULL, "C", READS, VALUE_INDEX, IN(component), NULL,
      "which value, from 0, of data with several values per sample"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,

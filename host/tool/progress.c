@@ -59,7 +59,8 @@ void progress_begin(int quiet) {
 
 int progress_update(void *user, const char *stage, double fraction) {
     (void)user;
-    truncation_watch(); /* what builds kernels may have put a handler of its own in front, which serves one fault only */
+    truncation_watch(); /* what builds kernels may have put a handler of its own in front, which serves one fault only
+                         */
     double now = now_ms();
     if (state.shown && now - state.begin_ms >= PATIENCE_MS && now - state.last_ms >= REDRAW_MS) {
         fprintf(stderr, "\r\033[K%s %3.0f%%", stage, 100.0 * fraction);

@@ -3,6 +3,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "notice.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -43,7 +44,51 @@ int report_digits(double value) {
     return 17;
 }
 
+/* Whole numbers of up to 15 digits are printed as such: 20, not 2e+01. */
+static int is_plain(double value) { return value == floor(value) && fabs(value) < 1e15; }
+
+number_text report_number(double value) {
+    number_text number;
+    snprintf(number.text, sizeof number.text, "%.0f", value);
+    for (int digits = 1; digits <= 17 && !is_plain(value); digits++) {
+        snprintf(number.text, sizeof number.text, "%.*g", digits, value);
+        if (strtod(number.text, NULL) == value) break;
+    }
+    return number;
+}
+
+number_text report_coordinate(double value) {
+    number_text number;
+    if ((double)(float)value != value || is_plain(value)) return report_number(value);
+    for (int digits = 1; digits <= 9; digits++) {
+        snprintf(number.text, sizeof number.text, "%.*g", digits, value);
+        if (strtof(number.text, NULL) == (float)value) break;
+    }
+    return number;
+}
+
+void report_add_notices(json_t *object) {
+    json_t *notices = notices_json();
+    if (!notices) lacks_memory = 1;
+    json_object_set_new(object, "notices", notices);
+}
+
+/* Digits, not fewer than the least, for all numbers of the value and what it holds. */
+static int digits_of(json_t *value, int least) {
+    const char *key;
+    json_t *part;
+    size_t n;
+    if (json_is_real(value)) {
+        int digits = report_digits(json_real_value(value));
+        return digits > least ? digits : least;
+    }
+    json_array_foreach(value, n, part) least = digits_of(part, least);
+    json_object_foreach(value, key, part) least = digits_of(part, least);
+    return least;
+}
+
 int report_print(json_t *object, int digits) {
+    digits = digits_of(object, digits);
     int failed =
         !object || lacks_memory || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
     json_decref(object);
@@ -68,13 +113,17 @@ static void add_topology(json_t *object, const mesh_topology *t) {
     json_object_set_new(object, "volume", report_real(t->volume));
 }
 
+/* An empty surface has none. */
+static int has_bounds(const surface_report *s) { return s->vertex_count > s->summary.nonfinite_vertices; }
+
 static void add_mesh(json_t *object, const surface_report *s) {
     char hash[24];
     snprintf(hash, sizeof hash, "%016" PRIx64, s->hash);
     json_object_set_new(object, "degenerate_triangles", count_json(s->summary.degenerate_triangles));
-    json_object_set_new(
-        object, "bounds",
-        json_pack("[o, o]", report_reals(s->summary.bounds[0], 3), report_reals(s->summary.bounds[1], 3)));
+    json_object_set_new(object, "bounds",
+                        has_bounds(s) ? json_pack("[o, o]", report_reals(s->summary.bounds[0], 3),
+                                                  report_reals(s->summary.bounds[1], 3))
+                                      : json_null());
     json_object_set_new(object, "origin", report_reals(s->origin, 3));
     json_object_set_new(object, "hash", json_string(hash));
 }
@@ -114,13 +163,8 @@ json_t *report_string(const char *text) {
 }
 
 int report_extract_json(const extract_report *r) {
-    int digits = 15;
     json_t *surfaces = json_array(), *object = json_object();
-    for (size_t n = 0; n < r->surface_count; n++) {
-        int needed = report_digits(r->surfaces[n].iso->value);
-        if (needed > digits) digits = needed;
-        json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
-    }
+    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
     json_object_set_new(object, "input", report_string(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? report_string(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
@@ -130,7 +174,8 @@ int report_extract_json(const extract_report *r) {
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
     json_object_set_new(object, "surfaces", surfaces);
-    return report_print(object, digits);
+    report_add_notices(object);
+    return report_print(object, 15);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ text */
@@ -147,6 +192,14 @@ static void topology_text(const mesh_topology *t) {
     printf("\n");
 }
 
+static void bounds_text(const surface_report *s) {
+    printf("  bounds     ");
+    for (int end = 0; end < 2 && has_bounds(s); end++)
+        for (int axis = 0; axis < 3; axis++)
+            printf("%s %s", end && !axis ? " to" : "", report_coordinate(s->summary.bounds[end][axis]).text);
+    printf(has_bounds(s) ? "\n" : " none\n");
+}
+
 static void surface_text(const surface_report *s, const char *cells) {
     const mesh_summary *m = &s->summary;
     printf("isovalue %s\n", s->iso->text);
@@ -154,8 +207,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
     printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
     if (s->has_mesh) {
-        printf("  bounds      %.7g %.7g %.7g to %.7g %.7g %.7g\n", m->bounds[0][0], m->bounds[0][1], m->bounds[0][2],
-               m->bounds[1][0], m->bounds[1][1], m->bounds[1][2]);
+        bounds_text(s);
         if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0)
             printf("  origin      %.15g %.15g %.15g\n", s->origin[0], s->origin[1], s->origin[2]);
         printf("  hash        %016" PRIx64 "\n", s->hash);

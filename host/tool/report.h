@@ -1,8 +1,9 @@
 /*
  * report.h - what extract found out, as the JSON object of the contract or as text for people
  *
- * JSON numbers keep 15 significant digits, or as many more as the exact ones (isovalues, ranges) need to read back the
- * same double. Numbers that JSON cannot hold (NaN, infinities) become null.
+ * Numbers are printed so that they can be typed back: text has the fewest digits that read back the same double; JSON
+ * has one number of digits for the whole object, 15, or as many more as one of its numbers needs for that. Numbers that
+ * JSON cannot hold (NaN, infinities) become null.
  */
 #ifndef REPORT_H
 #define REPORT_H
@@ -69,7 +70,21 @@ json_t *report_integers(const int64_t values[3]);
 /* Significant digits, 15 to 17, that read back the same double. */
 int report_digits(double value);
 
-/* Prints and releases the object, NULL where building it failed. Returns 0 or STATUS_FAILED. */
+/* The fewest digits that read back the same double. To be used within the expression that calls it:
+ * printf("%s", report_number(value).text). */
+typedef struct number_text {
+    char text[32];
+} number_text;
+number_text report_number(double value);
+
+/* Likewise of a coordinate that a float holds: the fewest digits that read back the same float. */
+number_text report_coordinate(double value);
+
+/* Adds "notices": all that notice() has been called with. */
+void report_add_notices(json_t *object);
+
+/* Prints and releases the object, NULL where building it failed; with more digits than these where a number in it
+ * needs them. Returns 0 or STATUS_FAILED. */
 int report_print(json_t *object, int digits);
 
 #endif

@@ -7,14 +7,42 @@
  */
 #include "statistics.h"
 
+#include "average.h"
+
 #include <math.h>
 #include <string.h>
 
 /* Finite values of one array, or of one component: every stride-th value from the first on. */
 typedef struct extent {
-    uint64_t finite_count, nonfinite_count;
+    uint64_t finite_count, nonfinite_count, missing_count;
     double least, most; /* infinities where there is no finite value */
 } extent;
+
+static const extent nothing = {0, 0, 0, INFINITY, -INFINITY};
+
+static int may_be_missing(const sample_array *array) { return array->blanked || array->has_nodata; }
+
+static int is_missing(const sample_array *array, uint64_t n, double value) {
+    return (array->blanked && array->blanked[n]) || (array->has_nodata && value == array->nodata);
+}
+
+/* Of arrays with samples that may be missing; others have loops of their own, ten times as fast. */
+static extent extent_of_present(const sample_array *array) {
+    extent e = nothing;
+    for (uint64_t n = 0; n < array->count; n++) {
+        double value = value_at(array->type, array->samples, n);
+        if (is_missing(array, n, value)) {
+            e.missing_count++;
+        } else if (isfinite(value)) {
+            e.finite_count++;
+            e.least = value < e.least ? value : e.least;
+            e.most = value > e.most ? value : e.most;
+        } else {
+            e.nonfinite_count++;
+        }
+    }
+    return e;
+}
 
 #define EXTENT_OF_INTEGERS(c_type)                                                                                     \
     {                                                                                                                  \
@@ -46,7 +74,7 @@ typedef struct extent {
     break
 
 static extent extent_of(const sample_array *array, uint64_t first, uint64_t stride) {
-    extent e = {0, 0, INFINITY, -INFINITY};
+    extent e = nothing;
     if (array->count <= first) return e;
     switch (array->type) {
     case TC_U8:
@@ -76,16 +104,38 @@ int statistics_range(const sample_array *array, int first, int stride, double ra
     return e.finite_count != 0;
 }
 
-static void find_range(const sample_array *arrays, int count, statistics *s) {
-    extent all = {0, 0, INFINITY, -INFINITY};
+static extent extent_of_all(const sample_array *arrays, int count) {
+    extent all = nothing;
     for (int n = 0; n < count; n++) {
-        extent e = extent_of(&arrays[n], 0, 1);
+        extent e = may_be_missing(&arrays[n]) ? extent_of_present(&arrays[n]) : extent_of(&arrays[n], 0, 1);
+        all.missing_count += e.missing_count;
         all.finite_count += e.finite_count;
         all.nonfinite_count += e.nonfinite_count;
         all.least = e.least < all.least ? e.least : all.least;
         all.most = e.most > all.most ? e.most : all.most;
     }
+    return all;
+}
+
+int statistics_extent(const sample_array *arrays, int count, double range[2]) {
+    const extent all = extent_of_all(arrays, count);
+    range[0] = all.least;
+    range[1] = all.most;
+    return all.finite_count != 0;
+}
+
+uint64_t statistics_count_equal(const sample_array *arrays, int count, double value) {
+    uint64_t equal = 0;
+    for (int n = 0; n < count; n++)
+        for (uint64_t m = 0; m < arrays[n].count; m++)
+            equal += value_at(arrays[n].type, arrays[n].samples, m) == value && !is_missing(&arrays[n], m, value);
+    return equal;
+}
+
+static void find_range(const sample_array *arrays, int count, statistics *s) {
+    const extent all = extent_of_all(arrays, count);
     s->finite_count = all.finite_count;
+    s->missing_count = all.missing_count;
     s->nonfinite_count = all.nonfinite_count;
     s->minimum = all.finite_count ? all.least : 0.0;
     s->maximum = all.finite_count ? all.most : 0.0;
@@ -117,7 +167,18 @@ static void count_sample(statistics *s, double value) {
             count_sample(s, (double)((const c_type *)array->samples)[n]);                                              \
     break
 
+static void fill_bins_of_present(const sample_array *array, statistics *s) {
+    for (uint64_t n = 0; n < array->count; n++) {
+        double value = value_at(array->type, array->samples, n);
+        if (isfinite(value) && !is_missing(array, n, value)) count_sample(s, value);
+    }
+}
+
 static void fill_bins(const sample_array *array, statistics *s) {
+    if (may_be_missing(array)) {
+        fill_bins_of_present(array, s);
+        return;
+    }
     switch (array->type) {
     case TC_U8:
         COUNT_SAMPLES(uint8_t);

@@ -1,4 +1,4 @@
-/* statistics.h - range, histogram and sensible isovalues of finite samples */
+/* statistics.h - range, histogram and sensible isovalues of the samples that are finite and present */
 #ifndef STATISTICS_H
 #define STATISTICS_H
 
@@ -11,6 +11,9 @@ typedef struct sample_array {
     tc_type type;
     const void *samples;
     uint64_t count;
+    const uint8_t *blanked; /* one per sample, nonzero: missing; NULL: none */
+    int has_nodata;         /* samples equal to nodata are missing */
+    double nodata;
 } sample_array;
 
 /*
@@ -20,6 +23,7 @@ typedef struct sample_array {
  */
 typedef struct statistics {
     uint64_t finite_count, nonfinite_count;
+    uint64_t missing_count;  /* blanked, or equal to nodata: not among the other two */
     double minimum, maximum; /* of the finite samples; zeros where there are none */
     int bin_count;           /* 0 where there are none */
     double low, width;
@@ -36,6 +40,12 @@ typedef struct suggestion {
 
 /* Of all arrays together. */
 void statistics_of(const sample_array *arrays, int count, statistics *out);
+
+/* Least and greatest of what is finite and present in all arrays; 0 where nothing is. */
+int statistics_extent(const sample_array *arrays, int count, double range[2]);
+
+/* Samples, present ones, that equal the value. */
+uint64_t statistics_count_equal(const sample_array *arrays, int count, double value);
 
 /* Least and greatest finite value of every stride-th sample from the first on; 0 where there is none. */
 int statistics_range(const sample_array *array, int first, int stride, double range[2]);

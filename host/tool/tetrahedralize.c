@@ -10,6 +10,7 @@
 #include "faces.h"
 #include "input.h"
 #include "mesh_write.h"
+#include "notice.h"
 #include "progress.h"
 #include "report.h"
 
@@ -59,7 +60,7 @@ static int cut(conversion *c) {
         return fail(STATUS_FAILED, "%s: %" PRIu64 " points are more than the 2^32 - 1 that a complex numbers",
                     c->o->operands[0], c->file.point_count);
     if (!status) status = blocks_check_faces(&c->blocks, NULL, &c->faces);
-    if (!status && !c->o->quiet) faces_tell(&c->faces);
+    if (!status) faces_tell(&c->faces);
     return status ? status : progress_status();
 }
 
@@ -162,7 +163,7 @@ static int fits_together(const conversion *c, const char *name) {
     for (int n = 1; n < c->data.block_count; n++) {
         const dataset_field *f = block_field(&c->data.blocks[n], name);
         if (f->components != first->components || f->type != first->type || f->on_cells != first->on_cells) {
-            if (!c->o->quiet) message("field '%s' is left out: it differs in kind from block to block", name);
+            notice("field '%s' is left out: it differs in kind from block to block", name);
             return 0;
         }
     }
@@ -229,6 +230,7 @@ static int print_json(const conversion *c) {
     json_object_set_new(object, "folded_faces", count_json(c->faces.folded_faces));
     json_object_set_new(object, "fields", fields);
     json_object_set_new(object, "total_ms", report_real(c->total_ms));
+    report_add_notices(object);
     return report_print(object, 15);
 }
 
