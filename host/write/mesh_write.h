@@ -11,7 +11,8 @@
 #include "tetracubes.h"
 
 /* Values on the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...; there,
- * characters other than letters and digits become '_', and names that are taken get '_' behind them. */
+ * characters other than letters and digits become '_'. In both, names that are taken, by arrays that the writer makes
+ * itself (x, nx, Points, Normals, ...) or by a field before, get '_' behind them. */
 typedef struct mesh_field {
     const char *name;
     int components;

@@ -44,7 +44,8 @@ static void add_escaped(file_text *t, const char *name) {
     }
 }
 
-void vtk_array_add(vtk_file *f, const vtk_array *array) {
+/* The name as it stands in the text. */
+static void add_array(vtk_file *f, const vtk_array *array, const char *name) {
     vtk_array *arrays = realloc(f->arrays, (f->array_count + 1) * sizeof *arrays);
     if (!arrays) {
         f->text.has_failed = 1;
@@ -52,11 +53,37 @@ void vtk_array_add(vtk_file *f, const vtk_array *array) {
     }
     f->arrays = arrays;
     arrays[f->array_count++] = *array;
-    text_add(&f->text, "        <DataArray type=\"%s\" Name=\"", array->type);
-    add_escaped(&f->text, array->name);
-    text_add(&f->text, "\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%llu\"/>\n", array->components,
-             (unsigned long long)f->appended_bytes);
+    text_add(&f->text,
+             "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
+             "offset=\"%llu\"/>\n",
+             array->type, name, array->components, (unsigned long long)f->appended_bytes);
     f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));
+}
+
+void vtk_array_add(vtk_file *f, const vtk_array *array) { add_array(f, array, array->name); }
+
+static int is_taken(const vtk_file *f, const char *name, const char *const *own) {
+    for (; *own; own++)
+        if (strcmp(name, *own) == 0) return 1;
+    for (size_t n = 0; n < f->field_count; n++)
+        if (strcmp(name, f->field_names[n]) == 0) return 1;
+    return 0;
+}
+
+void vtk_field_add(vtk_file *f, const vtk_array *array, const char *const *own) {
+    file_text name = {0};
+    char **names = realloc(f->field_names, (f->field_count + 1) * sizeof *names);
+    if (names) f->field_names = names;
+    text_add(&name, "%s", "");
+    add_escaped(&name, array->name);
+    while (names && !name.has_failed && is_taken(f, name.bytes, own)) text_add(&name, "_");
+    if (!names || name.has_failed) {
+        f->text.has_failed = 1;
+        text_release(&name);
+        return;
+    }
+    names[f->field_count++] = name.bytes;
+    add_array(f, array, name.bytes);
 }
 
 static void write_array(output *o, const vtk_array *a) {
@@ -88,6 +115,8 @@ void vtk_file_write(vtk_file *f, const char *grid) {
     }
     text_release(&head);
     text_release(&f->text);
+    for (size_t i = 0; i < f->field_count; i++) free(f->field_names[i]);
+    free(f->field_names);
     free(f->arrays);
     *f = (vtk_file){.o = f->o};
 }

@@ -29,11 +29,17 @@ typedef struct vtk_file {
     vtk_array *arrays;
     size_t array_count;
     uint64_t appended_bytes;
+    char **field_names; /* as they stand in the text */
+    size_t field_count;
 } vtk_file;
 
 /* Adds the array's element to the text and the array to what is appended. Names may be any bytes: what XML cannot hold
  * becomes '_'. What it points to is borrowed until vtk_file_write. */
 void vtk_array_add(vtk_file *f, const vtk_array *array);
+
+/* The same for a field, whose name is somebody else's choice: where it is one of `own`, names of the arrays that the
+ * writer makes itself (NULL behind the last), or that of a field before, it gets '_' behind. */
+void vtk_field_add(vtk_file *f, const vtk_array *array, const char *const *own);
 
 /* Writes the whole file and frees what the vtk_file holds. */
 void vtk_file_write(vtk_file *f, const char *grid);

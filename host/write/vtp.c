@@ -51,15 +51,29 @@ static unsigned char *encode_ends(const void *source, uint64_t first, uint64_t e
     return to;
 }
 
-static void add_values(vtk_file *f, const char *name, shown_values *values) {
+static vtk_array array_of(const char *name, const shown_values *values) {
     int is_plain = !values->shown->soup;
-    vtk_array_add(f, &(vtk_array){.name = name,
-                                  .type = "Float32",
-                                  .components = values->components,
-                                  .record_count = file_vertex_count(values->shown),
-                                  .record_bytes = (size_t)values->components * sizeof(float),
-                                  .encode = is_plain ? NULL : encode_values,
-                                  .source = is_plain ? (const void *)values->values : values});
+    return (vtk_array){.name = name,
+                       .type = "Float32",
+                       .components = values->components,
+                       .record_count = file_vertex_count(values->shown),
+                       .record_bytes = (size_t)values->components * sizeof(float),
+                       .encode = is_plain ? NULL : encode_values,
+                       .source = is_plain ? (const void *)values->values : values};
+}
+
+static void add_values(vtk_file *f, const char *name, const shown_values *values) {
+    const vtk_array array = array_of(name, values);
+    vtk_array_add(f, &array);
+}
+
+static void add_fields(vtk_file *f, const shown_mesh *s, shown_values *fields) {
+    const char *own[] = {"Points", "connectivity", "offsets", s->mesh->normals ? "Normals" : NULL, NULL};
+    for (int i = 0; i < s->field_count; i++) {
+        fields[i] = (shown_values){s, s->fields[i].values, s->fields[i].components};
+        const vtk_array array = array_of(s->fields[i].name, &fields[i]);
+        vtk_field_add(f, &array, own);
+    }
 }
 
 /* In double precision. */
@@ -105,10 +119,7 @@ void vtp_write(output *o, const shown_mesh *s) {
              (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count,
              s->mesh->normals ? " Normals=\"Normals\"" : "");
     if (s->mesh->normals) add_values(&f, "Normals", &normals);
-    for (int i = 0; i < s->field_count; i++) {
-        fields[i] = (shown_values){s, s->fields[i].values, s->fields[i].components};
-        add_values(&f, s->fields[i].name, &fields[i]);
-    }
+    add_fields(&f, s, fields);
     text_add(&f.text, "      </PointData>\n      <Points>\n");
     if (s->is_moved)
         add_positions(&f, s);

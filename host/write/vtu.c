@@ -40,12 +40,14 @@ static unsigned char *encode_types(const void *source, uint64_t first, uint64_t 
 static void add_field(vtk_file *f, const complex_file *c, const dataset_field *field) {
     static const char *const types[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "Float32", "Float64"};
     static const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    vtk_array_add(f, &(vtk_array){.name = field->name,
-                                  .type = types[field->type],
-                                  .components = field->components,
-                                  .record_count = c->point_count,
-                                  .record_bytes = (size_t)field->components * bytes[field->type],
-                                  .source = field->values});
+    static const char *const own[] = {"Points", "connectivity", "offsets", "types", NULL};
+    const vtk_array array = {.name = field->name,
+                             .type = types[field->type],
+                             .components = field->components,
+                             .record_count = c->point_count,
+                             .record_bytes = (size_t)field->components * bytes[field->type],
+                             .source = field->values};
+    vtk_field_add(f, &array, own);
 }
 
 static void add_cells(vtk_file *f, const complex_file *c) {
