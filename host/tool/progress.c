@@ -3,6 +3,10 @@
  *
  * A second SIGINT, SIGTERM or SIGQUIT ends the program at once; SIGHUP and SIGXCPU may be sent again by the system
  * itself, while the program still tidies up. What was ignored on entry stays so, as nohup wants it.
+ *
+ * Compilers of kernels (LLVM) put handlers of their own in the place of others'. Those of SIGINT, SIGTERM and SIGHUP
+ * hand the signal on; those of SIGQUIT and SIGXCPU swallow the first. So these two have no handler that could be
+ * replaced: all threads block them, and one waits for them. What is sent to a single thread waits there until it asks.
  */
 #include "progress.h"
 
@@ -10,7 +14,9 @@
 #include "failure.h"
 #include "truncation.h"
 
+#include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -19,7 +25,8 @@
 #define PATIENCE_MS 1000.0
 #define REDRAW_MS   100.0
 
-static volatile sig_atomic_t cancelled;
+static atomic_int cancelled;
+static sigset_t waited_for; /* blocked in all threads: SIGQUIT, SIGXCPU */
 
 static struct {
     int shown; /* print at all */
@@ -46,12 +53,55 @@ static void catch_signal(int number, unsigned flags) {
     if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
 }
 
+/* A signal that was blocked has been taken. */
+static void receive(int number) {
+    if (number == SIGQUIT && cancelled) {
+        sigset_t one;
+        sigemptyset(&one);
+        sigaddset(&one, number);
+        signal(number, SIG_DFL);
+        pthread_sigmask(SIG_UNBLOCK, &one, NULL);
+        raise(number);
+    }
+    cancelled = 1;
+}
+
+static void *wait_for_signals(void *unused) {
+    int number;
+    while (sigwait(&waited_for, &number) == 0) receive(number);
+    return unused;
+}
+
+/* Before any other thread is started: all inherit what is blocked. */
+static void start_waiting(void) {
+    static const int numbers[] = {SIGQUIT, SIGXCPU};
+    struct sigaction before;
+    pthread_t waiting;
+    sigset_t all, old;
+    sigemptyset(&waited_for);
+    for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++)
+        if (sigaction(numbers[n], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaddset(&waited_for, numbers[n]);
+    pthread_sigmask(SIG_BLOCK, &waited_for, NULL);
+    sigfillset(&all); /* handlers run in other threads, whose calls of the system they interrupt */
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    int is_there = pthread_create(&waiting, NULL, wait_for_signals, NULL) == 0;
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    if (is_there) {
+        pthread_detach(waiting);
+        return;
+    }
+    pthread_sigmask(SIG_UNBLOCK, &waited_for, NULL);
+    sigemptyset(&waited_for);
+    catch_signal(SIGQUIT, SA_RESETHAND);
+    catch_signal(SIGXCPU, 0);
+}
+
 void progress_begin(int quiet) {
     catch_signal(SIGINT, SA_RESETHAND);
     catch_signal(SIGTERM, SA_RESETHAND);
-    catch_signal(SIGQUIT, SA_RESETHAND);
     catch_signal(SIGHUP, 0);
-    catch_signal(SIGXCPU, 0);
+    start_waiting();
     signal(SIGXFSZ, SIG_IGN); /* writing fails with EFBIG instead, and says so */
     state.shown = !quiet && isatty(STDERR_FILENO);
     state.begin_ms = state.last_ms = now_ms();
@@ -59,8 +109,7 @@ void progress_begin(int quiet) {
 
 int progress_update(void *user, const char *stage, double fraction) {
     (void)user;
-    truncation_watch(); /* what builds kernels may have put a handler of its own in front, which serves one fault only
-                         */
+    truncation_watch(); /* what builds kernels may have put in front a handler of its own, which serves one fault */
     double now = now_ms();
     if (state.shown && now - state.begin_ms >= PATIENCE_MS && now - state.last_ms >= REDRAW_MS) {
         fprintf(stderr, "\r\033[K%s %3.0f%%", stage, 100.0 * fraction);
@@ -68,7 +117,7 @@ int progress_update(void *user, const char *stage, double fraction) {
         state.drawn = 1;
         state.last_ms = now;
     }
-    return cancelled;
+    return progress_cancelled();
 }
 
 void progress_clear(void) {
@@ -78,8 +127,13 @@ void progress_clear(void) {
     state.drawn = 0;
 }
 
-int progress_cancelled(void) { return cancelled; }
+int progress_cancelled(void) {
+    static const struct timespec no_time = {0};
+    int number = sigtimedwait(&waited_for, NULL, &no_time);
+    if (number > 0) receive(number);
+    return cancelled;
+}
 
 int progress_status(void) {
-    return cancelled ? fail(STATUS_FAILED, "cancelled; no file was left unfinished") : truncation_status();
+    return progress_cancelled() ? fail(STATUS_FAILED, "cancelled; no file was left unfinished") : truncation_status();
 }

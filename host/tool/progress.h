@@ -1,8 +1,8 @@
 /*
  * progress.h - time, progress on a terminal, and Ctrl-C
  *
- * Interrupt and termination signals only set a flag, which stops the next step that asks; a second one ends the
- * process at once.
+ * Interrupt and termination signals, also those of limits on processor time, only set a flag, which stops the next step
+ * that asks; a second one ends the process at once.
  */
 #ifndef PROGRESS_H
 #define PROGRESS_H
@@ -10,7 +10,7 @@
 /* Milliseconds of a clock that never goes back. */
 double now_ms(void);
 
-/* From here on signals that end a program set the flag, a limit on file sizes makes writes fail, and progress_update
+/* To be called before any thread is started. From here on signals that end a program set the flag, a limit on file sizes makes writes fail, and progress_update
  * prints where standard error is a terminal and not quiet. */
 void progress_begin(int quiet);
 
@@ -20,7 +20,7 @@ int progress_update(void *user, const char *stage, double fraction);
 /* Clears the line, where one was printed, so that other text may follow. */
 void progress_clear(void);
 
-/* Nonzero once a signal came. */
+/* Nonzero once a signal came; from any thread. */
 int progress_cancelled(void);
 
 /* 0, or a status with its text: STATUS_FAILED of a cancelled run, STATUS_INPUT where an input file became shorter. */
