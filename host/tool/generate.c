@@ -76,6 +76,7 @@ static int check_usage(const options *o, recipe *r) {
     if (o->type < 0) return fail(STATUS_USAGE, "generate needs --type, as in --type u8");
     if (!o->output) return fail(STATUS_USAGE, "generate needs -o FILE, ending in .nrrd or .raw");
     const char *ending = strrchr(o->output, '.');
+    if (output_is_dash(o->output)) ending = ".nrrd";
     r->has_header = !ending || strcasecmp(ending, ".raw") != 0;
     if (r->has_header && (!ending || strcasecmp(ending, ".nrrd") != 0))
         return fail(STATUS_USAGE, "-o %s: generate writes .nrrd, or .raw without a header", o->output);

@@ -5,6 +5,7 @@
 #include "failure.h"
 #include "mapping.h"
 #include "notice.h"
+#include "output.h"
 #include "report.h"
 #include "statistics.h"
 
@@ -82,10 +83,11 @@ sample_array *input_samples(const dataset *d, const scalar *field) {
 }
 
 int input_overwrite_check(const options *o, const char *path) {
-    struct stat input, output;
+    struct stat in, out;
+    if (output_is_dash(path)) return 0;
     for (int n = 0; n < o->operand_count; n++) {
-        if (stat(o->operands[n], &input) || stat(path, &output)) continue;
-        if (input.st_dev == output.st_dev && input.st_ino == output.st_ino && S_ISREG(input.st_mode))
+        if (stat(o->operands[n], &in) || stat(path, &out)) continue;
+        if (in.st_dev == out.st_dev && in.st_ino == out.st_ino && S_ISREG(in.st_mode))
             return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
     }
     if (mapping_was_opened(path))

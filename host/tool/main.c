@@ -11,6 +11,7 @@
 #include "output.h"
 #include "progress.h"
 #include "report.h"
+#include "streams.h"
 #include "truncation.h"
 #include "volume.h"
 
@@ -174,6 +175,7 @@ static int run_command(const command *c, int argc, char **argv) {
     if (!status && o.help) {
         print_command_help(c, stdout);
     } else if (!status) {
+        streams_choose(o.output);
         progress_begin(o.quiet);
         report_begin();
         notice_begin(o.quiet, o.json);
@@ -213,10 +215,10 @@ static int dispatch(int argc, char **argv) {
 int main(int argc, char **argv) {
     truncation_watch(); /* before drivers start threads and put handlers of their own in front */
     int status = dispatch(argc, argv);
+    int is_written = fflush(stdout) == 0 && !ferror(stdout), error = errno;
+    streams_restore();
     if (status) message("%s", failure_text());
-    if (fflush(stdout) || ferror(stdout)) {
-        message("could not write the results to standard output: %s", strerror(errno));
-        return status ? status : STATUS_FAILED;
-    }
-    return status;
+    if (is_written) return status;
+    message("could not write the results to standard output: %s", strerror(error));
+    return status ? status : STATUS_FAILED;
 }

@@ -62,11 +62,13 @@ static const option table[] = {
      "isovalue, or several with commas between: samples >= V are inside"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl or .obj (left out: only the report); with\n"
-     "several isovalues, % in FILE stands for the isovalue as typed"},
+     "several isovalues, % in FILE stands for the isovalue as typed; - is standard\n"
+     "output (give --format): the report then goes to standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
-     "volume to write: .nrrd, or .raw for samples without a header"},
+     "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
+     "standard output"},
     {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
-     "unstructured grid to write: .vtu"},
+     "unstructured grid to write: .vtu; - is standard output"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl or obj, whatever FILE ends in"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
@@ -74,7 +76,8 @@ static const option table[] = {
      "cells are averaged to the points between them; point:NAME and cell:NAME\n"
      "choose where both have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
-     "other fields, interpolated onto the vertices (PLY, VTP)"},
+     "other fields, interpolated onto the vertices (PLY, VTP); a name that the\n"
+     "file needs itself, as Normals, gets _ behind"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},

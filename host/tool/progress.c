@@ -14,6 +14,7 @@
 #include "failure.h"
 #include "truncation.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -103,7 +104,7 @@ void progress_begin(int quiet) {
     catch_signal(SIGHUP, 0);
     start_waiting();
     signal(SIGXFSZ, SIG_IGN); /* writing fails with EFBIG instead, and says so */
-    state.shown = !quiet && isatty(STDERR_FILENO);
+    state.shown = !quiet && isatty(fileno(stderr));
     state.begin_ms = state.last_ms = now_ms();
 }
 
@@ -129,8 +130,9 @@ void progress_clear(void) {
 
 int progress_cancelled(void) {
     static const struct timespec no_time = {0};
-    int number = sigtimedwait(&waited_for, NULL, &no_time);
+    int error = errno, number = sigtimedwait(&waited_for, NULL, &no_time);
     if (number > 0) receive(number);
+    errno = error; /* writers ask between a call that failed and its error */
     return cancelled;
 }
 

@@ -10,8 +10,8 @@
 /* Milliseconds of a clock that never goes back. */
 double now_ms(void);
 
-/* To be called before any thread is started. From here on signals that end a program set the flag, a limit on file sizes makes writes fail, and progress_update
- * prints where standard error is a terminal and not quiet. */
+/* To be called before any thread is started. From here on signals that end a program set the flag, a limit on file
+ * sizes makes writes fail, and progress_update prints where standard error is a terminal and not quiet. */
 void progress_begin(int quiet);
 
 /* A tc_progress: prints stage and percentage once a second has passed. Nonzero: stop. */

@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "notice.h"
+#include "output.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -220,7 +221,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     printf("\n");
     if (s->has_topology) topology_text(&s->topology);
     if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
-    if (s->path) printf("  written     %s\n", s->path);
+    if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
 }
 
 static void input_text(const extract_report *r) {

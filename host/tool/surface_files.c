@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
+#include "output.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,6 +49,8 @@ int surface_files_check(const options *o) {
     if (o->carry && !o->output) return fail(STATUS_USAGE, "--carry puts fields into the mesh's file: give -o FILE");
     if (o->separate_blocks && !o->output) return fail(STATUS_USAGE, "--blocks names files: give -o FILE");
     if (!o->output) return 0;
+    if (o->separate_blocks && output_is_dash(o->output))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: -o - is one stream; name files");
     if (o->isovalue_count > 1 && !strchr(o->output, '%'))
         return fail(STATUS_USAGE, "-o %s: with several isovalues the name needs a %%, which stands for the isovalue",
                     o->output);
@@ -60,6 +63,11 @@ int surface_files_check(const options *o) {
     for (size_t n = 0; n < o->isovalue_count && !status; n++) {
         char *path = file_name(o, &o->isovalues[n], ALL_BLOCKS);
         status = path ? input_overwrite_check(o, path) : STATUS_FAILED;
+        free(path);
+    }
+    for (size_t n = 0; n < o->isovalue_count && !status; n++) {
+        char *path = file_name(o, &o->isovalues[n], o->separate_blocks ? 0 : ALL_BLOCKS);
+        status = path ? output_check(path) : STATUS_FAILED;
         free(path);
     }
     return status;

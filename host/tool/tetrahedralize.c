@@ -11,6 +11,7 @@
 #include "input.h"
 #include "mesh_write.h"
 #include "notice.h"
+#include "output.h"
 #include "progress.h"
 #include "report.h"
 
@@ -33,7 +34,8 @@ typedef struct conversion {
 static int check_usage(const options *o) {
     if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
     int status = complex_write_check(o->output);
-    return status ? status : input_overwrite_check(o, o->output);
+    if (!status) status = input_overwrite_check(o, o->output);
+    return status ? status : output_check(o->output);
 }
 
 static int read_input(conversion *c) {

@@ -3,7 +3,7 @@
  *
  * Written beside the final name and renamed when complete, so that a failed run leaves no partial file and an older
  * file under the name stays whole until then. A name that exists and is no regular file (/dev/stdout, a FIFO) is
- * written directly.
+ * written directly; "-" is standard output. Symbolic links are followed, also to where nothing is yet.
  */
 #ifndef MESH_WRITE_H
 #define MESH_WRITE_H

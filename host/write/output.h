@@ -1,8 +1,9 @@
 /*
  * output.h - a file that appears under its name only when it is complete
  *
- * Data goes to .NAME.XXXXXX.tmp in the final folder and is renamed by output_close. Errors are sticky: after the first
- * one, everything is dropped, and output_close tells of it; writers need not look.
+ * Data goes to .NAME.XXXXXX.tmp in the final folder and is renamed by output_close; such files that a process left when
+ * it was killed are removed by the next output of that name. Errors are sticky: after the first one, everything is
+ * dropped, and output_close tells of it; writers need not look.
  *
  *     output o;
  *     int status = output_open(&o, path);
@@ -23,6 +24,7 @@ typedef struct output {
     char *path;       /* final name, symbolic links resolved */
     char *temporary;  /* NULL where the target is written directly */
     int fd;
+    int lock;  /* the temporary file once more: its lock is held until it is gone */
     int error; /* errno of the first failure */
 } output;
 
@@ -32,6 +34,13 @@ typedef unsigned char *output_encode(const void *source, uint64_t first, uint64_
 
 /* Has `asked` asked between writes, by all outputs from now on: nonzero ends them, and output_close then fails. */
 void output_stop_when(int (*asked)(void));
+
+/* Whether the name is "-": standard output. */
+int output_is_dash(const char *path);
+
+/* 0 where output_open would open the file, as far as that can be told without making one, else STATUS_FAILED with its
+ * text: to be called before any work is done. */
+int output_check(const char *path);
 
 /* Returns 0 or STATUS_FAILED with its text; the output then needs no output_close. path must outlive the output. */
 int output_open(output *o, const char *path);

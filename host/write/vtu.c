@@ -77,7 +77,7 @@ static void add_cells(vtk_file *f, const complex_file *c) {
 
 int complex_write_check(const char *path) {
     size_t length = strlen(path);
-    if (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0) return 0;
+    if (output_is_dash(path) || (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0)) return 0;
     return fail(STATUS_USAGE, "%s: tetrahedra are written as VTK XML: let the name end in .vtu", path);
 }
 

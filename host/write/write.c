@@ -57,6 +57,7 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl, obj or vtp",
                     options->format);
+    if (output_is_dash(path)) return fail(STATUS_USAGE, "-o - has no ending: name the format by --format");
     return fail(STATUS_USAGE,
                 "%s: its ending names no known format: let it end in .ply, .stl, .obj or .vtp, or name the format by "
                 "--format",
