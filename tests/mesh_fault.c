@@ -3,7 +3,7 @@
  *
  * Method: stands before the library's tc_mesh_get (LD_PRELOAD) and changes one item of the first mesh of the process,
  * as MESH_FAULT says: "position" and "normal" by one bit, "triangle" by swapping corners; "winding" does the latter to
- * every mesh, so that the engines still agree.
+ * every mesh, so that the engines still agree. "limit": no mesh is handed out, as if each had too many vertices.
  */
 #include "tetracubes.h"
 
@@ -38,6 +38,7 @@ __attribute__((visibility("default"))) tc_status tc_mesh_get(tc_mesh *mesh, tc_m
     tc_status status = real(mesh, data);
     int first = calls++ == 0;
     if (status || !fault) return status;
+    if (!strcmp(fault, "limit")) return TC_ERROR_LIMIT;
     if (first && !strcmp(fault, "position")) flip_last_bit(data->positions, data->vertex_count);
     if (first && !strcmp(fault, "normal")) flip_last_bit(data->normals, data->vertex_count);
     if (first && !strcmp(fault, "triangle")) swap_last_corners(data->triangles, data->triangle_count);

@@ -77,8 +77,9 @@ int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
     *counts = (tc_counts){.struct_size = sizeof *counts};
     for (int n = 0; n < e->block_count; n++) {
         tc_counts one = {.struct_size = sizeof one};
-        int status = e->grids[n] ? library_status(tc_count(e->grids[n], how, &one)) : 0;
-        if (status) return status;
+        tc_status status = e->grids[n] ? tc_count(e->grids[n], how, &one) : TC_OK;
+        e->fails_alike = status == TC_ERROR_LIMIT;
+        if (status) return library_status(status);
         counts->vertex_count += one.vertex_count;
         counts->triangle_count += one.triangle_count;
         counts->active_cell_count += one.active_cell_count;
@@ -145,6 +146,7 @@ static int extract_block(engine *e, int n, const tc_extract_options *how, tc_mes
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     tc_status status = e->grids[n] ? tc_extract(e->grids[n], how, &e->mesh) : TC_OK;
     if (!status && e->grids[n]) status = tc_mesh_get(e->mesh, data);
+    e->fails_alike = status == TC_ERROR_LIMIT;
     e->parts[n] = (mesh_part){data->vertex_count, data->triangle_count};
     return library_status(status);
 }
@@ -154,9 +156,11 @@ int engine_extract(engine *e, const tc_extract_options *how, tc_mesh_data *data)
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     if (e->block_count == 1 && e->grids[0]) return extract_block(e, 0, how, data);
     int status = make_room(&e->joined, 1, 1, how->normals);
+    e->fails_alike = status != 0;
     for (int n = 0; n < e->block_count && !status; n++) {
-        status = extract_block(e, n, how, &part);
-        if (!status) status = join(&e->joined, &part, how->normals, data);
+        if ((status = extract_block(e, n, how, &part))) break;
+        status = join(&e->joined, &part, how->normals, data);
+        e->fails_alike = status != 0;
     }
     data->positions = e->joined.positions;
     data->normals = how->normals ? e->joined.normals : NULL;

@@ -27,6 +27,7 @@ typedef struct engine {
     int block_count;
     tc_mesh *mesh; /* of one block, used for each in turn */
     joined_mesh joined;
+    int fails_alike; /* what failed last, a limit of meshes or the host's memory, would fail any engine */
 } engine;
 
 /* Picks the device of the options, for the OpenCL engine. To be closed in any case. */

@@ -85,10 +85,10 @@ static int read_input(job *j) {
     return status ? status : progress_status();
 }
 
-/* Where the main engine has failed: with --engine auto the reference takes its place, with what has been uploaded.
- * Returns the status that is left. */
+/* Where the main engine has failed: with --engine auto the reference takes its place, with what has been uploaded,
+ * unless it would fail alike. Returns the status that is left. */
 static int fall_back(job *j, int status) {
-    if (status != STATUS_FAILED || progress_cancelled()) return status;
+    if (status != STATUS_FAILED || j->main.fails_alike || progress_cancelled()) return status;
     if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
     notice("%s", failure_text());
     notice("the reference engine takes over");
