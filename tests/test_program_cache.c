@@ -205,6 +205,56 @@ static void test_damage(void) {
     }
 }
 
+/* Files that somebody else can write, or has written, are no good, whatever is in them. */
+static void test_foreign_files(void) {
+    const char *cache = cache_folder("deep/down/cache");
+    const struct {
+        const char *name;
+        mode_t mode;
+        uid_t owner;
+    } cases[] = {{"files that the group may write", 0620, geteuid()},
+                 {"files that all may write", 0602, geteuid()},
+                 {"files of another user", 0600, 12345}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        listing before = list(cache);
+        bool made = true;
+        for (int f = 0; f < before.count; f++)
+            made = made && !chmod(before.entries[f].path, cases[n].mode) &&
+                   (cases[n].owner == geteuid() || !chown(before.entries[f].path, cases[n].owner, (gid_t)-1));
+        if (!made) {
+            printf("%s: not to be had without root\n", cases[n].name);
+            continue;
+        }
+        extract_expect(cases[n].name);
+        listing after = list(cache);
+        EXPECT(names_same(&before, &after) && inodes_same(&before, &after) == 0, "%s: taken", cases[n].name);
+    }
+}
+
+/* In folders of that kind nothing is looked at: what is damaged stays so. */
+static void test_foreign_folders(void) {
+    static char bytes[TEXT_MOST + 1];
+    const char *cache = cache_folder("deep/down/cache");
+    const mode_t modes[] = {0770, 0707, 0700};
+    listing before = list(cache);
+    for (int f = 0; f < before.count; f++) {
+        size_t count = file_read(before.entries[f].path, bytes);
+        file_write(before.entries[f].path, bytes, count ? last_spoil(bytes, count) : 0);
+    }
+    for (int n = 0; n < 3; n++) {
+        const uid_t owner = n == 2 ? 12345 : geteuid();
+        if (chmod(cache, modes[n]) || (owner != geteuid() && chown(cache, owner, (gid_t)-1))) continue;
+        extract_expect("a folder of others");
+        listing after = list(cache);
+        EXPECT(names_same(&before, &after) && inodes_same(&before, &after) == 2, "a folder of mode %o, owner %d: used",
+               (unsigned)modes[n], (int)owner);
+    }
+    EXPECT(!chmod(cache, 0700) && (geteuid() != 0 || !chown(cache, 0, (gid_t)-1)), "the folder cannot be put right");
+    extract_expect("one's own folder again");
+    listing after = list(cache);
+    EXPECT(inodes_same(&before, &after) == 0, "damaged files were taken");
+}
+
 /* The file of one program under the name of the other. */
 static void test_swapped(void) {
     char beside[PATH_MOST];
@@ -296,9 +346,12 @@ int main(void) {
     samples_fill();
     setenv("TETRACUBES_CACHE_DIR", "", 1);
     if (child_end(child_start(device_look))) return SKIPPED;
+    umask(022);
     folder_make("program-cache");
     test_second_process();
     test_damage();
+    test_foreign_files();
+    test_foreign_folders();
     test_swapped();
     test_folders_for_files();
     test_unwritable();

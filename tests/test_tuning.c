@@ -7,6 +7,7 @@
 #include "api.h"
 #include "folder.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char path[sizeof folder + 16];
@@ -171,6 +172,8 @@ static void test_refused(tc_context *context) {
 int main(void) {
     if (!device_exists()) return SKIPPED;
     samples_fill();
+    umask(022); /* files that others may write are passed over */
+    umask(022); /* files that others may write are passed over */
     folder_make("tuning");
     snprintf(path, sizeof path, "%s/tuning", folder);
     setenv("TETRACUBES_CACHE_DIR", folder, 1);

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { PATH_BYTES = 4096 };
+enum { PATH_BYTES = 4096, NAME_BYTES = 96 };
 
 static const off_t file_bytes_most = 1 << 28;
 
@@ -31,20 +31,30 @@ bool cache_is_on(void) {
     return folder_name(folder);
 }
 
-static bool file_name(const char *name, const char *ending, char path[PATH_BYTES]) {
-    char folder[PATH_BYTES];
-    if (!folder_name(folder)) return false;
-    int length = snprintf(path, PATH_BYTES, "%s/%s%s", folder, name, ending);
-    return length > 0 && length < PATH_BYTES;
+/* This user's or root's, and written by nobody else. */
+static bool is_trusted(int file) {
+    struct stat about;
+    return !fstat(file, &about) && (about.st_uid == geteuid() || about.st_uid == 0) &&
+           !(about.st_mode & (S_IWGRP | S_IWOTH));
 }
 
-/* The folder of the file, with those above it: its own user's alone, as the XDG base directories are. */
+/* The folder, opened; -1 where there is none that is trusted. Files in it are opened through it, so that nobody can put
+ * another in its place meanwhile. */
+static int folder_open(const char *path) {
+    int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0 || is_trusted(folder)) return folder;
+    close(folder);
+    return -1;
+}
+
+/* The folder at the path, with those above it: its own user's alone, as the XDG base directories are. */
 static void folders_make(char *path) {
     for (char *at = strchr(path + 1, '/'); at; at = strchr(at + 1, '/')) {
         *at = 0;
-        mkdir(path, 0700); /* one that exists, or cannot be made, shows when the file is opened */
+        mkdir(path, 0700); /* one that exists, or cannot be made, shows when the folder is opened */
         *at = '/';
     }
+    mkdir(path, 0700);
 }
 
 static bool read_all(int file, char *bytes, size_t count) {
@@ -69,31 +79,50 @@ static bool write_all(int file, const char *bytes, size_t count) {
     return true;
 }
 
-bool cache_read(const char *name, cache_text *out) {
-    char path[PATH_BYTES];
+static bool file_read(int file, cache_text *out) {
     struct stat about;
-    *out = (cache_text){0};
-    if (!file_name(name, "", path)) return false;
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return false;
-    bool done = !fstat(file, &about) && S_ISREG(about.st_mode) && about.st_size <= file_bytes_most;
+    bool done = !fstat(file, &about) && S_ISREG(about.st_mode) && about.st_size <= file_bytes_most && is_trusted(file);
     if (done) out->count = (size_t)about.st_size;
     if (done) done = (out->bytes = calloc(1, out->count + 1)) && read_all(file, out->bytes, out->count);
-    close(file);
     if (done) return true;
     free(out->bytes);
     *out = (cache_text){0};
     return false;
 }
 
+bool cache_read(const char *name, cache_text *out) {
+    char path[PATH_BYTES];
+    *out = (cache_text){0};
+    int folder = folder_name(path) ? folder_open(path) : -1;
+    if (folder < 0) return false;
+    int file = openat(folder, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool done = file >= 0 && file_read(file, out);
+    if (file >= 0) close(file);
+    close(folder);
+    return done;
+}
+
+/* A new file of no other process, and its name. */
+static int beside_make(int folder, const char *name, char beside[NAME_BYTES]) {
+    int file = -1;
+    for (unsigned n = 0; n < 100 && file < 0 && (n == 0 || errno == EEXIST); n++) {
+        int length = snprintf(beside, NAME_BYTES, "%s.%ld-%u", name, (long)getpid(), n);
+        if (length < 0 || length >= NAME_BYTES) return -1;
+        file = openat(folder, beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    }
+    return file;
+}
+
 bool cache_write(const char *name, const void *bytes, size_t count) {
-    char path[PATH_BYTES], beside[PATH_BYTES];
-    if (!file_name(name, "", path) || !file_name(name, ".XXXXXX", beside)) return false;
-    folders_make(beside);
-    int file = mkostemp(beside, O_CLOEXEC);
-    if (file < 0) return false;
-    bool done = write_all(file, bytes, count);
-    done = !close(file) && done && !rename(beside, path);
-    if (!done) unlink(beside);
+    char path[PATH_BYTES], beside[NAME_BYTES];
+    if (!folder_name(path)) return false;
+    folders_make(path);
+    int folder = folder_open(path);
+    if (folder < 0) return false;
+    int file = beside_make(folder, name, beside);
+    bool done = file >= 0 && write_all(file, bytes, count);
+    if (file >= 0) done = !close(file) && done && !renameat(folder, beside, folder, name);
+    if (file >= 0 && !done) unlinkat(folder, beside, 0);
+    close(folder);
     return done;
 }

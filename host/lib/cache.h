@@ -4,6 +4,9 @@
  * It is TETRACUBES_CACHE_DIR, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes, of the environment; none
  * where TETRACUBES_CACHE_DIR is empty. A file appears whole or not at all: it is written beside and renamed, so that
  * processes may share the folder. What cannot be read or written is done without.
+ *
+ * Files are handed to drivers as machine code. So folder and file have to be this user's or root's, and nobody else may
+ * be able to write to them; others are neither read nor replaced.
  */
 #ifndef CACHE_H
 #define CACHE_H
@@ -16,7 +19,7 @@ typedef struct cache_text {
     size_t count;
 } cache_text;
 
-/* The whole of a regular file; false, and nothing to free, where there is none or it cannot be read. */
+/* The whole of a regular file; false, and nothing to free, where there is none or it may not or cannot be read. */
 bool cache_read(const char *name, cache_text *out);
 
 /* Replaces the file; makes the folder where it is missing. False where it cannot be written. */

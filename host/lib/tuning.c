@@ -110,7 +110,7 @@ tc_status tc_context_tuning_keep(const tc_context *context) {
     free(text.bytes);
     return done ? TC_OK
                 : (tc_status)fail(TC_ERROR_FILE, "the tuning file cannot be written: see that TETRACUBES_CACHE_DIR is "
-                                                 "unset, or names a folder that can be written");
+                                                 "unset, or names a folder of yours that you alone can write to");
 }
 
 /* ---------------------------------------------------------------------------------------------------------- choice */
