@@ -44,11 +44,21 @@ static bool gpu_open(gpu *g) {
     return true;
 }
 
-static cl_mem buffer_make(const gpu *g, size_t bytes) {
+static cl_mem buffer_make_as(cl_context context, cl_mem_flags flags, size_t bytes) {
     cl_int error;
-    cl_mem memory = clCreateBuffer(g->context, CL_MEM_READ_WRITE, bytes, NULL, &error);
+    cl_mem memory = clCreateBuffer(context, flags, bytes, NULL, &error);
     must(error, "buffer");
     return memory;
+}
+
+static cl_mem buffer_make(const gpu *g, size_t bytes) { return buffer_make_as(g->context, CL_MEM_READ_WRITE, bytes); }
+
+/* A context that the library does not work in. */
+static cl_context other_open(const gpu *g) {
+    cl_int error;
+    cl_context other = clCreateContext(NULL, 1, &g->device, NULL, NULL, &error);
+    must(error, "another context");
+    return other;
 }
 
 /* Enqueued, and not waited for. */
@@ -165,6 +175,14 @@ static void test_refusals(const gpu *g, tc_grid *grid) {
     mesh.triangles = buffer_make(g, 12 * counts.triangle_count);
     expect_refused(grid, &how, &mesh, "a short buffer", "positions");
     clReleaseMemObject(mesh.positions);
+    cl_context other = other_open(g);
+    mesh.positions = buffer_make_as(other, CL_MEM_READ_WRITE, 12 * counts.vertex_count);
+    expect_refused(grid, &how, &mesh, "a buffer of another context", "another");
+    clReleaseMemObject(mesh.positions);
+    clReleaseContext(other);
+    mesh.positions = buffer_make_as(g->context, CL_MEM_READ_ONLY, 12 * counts.vertex_count);
+    expect_refused(grid, &how, &mesh, "a buffer that kernels may not write", "READ_ONLY");
+    clReleaseMemObject(mesh.positions);
     mesh.positions = buffer_make(g, 12 * counts.vertex_count);
     how.isovalue = 9001;
     expect_refused(grid, &how, &mesh, "another isovalue", "tc_count");
@@ -187,7 +205,7 @@ static void test_refusals(const gpu *g, tc_grid *grid) {
     tc_mesh_destroy(host_mesh);
 }
 
-static void test_grids_refused(tc_context *context, cl_mem samples) {
+static void test_grids_refused(const gpu *g, tc_context *context, cl_mem samples) {
     static const uint16_t host[8];
     tc_context *reference = reference_open();
     tc_grid_options options;
@@ -201,6 +219,17 @@ static void test_grids_refused(tc_context *context, cl_mem samples) {
     EXPECT(tc_grid_create(context, &options, &grid) == TC_ERROR_ARGUMENT, "an offset that overflows");
     options.cl_samples_offset = OFFSET;
     EXPECT(tc_grid_create(reference, &options, &grid) == TC_ERROR_ARGUMENT, "a buffer for the reference engine");
+    cl_context other = other_open(g);
+    options.cl_samples = buffer_make_as(other, CL_MEM_READ_WRITE, 2 * (OFFSET + NX * NY * NZ));
+    EXPECT(tc_grid_create(context, &options, &grid) == TC_ERROR_ARGUMENT && strstr(tc_message(), "another"),
+           "samples of another context: %s", tc_message());
+    clReleaseMemObject(options.cl_samples);
+    clReleaseContext(other);
+    options.cl_samples = buffer_make_as(g->context, CL_MEM_WRITE_ONLY, 2 * (OFFSET + NX * NY * NZ));
+    EXPECT(tc_grid_create(context, &options, &grid) == TC_ERROR_ARGUMENT && strstr(tc_message(), "WRITE_ONLY"),
+           "samples that kernels may not read: %s", tc_message());
+    clReleaseMemObject(options.cl_samples);
+    options.cl_samples = samples;
     options.samples = host;
     EXPECT(tc_grid_create(context, &options, &grid) == TC_ERROR_ARGUMENT, "samples in two places");
     tc_context_destroy(reference);
@@ -258,7 +287,7 @@ int main(void) {
     test_surface(&g, grid, samples, 9000, 0, TC_METHOD_HYBRID);
     test_surface(&g, grid, samples, 9000, 0, TC_METHOD_TETRA);
     test_refusals(&g, grid);
-    test_grids_refused(context, samples);
+    test_grids_refused(&g, context, samples);
     test_points(&g, context, samples);
 
     tc_grid_destroy(grid);

@@ -52,6 +52,33 @@ static void test_extraction(const tc_context_options *options, const tc_grid_opt
     tc_context_destroy(context);
 }
 
+/* Queues that calls could not rely on are a mistake of the caller's, found at once. */
+static void test_queues_refused(cl_context theirs, cl_device_id device) {
+    cl_int errors[2];
+    cl_context other = clCreateContext(NULL, 1, &device, NULL, NULL, &errors[0]);
+    cl_command_queue of_other = clCreateCommandQueue(other, device, 0, &errors[1]);
+    EXPECT(!errors[0] && !errors[1], "no second context: %d, %d", (int)errors[0], (int)errors[1]);
+    cl_uint before = context_references(theirs);
+    tc_context_options options;
+    tc_context *none = NULL;
+    tc_context_options_init(&options);
+    options.cl_context = theirs;
+    options.cl_queue = of_other;
+    EXPECT(tc_context_create(&options, &none) == TC_ERROR_ARGUMENT && !none && strstr(tc_message(), "another"),
+           "a queue of another context: %s", tc_message());
+    clReleaseCommandQueue(of_other);
+    clReleaseContext(other);
+    options.cl_queue = clCreateCommandQueue(theirs, device, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, &errors[0]);
+    if (errors[0]) {
+        printf("no queue of this device runs out of order (%d)\n", (int)errors[0]);
+        return;
+    }
+    EXPECT(tc_context_create(&options, &none) == TC_ERROR_ARGUMENT && !none && strstr(tc_message(), "out of order"),
+           "a queue that runs out of order: %s", tc_message());
+    clReleaseCommandQueue(options.cl_queue);
+    EXPECT(context_references(theirs) == before, "a refused context is retained");
+}
+
 int main(void) {
     static float samples[SIZE * SIZE * SIZE];
     cl_device_id device;
@@ -93,6 +120,7 @@ int main(void) {
     EXPECT(context_references(theirs) == context_before && queue_references(queue) == queue_before,
            "context or queue are still retained");
 
+    test_queues_refused(theirs, device);
     tc_context *none = NULL;
     options.cl_queue = NULL;
     EXPECT(tc_context_create(&options, &none) == TC_ERROR_ARGUMENT && !none && strstr(tc_message(), "queue"),

@@ -2,7 +2,8 @@
  * parallel.h - one function on several threads
  *
  * The work is divided by its own function: every thread takes the next share, under a lock or by an atomic counter,
- * until none is left. So it is done whatever the number of threads, and that number never shows in a result.
+ * until none is left. So it is done whatever the number of threads, and that number never shows in a result. All threads
+ * have the calling one's floating-point environment.
  */
 #ifndef PARALLEL_H
 #define PARALLEL_H

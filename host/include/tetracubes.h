@@ -25,6 +25,14 @@
  * never prints, exits or aborts on data. A context, with its grids and meshes, is used by one thread at a time;
  * different contexts may be used at once by different threads.
  *
+ * Results do not depend on the caller's floating-point environment (rounding, traps, flushing of subnormal numbers),
+ * which is as it was when a call returns, flags included; callbacks run in it. Threads that drivers start within a call
+ * start in the default one.
+ *
+ * A child made by fork() cannot use OpenCL when its parent has done so, as the drivers' threads are not in it: contexts
+ * made there, and calls on the parent's, are TC_ERROR_DEVICE; the parent's objects can be destroyed. Fork first, or go
+ * on by exec. The reference engine works in any process.
+ *
  * Structs begin with struct_size, their size in the header that the caller was built with. A newer library takes and
  * fills only that much of a struct, and what is not there has its default; a size that no header up to the library's
  * can have given (0, one that is not a multiple of 8, one of a newer header) is TC_ERROR_ARGUMENT.
@@ -122,7 +130,8 @@ typedef struct tc_context_options {
     const char *device; /* an index, "platform:device", "cpu", "gpu" or part of a name; NULL: the environment's
                            TETRACUBES_DEVICE, else the first CPU or other device found */
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
-    struct _cl_command_queue *cl_queue; /* in-order, of cl_context; needed where cl_context is given */
+    struct _cl_command_queue *cl_queue; /* of cl_context, not out of order (TC_ERROR_ARGUMENT otherwise); needed where
+                                           cl_context is given */
     uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
                                   0: what the device allows. Less memory means smaller slabs, never other results */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. 1 has kernels of its own,
@@ -153,7 +162,8 @@ TC_API void tc_context_options_init(tc_context_options *options);
 /* Picks the device; kernels are built when the first extraction needs them, or taken from the cache: files in the
  * folder that the environment's TETRACUBES_CACHE_DIR names, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes
  * (empty TETRACUBES_CACHE_DIR: no cache). tc_context_destroy puts there what had to be built; files that are damaged or
- * cannot be written are done without. The context keeps device buffers between extractions. Destroy its grids and
+ * cannot be written are done without, as are files and folders that are neither the user's nor root's, or that others
+ * may write to: what is in them would run. The context keeps device buffers between extractions. Destroy its grids and
  * meshes before it. */
 TC_API tc_status tc_context_create(const tc_context_options *options, tc_context **context);
 TC_API void tc_context_destroy(tc_context *context);

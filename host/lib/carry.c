@@ -3,6 +3,7 @@
 #include "complex.h"
 #include "context.h"
 #include "failure.h"
+#include "float_environment.h"
 #include "reference.h"
 
 void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t) {
@@ -31,6 +32,7 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
 
 tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
                    uint64_t value_count) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     tc_field f = {0};
     uint64_t vertex_count = 0;

@@ -1,6 +1,7 @@
 #include "complex.h"
 
 #include "failure.h"
+#include "float_environment.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,12 +80,14 @@ static tc_status complex_describe(tc_grid *grid, const tc_complex_options *o) {
 }
 
 tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_complex_options o;
     if (out) *out = NULL;
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_complex_create needs a context and a place for the grid");
     tc_complex_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "complex options");
+    if (!status) status = context_check(context);
     if (!status) status = options_check(&o);
     if (status) return status;
     tc_grid *grid = calloc(1, sizeof *grid);

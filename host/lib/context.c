@@ -2,12 +2,14 @@
 
 #include "device.h"
 #include "failure.h"
+#include "float_environment.h"
 #include "tuning.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #define TEXT2(x) #x
 #define TEXT(x)  TEXT2(x)
@@ -64,9 +66,25 @@ void result_give(void *out, const void *from) {
 }
 
 tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
-    if (!context->options.progress || !context->options.progress(context->options.progress_user, stage, fraction))
-        return TC_OK;
-    return (tc_status)fail(TC_ERROR_CANCELLED, "cancelled");
+    if (!context->options.progress) return TC_OK;
+    float_environment *lent = float_environment_lend();
+    int stop = context->options.progress(context->options.progress_user, stage, fraction);
+    float_environment_resume(lent);
+    return stop ? (tc_status)fail(TC_ERROR_CANCELLED, "cancelled") : TC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------- forked processes */
+
+bool context_is_inherited(const tc_context *context) {
+    return context->options.engine == TC_ENGINE_OPENCL && context->process != getpid();
+}
+
+tc_status context_check(const tc_context *context) {
+    return context_is_inherited(context) ? opencl_forked_fail("this context was made before a fork()") : TC_OK;
+}
+
+void context_finish(const tc_context *context) {
+    if (context->queue && !context_is_inherited(context)) cl->Finish(context->queue);
 }
 
 /* --------------------------------------------------------------------------------------------------------- buffers */
@@ -116,10 +134,30 @@ tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t by
 
 void buffer_release(tc_context *context, device_buffer *buffer) {
     if (!buffer->memory) return;
-    cl->ReleaseMemObject(buffer->memory);
+    if (!context_is_inherited(context)) cl->ReleaseMemObject(buffer->memory);
     context->device_bytes -= buffer->bytes;
     host_block_release(&buffer->block);
     *buffer = (device_buffer){0};
+}
+
+tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name,
+                         size_t *bytes) {
+    char what[96];
+    cl_context of_memory = NULL;
+    cl_mem_flags flags = 0;
+    cl_mem_object_type type = 0;
+    cl_int error = cl->GetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof of_memory, &of_memory, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_FLAGS, sizeof flags, &flags, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_TYPE, sizeof type, &type, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_SIZE, sizeof *bytes, bytes, NULL);
+    snprintf(what, sizeof what, "asking %s for what it is", name);
+    if (error) return context_fail(context, what, error);
+    const char *wrong = of_memory != context->context  ? "belongs to another OpenCL context than this one's"
+                        : type != CL_MEM_OBJECT_BUFFER ? "is no buffer"
+                        : !(flags & unfit)             ? NULL
+                        : unfit == CL_MEM_WRITE_ONLY   ? "was made with CL_MEM_WRITE_ONLY, and kernels read it"
+                                                       : "was made with CL_MEM_READ_ONLY, and kernels write to it";
+    return wrong ? (tc_status)fail(TC_ERROR_ARGUMENT, "%s %s", name, wrong) : TC_OK;
 }
 
 void workspace_release(tc_context *context) {
@@ -140,11 +178,29 @@ bool device_makes_vertices(const tc_context *context, tc_type type) {
     return context->info.has_fp64 || !type_is_wide(type);
 }
 
+/* Commands are put into it one after the other, and each relies on those before. */
+static tc_status queue_check(tc_context *context, cl_context theirs, cl_command_queue queue) {
+    cl_context of_queue = NULL;
+    cl_command_queue_properties properties = 0;
+    cl_int error = cl->GetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof of_queue, &of_queue, NULL);
+    if (!error) error = cl->GetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, NULL);
+    if (!error) error = cl->GetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof context->device, &context->device, NULL);
+    if (error) return context_fail(context, "asking the given queue for its context, properties and device", error);
+    if (of_queue != theirs)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "cl_queue is a queue of another OpenCL context than cl_context: give one made for it");
+    if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "cl_queue runs its commands out of order: give a queue without "
+                                                  "CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE");
+    return TC_OK;
+}
+
 static tc_status device_adopt(tc_context *context, cl_context theirs, cl_command_queue queue) {
     if (!queue) return (tc_status)fail(TC_ERROR_ARGUMENT, "a cl_context needs a cl_queue with it");
-    cl_int error = cl->GetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof context->device, &context->device, NULL);
-    if (!error) error = cl->RetainContext(theirs);
-    if (error) return context_fail(context, "asking the given queue for its device", error);
+    tc_status status = queue_check(context, theirs, queue);
+    if (status) return status;
+    cl_int error = cl->RetainContext(theirs);
+    if (error) return context_fail(context, "retaining the given context", error);
     context->context = theirs;
     error = cl->RetainCommandQueue(queue);
     if (error) return context_fail(context, "retaining the given queue", error);
@@ -170,15 +226,12 @@ static tc_status device_open(tc_context *context, const char *specification) {
 }
 
 static tc_status opencl_begin(tc_context *context, const tc_context_options *o) {
-    tc_status status = opencl_load();
-    if (!status && o->cl_context) {
-        status = device_adopt(context, o->cl_context, o->cl_queue);
-        if (!status) status = device_describe(context->device, &context->info);
-    } else if (!status) {
-        opencl_lock();
-        status = device_open(context, o->device);
-        opencl_unlock();
-    }
+    tc_status status = opencl_lock();
+    if (status) return status;
+    if (o->cl_context) opencl_awake();
+    status = o->cl_context ? device_adopt(context, o->cl_context, o->cl_queue) : device_open(context, o->device);
+    opencl_unlock();
+    if (!status && o->cl_context) status = device_describe(context->device, &context->info);
     context->in_place = context->info.shares_host_memory && !o->own_buffers;
     return status ? status : tuning_choose(context);
 }
@@ -190,6 +243,7 @@ tc_status copies_queue_provide(tc_context *context) {
 }
 
 tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_context_options o;
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
     *out = NULL;
@@ -200,6 +254,7 @@ tc_status tc_context_create(const tc_context_options *options, tc_context **out)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
     tc_context *context = calloc(1, sizeof *context);
     if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
+    context->process = getpid();
     context->options = o;
     context->options.device = NULL;
     context->options.cl_context = NULL;
@@ -213,18 +268,23 @@ tc_status tc_context_create(const tc_context_options *options, tc_context **out)
     return TC_OK;
 }
 
-void tc_context_destroy(tc_context *context) {
-    if (!context) return;
-    if (context->queue) cl->Finish(context->queue);
-    if (context->context) {
-        workspace_release(context);
-        programs_release(context);
-    }
-    opencl_lock();
+static void objects_release(tc_context *context) {
+    if (context_is_inherited(context) || opencl_lock()) return;
     if (context->copies) cl->ReleaseCommandQueue(context->copies);
     if (context->queue) cl->ReleaseCommandQueue(context->queue);
-    if (context->context) cl->ReleaseContext(context->context);
+    cl->ReleaseContext(context->context);
     opencl_unlock();
+}
+
+void tc_context_destroy(tc_context *context) {
+    if (!context) return;
+    FLOAT_ENVIRONMENT_DEFAULT;
+    if (context->context) {
+        context_finish(context);
+        workspace_release(context);
+        programs_release(context);
+        objects_release(context);
+    }
     free(context);
 }
 

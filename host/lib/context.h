@@ -10,6 +10,7 @@
 #include "tetracubes.h"
 
 #include <stdbool.h>
+#include <sys/types.h>
 
 /* A buffer that grows when it has to and is kept. */
 typedef struct device_buffer {
@@ -69,6 +70,7 @@ enum { TRIAL_KINDS = 4 * 8 * 2 * 2 * 2 * 2 };
 struct tc_context {
     tc_context_options options; /* strings and OpenCL objects cleared */
     tc_device_info info;
+    pid_t process; /* that made it */
     bool in_place; /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
@@ -85,6 +87,16 @@ struct tc_context {
 /* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */
 tc_status context_fail(const tc_context *context, const char *what, cl_int error);
 
+/* True in a child of the process that made the context, which has no threads of the driver's: commands are never done
+ * there, and OpenCL objects are left alone. */
+bool context_is_inherited(const tc_context *context);
+
+/* TC_ERROR_DEVICE, with what to do, for such a context. */
+tc_status context_check(const tc_context *context);
+
+/* Waits for all commands, where they can end. */
+void context_finish(const tc_context *context);
+
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
@@ -100,6 +112,10 @@ bool type_is_wide(tc_type type);
 
 /* False where vertices of a wide type have to be made on the host. */
 bool device_makes_vertices(const tc_context *context, tc_type type);
+
+/* The size of a buffer of the caller's. TC_ERROR_ARGUMENT, naming it, where it is of another OpenCL context, no plain
+ * buffer, or made with `unfit`, a flag for kernels that shall not do what they are to. */
+tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name, size_t *bytes);
 
 /* Makes the queue of copies, in order like the other, where there is none yet. */
 tc_status copies_queue_provide(tc_context *context);

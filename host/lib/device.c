@@ -2,6 +2,7 @@
 
 #include "context.h"
 #include "failure.h"
+#include "float_environment.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -25,8 +26,6 @@ typedef struct platform_list {
 } platform_list;
 
 static tc_status platform_list_make(platform_list *list) {
-    tc_status status = opencl_load();
-    if (status) return status;
     list->count = 0;
     cl_int error = cl->GetPlatformIDs(PLATFORMS_MAX, list->platforms, &list->count);
     if (error && error != platform_not_found)
@@ -37,6 +36,7 @@ static tc_status platform_list_make(platform_list *list) {
                                                 "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
                                                 "reference engine needs none");
     if (list->count > PLATFORMS_MAX) list->count = PLATFORMS_MAX;
+    opencl_awake();
     return TC_OK;
 }
 
@@ -212,22 +212,25 @@ tc_status device_choose(const char *specification, device_choice *choice) {
 }
 
 tc_status tc_device_count(int *count) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     device_list list;
     if (!count) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_device_count needs a place for the count");
     *count = 0;
-    opencl_lock();
-    tc_status status = device_list_make(&list);
+    tc_status status = opencl_lock();
+    if (status) return status;
+    status = device_list_make(&list);
     opencl_unlock();
     if (!status) *count = list.count;
     return status;
 }
 
 tc_status tc_device_get(int index, tc_device_info *info) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     device_list list;
     tc_device_info found;
     tc_status status = result_begin(info, sizeof *info, "tc_device_get: info");
+    if (!status) status = opencl_lock();
     if (status) return status;
-    opencl_lock();
     status = device_list_make(&list);
     if (!status && (index < 0 || index >= list.count))
         status =

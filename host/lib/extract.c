@@ -4,6 +4,7 @@
 #include "complex.h"
 #include "context.h"
 #include "failure.h"
+#include "float_environment.h"
 #include "reference.h"
 #include "structured.h"
 #include "trial.h"
@@ -18,12 +19,14 @@ void tc_extract_options_init(tc_extract_options *options) {
 }
 
 tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_grid_options o;
     if (out) *out = NULL;
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
     tc_grid_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "grid options");
+    if (!status) status = context_check(context);
     if (status) return status;
     tc_grid *grid = malloc(sizeof *grid);
     if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
@@ -42,6 +45,7 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
 
 void tc_grid_destroy(tc_grid *grid) {
     if (!grid) return;
+    FLOAT_ENVIRONMENT_DEFAULT;
     complex_grid_destroy(grid);
     structured_grid_destroy(grid);
     grid_release(grid);
@@ -69,11 +73,13 @@ static tc_status grid_extract(tc_grid *grid, const tc_extract_options *options, 
 }
 
 tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     tc_counts found = {.struct_size = sizeof found};
     tc_status status = result_begin(counts, sizeof *counts, "tc_count: counts");
     if (!status && !grid) status = (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid");
     if (!status) status = extract_options_take(&o, options);
+    if (!status) status = context_check(grid->context);
     if (status) return status;
     do { /* again where missing samples were met, and other kernels took over */
         found = (tc_counts){.struct_size = sizeof found};
@@ -89,12 +95,14 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
 
 tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
                   struct _cl_event **done) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     tc_device_mesh m = {0};
     if (done) *done = NULL;
     if (!grid) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid");
     tc_status status = options_take(&m, sizeof m, mesh, "tc_emit: mesh");
     if (!status) status = extract_options_take(&o, options);
+    if (!status) status = context_check(grid->context);
     if (status) return status;
     if (grid->complex) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take complexes: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
@@ -102,6 +110,7 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
 }
 
 tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     if (out && *out) mesh_clear(*out);
     if (!grid || !out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract needs a grid and a place for the mesh");
@@ -109,6 +118,7 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
+    if (!status) status = context_check(grid->context);
     if (!status) status = trial_run(grid, &o, true);
     if (!status) status = grid_extract(grid, &o, mesh);
     if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);

@@ -4,8 +4,10 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <unistd.h>
 
 const struct opencl_functions *cl;
 
@@ -31,17 +33,35 @@ static void load(void) {
     cl = &functions;
 }
 
-tc_status opencl_load(void) {
-    pthread_once(&load_once, load);
-    if (cl) return TC_OK;
+tc_status opencl_forked_fail(const char *what) {
     return (tc_status)fail(TC_ERROR_DEVICE,
-                           "no OpenCL: the loader libOpenCL.so.1 is not installed (Debian: apt install "
-                           "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
+                           "%s, and the threads of OpenCL drivers do not live on in the child: fork before OpenCL is "
+                           "first used, or start the child anew (exec; multiprocessing of Python: \"spawn\"); the "
+                           "reference engine works in any process",
+                           what);
 }
 
 static pthread_mutex_t devices_lock = PTHREAD_MUTEX_INITIALIZER;
 
-void opencl_lock(void) { pthread_mutex_lock(&devices_lock); }
+static atomic_int awake_in; /* the process; 0: none yet */
+
+void opencl_awake(void) {
+    int none = 0;
+    atomic_compare_exchange_strong(&awake_in, &none, (int)getpid());
+}
+
+/* Forked processes first: a thread that is not there any more may hold the lock. */
+tc_status opencl_lock(void) {
+    const int process = atomic_load(&awake_in);
+    if (process && process != getpid()) return opencl_forked_fail("this process was forked from one that uses OpenCL");
+    pthread_once(&load_once, load);
+    if (!cl)
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "no OpenCL: the loader libOpenCL.so.1 is not installed (Debian: apt install "
+                               "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
+    pthread_mutex_lock(&devices_lock);
+    return TC_OK;
+}
 
 void opencl_unlock(void) { pthread_mutex_unlock(&devices_lock); }
 

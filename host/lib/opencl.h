@@ -56,13 +56,19 @@ struct opencl_functions {
 /* cl->CreateBuffer is clCreateBuffer; set by opencl_load. */
 extern const struct opencl_functions *cl;
 
-/* Loads the ICD loader once per process. TC_ERROR_DEVICE, with what to install, where there is none. */
-tc_status opencl_load(void);
-
-/* Held where drivers are woken, and where a context's last reference may go: PoCL 3.1 puts its devices to sleep with
- * the last context, and crashes or has no devices where another thread asks for them meanwhile. */
-void opencl_lock(void);
+/* Loads the ICD loader once per process, and takes a lock. TC_ERROR_DEVICE, with what to do and without the lock, where
+ * there is none, and in a child of a process where drivers are awake: their threads are not in it.
+ *
+ * The lock is held where drivers are woken, and where a context's last reference may go: PoCL 3.1 puts its devices to
+ * sleep with the last context, and crashes or has no devices where another thread asks for them meanwhile. */
+tc_status opencl_lock(void);
 void opencl_unlock(void);
+
+/* From here on drivers are awake in this process. */
+void opencl_awake(void);
+
+/* Records "WHAT, and ...": what a forked process cannot do, and what to do; TC_ERROR_DEVICE. */
+tc_status opencl_forked_fail(const char *what);
 
 /* Records "WHAT failed: CL_...": TC_ERROR_MEMORY for allocation failures, else TC_ERROR_DEVICE. */
 tc_status opencl_fail(const char *what, cl_int error);

@@ -217,8 +217,12 @@ void programs_release(tc_context *context) {
     while (context->programs) {
         program *p = context->programs, *next = p->next;
         program_recipe recipe = recipe_of(p);
-        if (!p->cached) program_cache_store(context, &recipe, p->program);
-        program_release(p);
+        const bool inherited = context_is_inherited(context);
+        if (!p->cached && !inherited) program_cache_store(context, &recipe, p->program);
+        if (inherited)
+            free(p);
+        else
+            program_release(p);
         context->programs = next;
     }
 }

@@ -6,6 +6,7 @@
 #include "failure.h"
 #include "structured_run.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,12 +29,13 @@ static tc_status counted_check(const tc_grid *grid, const tc_extract_options *op
 }
 
 static tc_status buffer_check(const run *r, cl_mem memory, uint64_t bytes, const char *name) {
+    char whole[64];
     size_t held = 0;
     if (bytes == 0) return TC_OK;
     if (!memory) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a buffer for %s", name);
-    cl_int error = cl->GetMemObjectInfo(memory, CL_MEM_SIZE, sizeof held, &held, NULL);
-    if (error) return context_fail(r->context, "asking a buffer of the mesh for its size", error);
-    if (held >= bytes) return TC_OK;
+    snprintf(whole, sizeof whole, "the buffer for %s", name);
+    tc_status status = buffer_inspect(r->context, memory, CL_MEM_READ_ONLY, whole, &held);
+    if (status || held >= bytes) return status;
     return (tc_status)fail(TC_ERROR_ARGUMENT, "the buffer for %s has %llu bytes and needs %llu", name,
                            (unsigned long long)held, (unsigned long long)bytes);
 }

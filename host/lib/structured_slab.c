@@ -93,8 +93,8 @@ static tc_status axes_provide(tc_grid *grid) {
 static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
     const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
     size_t held = 0;
-    cl_int error = cl->GetMemObjectInfo(grid->cl_samples, CL_MEM_SIZE, sizeof held, &held, NULL);
-    if (error) return context_fail(grid->context, "asking cl_samples for its size", error);
+    tc_status status = buffer_inspect(grid->context, grid->cl_samples, CL_MEM_WRITE_ONLY, "cl_samples", &held);
+    if (status) return status;
     if (grid->cl_samples_offset > held / bytes || held / bytes - grid->cl_samples_offset < count)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "cl_samples has %llu bytes, not %llu samples of %llu after the first %llu",
@@ -103,7 +103,7 @@ static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
     if (!device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64, so samples of type %s have to be in the host's memory",
                                grid->context->info.name, tc_type_name(grid->type));
-    error = cl->RetainMemObject(grid->cl_samples);
+    cl_int error = cl->RetainMemObject(grid->cl_samples);
     if (error) return context_fail(grid->context, "retaining cl_samples", error);
     buffer->memory = grid->cl_samples;
     return TC_OK;
@@ -129,7 +129,7 @@ tc_status structured_grid_create(tc_grid *grid) {
 
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
-    cl->Finish(grid->context->queue); /* an emission that is under way reads arrays of the grid and of the caller's */
+    context_finish(grid->context); /* an emission that is under way reads arrays of the grid and of the caller's */
     if (grid->context->counted == grid) grid->context->counted = NULL;
     if (grid->context->served == grid) grid->context->served = NULL;
     free(grid->device->heads);

@@ -7,6 +7,7 @@
 #include "cell_split.h"
 #include "context.h"
 #include "failure.h"
+#include "float_environment.h"
 
 #include <math.h>
 #include <string.h>
@@ -174,6 +175,7 @@ static tc_status cells_check(const tc_cells *cells) {
 }
 
 tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     tc_cells c = {0};
     tc_complex made = {.struct_size = sizeof made};
     uint64_t bad_cell;

@@ -6,6 +6,7 @@
 
 #include "context.h"
 #include "failure.h"
+#include "float_environment.h"
 #include "grid.h"
 #include "tables.h"
 
@@ -72,6 +73,7 @@ static tc_status source_check(const tc_grid *grid) {
 }
 
 tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *complex) {
+    FLOAT_ENVIRONMENT_DEFAULT;
     grid_source s;
     tc_grid_options o;
     uint64_t bad_cell;
