@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Faces of a polyhedron here, and their corners together. */
+enum { FACES_MOST = 14, CORNERS_MOST = 72 };
+
 static void *memory_get(uint64_t bytes) {
     void *memory = calloc((size_t)bytes + 1, 1);
     if (memory) return memory;
@@ -17,7 +20,10 @@ cell_list cell_list_make(uint64_t points, uint64_t cells) {
     return (cell_list){.points = memory_get(12 * points),
                        .types = memory_get(cells),
                        .offsets = memory_get(8 * (cells + 1)),
-                       .connectivity = memory_get(8 * 8 * cells)};
+                       .connectivity = memory_get(8 * 12 * cells),
+                       .cell_faces = memory_get(8 * (cells + 1)),
+                       .face_offsets = memory_get(8 * (FACES_MOST * cells + 1)),
+                       .face_connectivity = memory_get(8 * CORNERS_MOST * cells)};
 }
 
 void cell_list_free(cell_list *list) {
@@ -25,6 +31,9 @@ void cell_list_free(cell_list *list) {
     free(list->types);
     free(list->offsets);
     free(list->connectivity);
+    free(list->cell_faces);
+    free(list->face_offsets);
+    free(list->face_connectivity);
     *list = (cell_list){0};
 }
 
@@ -35,7 +44,10 @@ tc_cells cell_list_view(const cell_list *list) {
                       .cell_count = list->cell_count,
                       .types = list->types,
                       .offsets = list->offsets,
-                      .connectivity = list->connectivity};
+                      .connectivity = list->connectivity,
+                      .cell_faces = list->cell_faces,
+                      .face_offsets = list->face_offsets,
+                      .face_connectivity = list->face_connectivity};
 }
 
 uint32_t cell_list_point(cell_list *list, double x, double y, double z) {
@@ -45,16 +57,63 @@ uint32_t cell_list_point(cell_list *list, double x, double y, double z) {
 }
 
 void cell_list_add(cell_list *list, int type, int corner_count, const uint32_t *corners, bool inverted) {
-    static const uint8_t turned[15][8] = {[10] = {0, 2, 1, 3},
-                                          [11] = {4, 5, 6, 7, 0, 1, 2, 3},
-                                          [12] = {4, 5, 6, 7, 0, 1, 2, 3},
-                                          [13] = {3, 4, 5, 0, 1, 2},
-                                          [14] = {0, 3, 2, 1, 4}};
+    static const uint8_t turned[17][12] = {[10] = {0, 2, 1, 3},
+                                           [11] = {4, 5, 6, 7, 0, 1, 2, 3},
+                                           [12] = {4, 5, 6, 7, 0, 1, 2, 3},
+                                           [13] = {3, 4, 5, 0, 1, 2},
+                                           [14] = {0, 3, 2, 1, 4},
+                                           [15] = {5, 6, 7, 8, 9, 0, 1, 2, 3, 4},
+                                           [16] = {6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5}};
     int64_t *out = list->connectivity + list->offsets[list->cell_count];
     for (int n = 0; n < corner_count; n++) out[n] = corners[inverted ? turned[type][n] : n];
     list->inverted_count += inverted;
     list->types[list->cell_count++] = (uint8_t)type;
     list->offsets[list->cell_count] = list->offsets[list->cell_count - 1] + corner_count;
+    list->cell_faces[list->cell_count] = list->cell_faces[list->cell_count - 1];
+}
+
+static void face_add(cell_list *list, int64_t face, int count, const uint32_t *points) {
+    int64_t *out = list->face_connectivity + list->face_offsets[face];
+    uint32_t first = random_below((uint32_t)count);
+    bool reversed = random_below(2);
+    for (uint32_t n = 0, side = (uint32_t)count; n < side; n++)
+        out[n] = points[(first + (reversed ? side - n : n)) % side];
+    list->face_offsets[face + 1] = list->face_offsets[face] + count;
+}
+
+void cell_list_add_polyhedron(cell_list *list, int face_count, const int *counts, const uint32_t *points) {
+    const uint32_t *faces[FACES_MOST];
+    int order[FACES_MOST];
+    const int64_t first = list->cell_faces[list->cell_count];
+    for (int n = 0; n < face_count; points += counts[n++]) faces[n] = points, order[n] = n;
+    for (int n = 0; n < face_count; n++) {
+        uint32_t m = (uint32_t)n + random_below((uint32_t)(face_count - n));
+        int other = order[m];
+        order[m] = order[n], order[n] = other;
+        face_add(list, first + n, counts[other], faces[other]);
+    }
+    list->types[list->cell_count++] = 42;
+    list->offsets[list->cell_count] = list->offsets[list->cell_count - 1];
+    list->cell_faces[list->cell_count] = first + face_count;
+}
+
+void cell_list_renumber(cell_list *list) {
+    const uint32_t count = (uint32_t)list->point_count;
+    uint32_t *numbers = memory_get(4ull * count);
+    float *points = memory_get(12ull * count);
+    for (uint32_t n = 0; n < count; n++) numbers[n] = n;
+    for (uint32_t n = count; n > 1; n--) {
+        uint32_t m = random_below(n), number = numbers[n - 1];
+        numbers[n - 1] = numbers[m], numbers[m] = number;
+    }
+    memcpy(points, list->points, 12ull * count);
+    for (uint32_t n = 0; n < count; n++) memcpy(list->points + 3 * numbers[n], points + 3 * n, 12);
+    for (int64_t n = 0; n < list->offsets[list->cell_count]; n++)
+        list->connectivity[n] = numbers[list->connectivity[n]];
+    for (int64_t n = 0; n < list->face_offsets[list->cell_faces[list->cell_count]]; n++)
+        list->face_connectivity[n] = numbers[list->face_connectivity[n]];
+    free(numbers);
+    free(points);
 }
 
 /* ----------------------------------------------------------------------------------------------------- mixed block */
@@ -143,6 +202,115 @@ cell_list mixed_block_make(uint32_t size, uint64_t seed) {
     }
     free(numbers);
     free(columns);
+    return list;
+}
+
+/* -------------------------------------------------------------------------------- truncated octahedra and honeycombs
+ */
+
+/* The point at x, y, z of a block of side^3 of them; made where it is not there yet. */
+static uint32_t lattice_point(cell_list *list, uint32_t *made, int side, int x, int y, int z) {
+    uint32_t *at = made + (z * side + y) * side + x;
+    if (!*at) *at = cell_list_point(list, x, y, z) + 1;
+    return *at - 1;
+}
+
+/* Corners are at the permutations of 0, +-1, +-2 around the centre: in a square (+-2, 0, 0) from the next to the next,
+ * in a hexagon (+-1, +-1, +-1) by exchanging coordinates. */
+static void kelvin_cell_add(cell_list *list, uint32_t *made, int side, const int centre[3]) {
+    static const int square[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    static const int hexagon[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {2, 1, 0}, {2, 0, 1}, {1, 0, 2}};
+    int counts[14];
+    uint32_t points[72], *to = points;
+    for (int n = 0; n < 6; n++) {
+        for (int m = 0; m < 4; m++) {
+            int p[3];
+            p[n / 2] = centre[n / 2] + (n % 2 ? 2 : -2);
+            p[(n / 2 + 1) % 3] = centre[(n / 2 + 1) % 3] + square[m][0];
+            p[(n / 2 + 2) % 3] = centre[(n / 2 + 2) % 3] + square[m][1];
+            *to++ = lattice_point(list, made, side, p[0], p[1], p[2]);
+        }
+        counts[n] = 4;
+    }
+    for (int n = 0; n < 8; n++) {
+        for (int m = 0; m < 6; m++)
+            *to++ = lattice_point(list, made, side, centre[0] + (n & 1 ? 1 : -1) * hexagon[m][0],
+                                  centre[1] + (n & 2 ? 1 : -1) * hexagon[m][1],
+                                  centre[2] + (n & 4 ? 1 : -1) * hexagon[m][2]);
+        counts[6 + n] = 6;
+    }
+    cell_list_add_polyhedron(list, 14, counts, points);
+}
+
+cell_list kelvin_block_make(uint32_t size, uint64_t seed) {
+    random_state = seed;
+    const int side = 4 * (int)size + 3;
+    const uint64_t volume = (4 * size + 3) * (4 * size + 3) * (4 * size + 3);
+    const uint64_t count = 2ull * size * size * size;
+    cell_list list = cell_list_make(24 * count, count);
+    uint32_t *made = memory_get(4 * volume);
+    for (uint32_t n = 0; n < count; n++) {
+        uint32_t cube = n / 2;
+        int centre[3] = {(int)(cube % size), (int)(cube / size % size), (int)(cube / size / size)};
+        for (int axis = 0; axis < 3; axis++) centre[axis] = 4 * centre[axis] + 2 + 2 * (int)(n % 2);
+        kelvin_cell_add(&list, made, side, centre);
+    }
+    free(made);
+    cell_list_renumber(&list);
+    return list;
+}
+
+static void hexagonal_polyhedron_add(cell_list *list, const uint32_t h[12]) {
+    static const int counts[8] = {6, 6, 4, 4, 4, 4, 4, 4};
+    uint32_t points[36];
+    memcpy(points, h, 12 * sizeof *h);
+    for (int n = 0; n < 6; n++) {
+        uint32_t *side = points + 12 + 4 * n;
+        side[0] = h[n], side[1] = h[(n + 1) % 6], side[2] = h[6 + (n + 1) % 6], side[3] = h[6 + n];
+    }
+    cell_list_add_polyhedron(list, 8, counts, points);
+}
+
+/* Corners 0 to 5 wind around the bottom, 6 to 11 around the top. */
+static void hexagon_add(cell_list *list, const uint32_t h[12], uint32_t kind) {
+    const uint32_t pentagon[10] = {h[0], h[1], h[2], h[3], h[4], h[6], h[7], h[8], h[9], h[10]},
+                   wedge[6] = {h[0], h[5], h[4], h[6], h[11], h[10]},
+                   halves[2][8] = {{h[0], h[1], h[2], h[3], h[6], h[7], h[8], h[9]},
+                                   {h[0], h[3], h[4], h[5], h[6], h[9], h[10], h[11]}};
+    if (kind == 0) {
+        cell_list_add(list, 15, 10, pentagon, random_below(2));
+        cell_list_add(list, 13, 6, wedge, random_below(2));
+    } else if (kind == 1) {
+        cell_list_add(list, 12, 8, halves[0], random_below(2));
+        cell_list_add(list, 12, 8, halves[1], random_below(2));
+    } else if (random_below(2)) {
+        cell_list_add(list, 16, 12, h, random_below(2));
+    } else {
+        hexagonal_polyhedron_add(list, h);
+    }
+}
+
+cell_list honeycomb_make(uint32_t size, uint64_t seed) {
+    static const int around[6][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 0}, {-1, -1}, {0, -1}};
+    random_state = seed;
+    const int side = 3 * (int)size + 3;
+    const uint64_t volume = (3 * size + 3) * (3 * size + 3) * (3 * size + 3);
+    const uint64_t count = 2ull * size * size * size;
+    cell_list list = cell_list_make(12 * count, count);
+    uint32_t *made = memory_get(4 * volume);
+    for (uint32_t column = 0; column < size * size; column++) {
+        const int u = (int)(column % size), v = (int)(column / size);
+        const uint32_t kind = random_below(4);
+        for (int z = 0; z < (int)size; z++) {
+            uint32_t h[12];
+            for (int n = 0; n < 12; n++)
+                h[n] = lattice_point(&list, made, side, 1 + 2 * u + v + around[n % 6][0],
+                                     1 + u + 2 * v + around[n % 6][1], z + n / 6);
+            hexagon_add(&list, h, kind);
+        }
+    }
+    free(made);
+    cell_list_renumber(&list);
     return list;
 }
 

@@ -358,6 +358,17 @@ typedef struct tc_cells {
     const uint8_t *blanked_points; /* nonzero: missing; cells that contain one are left out whole. NULL: none */
     const uint8_t *blanked_cells;  /* nonzero: left out; NULL: none */
     const double *points_f64;      /* in place of points: double precision */
+
+    /* Polyhedra (type 42) are given by their faces; what `connectivity` has of them is not read. Cell c has the faces
+     * cell_faces[c] to cell_faces[c + 1] - 1, none where it is of another type; face n has the points
+     * face_connectivity[face_offsets[n]] to [face_offsets[n + 1] - 1], in their order around it, either way round. A
+     * face between two polyhedra is listed for each. NULL where there are no polyhedra. */
+    const int64_t *cell_faces;        /* cell_count + 1; the last: the number of faces */
+    const int64_t *face_offsets;      /* a number per face and one more; the last: the length of face_connectivity */
+    const int64_t *face_connectivity; /* points */
+
+    int skip_unsupported; /* nonzero: cells that cannot be cut for their type, and polyhedra whose faces are not closed,
+                             are left out instead of refused */
 } tc_cells;
 
 /* A conforming tetrahedral complex: tetrahedra of one cell follow each other, in the order of the cells. Where a cell's
@@ -372,15 +383,19 @@ typedef struct tc_complex {
     uint64_t curved_cell_count; /* quadratic and higher cells, of which the corners were used */
     uint64_t blanked_cell_count;
     uint64_t inverted_cell_count; /* of negative volume, turned over */
-    uint64_t folded_cell_count;   /* whose tetrahedra differ in sign */
+    uint64_t folded_cell_count;   /* whose tetrahedra differ in sign; of polyhedra not where those of the smaller sign
+                                     have less than 1e-5 of the volume, as rounding makes them of faces in one plane */
+    uint64_t unsupported_cell_count; /* left out as tc_cells.skip_unsupported asks */
+    uint64_t surplus_cell_count;     /* with more points than their type has, of which the first were taken */
 } tc_complex;
 
-/* Cuts cells into tetrahedra: the diagonal of every quadrilateral face goes through its smallest point number, so that
- * neighbours agree whatever their types (Dompierre, Labbe, Vallet, Camarero 1999). Tetrahedra, hexahedra, voxels,
- * wedges, pyramids, and their quadratic kin by their corners. TC_ERROR_DATA for points out of range, coordinates of
- * a corner that are not finite or 2^127 and beyond, cells with a wrong number of points and 3D types that are none of
- * these; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The
- * complex, zeroed on failure, is freed by tc_complex_release. */
+/* Cuts cells into tetrahedra: the diagonal of every quadrilateral face goes through its smallest point number, and
+ * faces of more corners are fans around it, so that neighbours agree whatever their types (Dompierre, Labbe, Vallet,
+ * Camarero 1999). Tetrahedra, hexahedra, voxels, wedges, pyramids, pentagonal and hexagonal prisms, convex polyhedra,
+ * and the quadratic kin of the former by their corners. TC_ERROR_DATA for points out of range, coordinates of a corner
+ * that are not finite or 2^127 and beyond, cells with too few points, 3D types that are none of these, and polyhedra
+ * whose faces are not closed; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The complex, zeroed on
+ * failure, is freed by tc_complex_release. */
 TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex);
 
 /* The same of a structured grid: five tetrahedra per cube, mirrored on alternate cubes, as the structured path does. Of

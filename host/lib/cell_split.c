@@ -7,6 +7,8 @@
 #define VOXEL      {0, 1, 3, 2, 4, 5, 7, 6}
 #define WEDGE      {0, 2, 1, 3, 5, 4}
 #define WEDGE_UP   {0, 1, 2, 3, 4, 5} /* VTK turns its curved wedges the other way round */
+#define PRISM_5    {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}
+#define PRISM_6    {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}
 
 static const cell_type types[] = {
     [0] = {"empty cell", CELL_FLAT, 0, 0, false, {0}},
@@ -24,8 +26,8 @@ static const cell_type types[] = {
     [12] = {"hexahedron", CELL_HEXAHEDRON, 8, 8, false, HEXAHEDRON},
     [13] = {"wedge", CELL_WEDGE, 6, 6, false, WEDGE},
     [14] = {"pyramid", CELL_PYRAMID, 5, 5, false, {0, 1, 2, 3, 4}},
-    [15] = {"pentagonal prism", CELL_OTHER, 0, 0, false, {0}},
-    [16] = {"hexagonal prism", CELL_OTHER, 0, 0, false, {0}},
+    [15] = {"pentagonal prism", CELL_PENTAGONAL_PRISM, 10, 10, false, PRISM_5},
+    [16] = {"hexagonal prism", CELL_HEXAGONAL_PRISM, 12, 12, false, PRISM_6},
     [21] = {"quadratic edge", CELL_FLAT, 0, 0, true, {0}},
     [22] = {"quadratic triangle", CELL_FLAT, 0, 0, true, {0}},
     [23] = {"quadratic quadrilateral", CELL_FLAT, 0, 0, true, {0}},
@@ -44,7 +46,7 @@ static const cell_type types[] = {
     [36] = {"quadratic polygon", CELL_FLAT, 0, 0, true, {0}},
     [37] = {"triquadratic pyramid", CELL_PYRAMID, 5, 19, true, {0, 1, 2, 3, 4}},
     [41] = {"convex point set", CELL_OTHER, 0, 0, false, {0}},
-    [42] = {"polyhedron", CELL_OTHER, 0, 0, false, {0}},
+    [42] = {"polyhedron", CELL_POLYHEDRON, 0, 0, false, {0}},
     [68] = {"Lagrange curve", CELL_FLAT, 0, 0, true, {0}},
     [69] = {"Lagrange triangle", CELL_FLAT, 0, 0, true, {0}},
     [70] = {"Lagrange quadrilateral", CELL_FLAT, 0, 0, true, {0}},
@@ -153,6 +155,31 @@ static void wedge_split(splitting *s) {
     tetrahedron_add(s, apex, end[0], end[1], end[2]);
 }
 
+/* A face as a fan around its smallest corner, coned from the apex unless that is one of its corners. */
+static void fan_cone(splitting *s, int apex, const uint8_t *face, int corner_count) {
+    int first = 0;
+    if (face_has(face, corner_count, apex)) return;
+    for (int n = 1; n < corner_count; n++)
+        if (s->points[face[n]] < s->points[face[first]]) first = n;
+    for (int n = 1; n + 1 < corner_count; n++)
+        tetrahedron_add(s, apex, face[first], face[(first + n) % corner_count], face[(first + n + 1) % corner_count]);
+}
+
+/* Corners 0 to sides - 1 wind around the bottom, the next around the top, each above its like. */
+static void prism_split(splitting *s, int sides) {
+    const int apex = smallest_corner(s->points, 2 * sides);
+    uint8_t bottom[CELL_CORNERS_MAX / 2], top[CELL_CORNERS_MAX / 2];
+    for (int n = 0; n < sides; n++) {
+        const int next = (n + 1) % sides;
+        const uint8_t side[4] = {(uint8_t)n, (uint8_t)next, (uint8_t)(sides + next), (uint8_t)(sides + n)};
+        fan_cone(s, apex, side, 4);
+        bottom[n] = (uint8_t)(sides - 1 - n);
+        top[n] = (uint8_t)(sides + n);
+    }
+    fan_cone(s, apex, bottom, sides);
+    fan_cone(s, apex, top, sides);
+}
+
 int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32_t out[CELL_TETRAHEDRA_MAX][4]) {
     static const uint8_t pyramid_base[4] = {0, 3, 2, 1};
     splitting s = {points, out, 0};
@@ -168,6 +195,12 @@ int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32
         break;
     case CELL_PYRAMID:
         face_cone(&s, 4, pyramid_base);
+        break;
+    case CELL_PENTAGONAL_PRISM:
+        prism_split(&s, 5);
+        break;
+    case CELL_HEXAGONAL_PRISM:
+        prism_split(&s, 6);
         break;
     default:
         break;

@@ -4,7 +4,8 @@
  * Every quadrilateral face is cut by the diagonal through its smallest point number, so that the two cells of a face
  * agree on it whatever their types and the order of their corners. The cell itself is the cone from its smallest corner
  * over the triangles of the faces that do not contain it: of a wedge 3 tetrahedra, of a pyramid 2, of a hexahedron 6,
- * or 5 where none of the diagonals meets the corner opposite the smallest.
+ * or 5 where none of the diagonals meets the corner opposite the smallest. Faces of more corners, of prisms, are fans
+ * around their smallest; a pentagonal prism gives 9, a hexagonal one 12. polyhedron.h does the same with any faces.
  *
  * Corners as VTK numbers them, but for the wedge's bottom, which is turned over here:
  *
@@ -26,13 +27,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CELL_CORNERS_MAX = 8, CELL_TETRAHEDRA_MAX = 6 };
+enum { CELL_CORNERS_MAX = 12, CELL_TETRAHEDRA_MAX = 12 };
 
 typedef enum cell_shape {
     CELL_TETRAHEDRON,
     CELL_HEXAHEDRON,
     CELL_WEDGE,
     CELL_PYRAMID,
+    CELL_PENTAGONAL_PRISM,
+    CELL_HEXAGONAL_PRISM,
+    CELL_POLYHEDRON,
     CELL_FLAT,
     CELL_OTHER
 } cell_shape;
@@ -42,7 +46,7 @@ typedef struct cell_type {
     const char *name;
     cell_shape shape;
     uint8_t corner_count;
-    uint8_t point_count; /* that such a cell has; 0: any number from corner_count on */
+    uint8_t point_count; /* that such a cell has, the first ones; 0: any number from corner_count on */
     bool curved;
     uint8_t corners[CELL_CORNERS_MAX]; /* where in the cell's points the corners of the shape are */
 } cell_type;
@@ -50,8 +54,8 @@ typedef struct cell_type {
 /* Types that VTK does not have are CELL_OTHER. */
 const cell_type *cell_type_get(unsigned vtk_type);
 
-/* Cuts a shape with these point numbers at its corners; returns the number of tetrahedra. Those with a point twice, as
- * collapsed cells have them, are left out. */
+/* Cuts a shape but a polyhedron with these point numbers at its corners; returns the number of tetrahedra. Those with a
+ * point twice, as collapsed cells have them, are left out. */
 int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32_t out[CELL_TETRAHEDRA_MAX][4]);
 
 #endif

@@ -88,6 +88,8 @@ static void tallies_add(passes *p) {
         p->complex->blanked_cell_count += t->blanked;
         p->complex->inverted_cell_count += t->inverted;
         p->complex->folded_cell_count += t->folded;
+        p->complex->unsupported_cell_count += t->unsupported;
+        p->complex->surplus_cell_count += t->surplus;
     }
 }
 
@@ -108,9 +110,10 @@ tc_status complex_make(block_function *block, const void *source, uint64_t cell_
         p.next = 0;
         parallel_run(p.block_count, blocks_write, &p);
         tallies_add(&p);
-    } else {
-        tc_complex_release(complex);
+        if (p.bad_block < p.block_count)
+            status = (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to cut polyhedra");
     }
+    if (status) tc_complex_release(complex);
     free(p.tallies);
     free(p.starts);
     return status;

@@ -14,7 +14,7 @@
 
 /* What a block of cells gave. */
 typedef struct cell_tally {
-    uint64_t tetrahedra, flat, curved, blanked, inverted, folded;
+    uint64_t tetrahedra, flat, curved, blanked, inverted, folded, unsupported, surplus;
 } cell_tally;
 
 /* Where the tetrahedra of a block go; tetrahedra NULL: only counted. */
@@ -24,14 +24,15 @@ typedef struct tetrahedron_writer {
     cell_tally *tally;
 } tetrahedron_writer;
 
-/* Does cells [first, end); false where one of them cannot be cut, which only the first pass may find. */
+/* Does cells [first, end); false where one of them cannot be cut, which only the first pass may find, or where memory
+ * runs out. */
 typedef bool block_function(const void *source, uint64_t first, uint64_t end, tetrahedron_writer *writer);
 
 /* Zeroes a complex of the caller's; TC_ERROR_ARGUMENT, naming what, where it has no room for the arrays. */
 tc_status complex_begin(tc_complex *complex, const char *what);
 
 /* Fills *complex, with its struct_size set. Where a block returns false: TC_ERROR_DATA, without a text, and *bad_cell
- * is the first cell of the first such block. */
+ * is the first cell of the first such block; in the second pass TC_ERROR_MEMORY. */
 tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_complex *complex,
                        uint64_t *bad_cell);
 

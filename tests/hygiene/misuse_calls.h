@@ -11,7 +11,7 @@
 
 #include <stddef.h>
 
-enum { CELLS = 2, CORNERS = 12, POINTS = 12, TETRAHEDRA = 2, CARRIED_MOST = 1 << 14 };
+enum { CELLS = 3, CORNERS = 12, FACES = 4, FACE_CORNERS = 12, POINTS = 12, TETRAHEDRA = 2, CARRIED_MOST = 1 << 14 };
 
 typedef struct arguments {
     tc_context *context;
@@ -46,8 +46,10 @@ typedef struct world {
 
 static float points[3 * POINTS], field_values[SAMPLES], values[CARRIED_MOST], axis[SIZE], lattice[3 * SAMPLES];
 static const double complex_samples[POINTS] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
-static const uint8_t types[CELLS] = {12, 10}; /* a hexahedron and a tetrahedron */
-static const int64_t offsets[CELLS + 1] = {0, 8, CORNERS};
+static const uint8_t types[CELLS] = {12, 10, 42}; /* a hexahedron, a tetrahedron, the same as a polyhedron */
+static const int64_t offsets[CELLS + 1] = {0, 8, CORNERS, CORNERS};
+static const int64_t cell_faces[CELLS + 1] = {0, 0, 0, FACES}, face_offsets[FACES + 1] = {0, 3, 6, 9, FACE_CORNERS};
+static const int64_t face_connectivity[FACE_CORNERS] = {8, 9, 10, 8, 9, 11, 9, 10, 11, 8, 10, 11};
 static const int64_t connectivity[CORNERS] = {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 10, 11};
 static const uint32_t tetrahedra[4 * TETRAHEDRA] = {0, 1, 2, 4, 8, 9, 10, 11};
 
@@ -90,7 +92,10 @@ static void arguments_fill(const world *w, arguments *a) {
                           .cell_count = CELLS,
                           .types = types,
                           .offsets = offsets,
-                          .connectivity = connectivity};
+                          .connectivity = connectivity,
+                          .cell_faces = cell_faces,
+                          .face_offsets = face_offsets,
+                          .face_connectivity = face_connectivity};
     a->field = (tc_field){sizeof a->field, TC_F32, 1, field_values};
     a->device_mesh = (tc_device_mesh){.struct_size = sizeof a->device_mesh};
     a->counts.struct_size = sizeof a->counts;

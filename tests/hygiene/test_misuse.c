@@ -193,6 +193,10 @@ static const place places[] = {
     AT(tc_tetrahedralize, cells.blanked_points, absent),
     AT(tc_tetrahedralize, cells.blanked_cells, absent),
     AT(tc_tetrahedralize, cells.points_f64, LISTED({8, ARGUMENT})),
+    AT(tc_tetrahedralize, cells.cell_faces, LISTED({0, DATA})),
+    AT(tc_tetrahedralize, cells.face_offsets, null),
+    AT(tc_tetrahedralize, cells.face_connectivity, null),
+    AT(tc_tetrahedralize, cells.skip_unsupported, any_i32),
     AT(tc_tetrahedralize_grid, complex_at, null),
     OPTIONS_OF_GRIDS(tc_tetrahedralize_grid),
 };
@@ -330,8 +334,23 @@ enum { NUMBERS = sizeof numbers / sizeof *numbers };
 static void test_cell_arrays(const world *w) {
     int64_t o[CELLS + 1], c[CORNERS];
     uint8_t t[CELLS];
+    int64_t f[CELLS + FACES + FACE_CORNERS];
     float p[3 * POINTS];
     arguments a;
+    for (int at = 0; at < CELLS + FACES + FACE_CORNERS; at++)
+        for (int n = 0; n < NUMBERS; n++) {
+            int64_t starts[CELLS + 1], ends[FACES + 1];
+            memcpy(f, cell_faces, CELLS * sizeof *f);
+            memcpy(f + CELLS, face_offsets, FACES * sizeof *f);
+            memcpy(f + CELLS + FACES, face_connectivity, FACE_CORNERS * sizeof *f);
+            f[at] = numbers[n];
+            memcpy(starts, cell_faces, sizeof starts), memcpy(starts, f, CELLS * sizeof *f);
+            memcpy(ends, face_offsets, sizeof ends), memcpy(ends, f + CELLS, FACES * sizeof *f);
+            arguments_fill(w, &a);
+            a.cells.cell_faces = starts, a.cells.face_offsets = ends, a.cells.face_connectivity = f + CELLS + FACES;
+            bool outside = at >= CELLS + FACES && (numbers[n] < 0 || numbers[n] >= POINTS);
+            expect_status(w, call_tc_tetrahedralize, &a, outside ? DATA : OK | DATA | ARGUMENT, "an array of faces");
+        }
     for (int at = 0; at < CELLS + CORNERS; at++)
         for (int n = 0; n < NUMBERS; n++) {
             memcpy(o, offsets, sizeof o);
@@ -438,7 +457,10 @@ static void test_others(const world *w) {
                       .cell_count = CELLS,
                       .types = types,
                       .offsets = offsets,
-                      .connectivity = connectivity};
+                      .connectivity = connectivity,
+                      .cell_faces = cell_faces,
+                      .face_offsets = face_offsets,
+                      .face_connectivity = face_connectivity};
     tc_complex_release(&zeroed);
     EXPECT(tc_tetrahedralize(&cells, &made) == TC_OK && made.tetrahedron_count > 1, "%s", tc_message());
     tc_complex_release(&made);
