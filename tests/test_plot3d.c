@@ -155,7 +155,8 @@ static void test_text(void) {
     expect_text_points("plain", "2 2 1\n1 2 3 4\n5 5 5 5\n9 9 -10 0.5\n", wanted);
     expect_text_points("repeats", "2 2 1\n1 2 3 4 4*5 2*9.0 -10 .5", wanted);
     expect_text_points("repeated dims", "2*2 1 1. 2. 3. 4. 3*5 5 9 9 -1.0E1 5e-1", wanted);
-    expect_text_points("Fortran exponents", "1 2 2 1 1D0 2d+00 3 4E0 4*5.0D+000 9 9 -1+1 5-1", wanted);
+    expect_text_points("Fortran exponents", "1 2 2 1 1D0 2d+00 3 4E0 4*5.0D+000 9 9 -1.0+001 5.-001", wanted);
+    expect_text_points("no blanks", "2 2 1 1.0E+002.0E+003.00E+00 4 5 5.0D+00+5.+000+5 9 9-1.0E1 5e-1", wanted);
     expect_text_points("commas and lines", "2,2,1\r\n1,2,3,4\r\n5,5,5,5\r\n9,9,-10,0.5", wanted);
     expect_text_failure("a word", "2 2 1\n1 2 3 4 5 5 x 5", "value 10, 'x'");
     expect_text_failure("stars", "2 2 1\n1 2 3 4 5 5 ****** 5", "'******'");

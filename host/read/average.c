@@ -77,8 +77,10 @@ static void add_structured(sums *s) {
 
 static void add_unstructured(sums *s) {
     for (int64_t cell = 0; cell < s->b->cell_count; cell++) {
-        int64_t begin = s->b->cell_offsets[cell], end = s->b->cell_offsets[cell + 1];
-        if (cell_type_dimension(s->b->cell_types[cell]) == 3) add_cell(s, cell, s->b->cell_points + begin, end - begin);
+        const uint8_t type = s->b->cell_types[cell];
+        int64_t begin = s->b->cell_offsets[cell], count = s->b->cell_offsets[cell + 1] - begin;
+        if (cell_type_points(type) && count > cell_type_points(type)) count = cell_type_points(type);
+        if (cell_type_dimension(type) == 3) add_cell(s, cell, s->b->cell_points + begin, count);
     }
 }
 

@@ -10,4 +10,8 @@ const char *cell_type_name(uint8_t type);
 /* 0 to 3; of a number that is no type 0. */
 int cell_type_dimension(uint8_t type);
 
+/* Points that a cell has, the first ones where it is given more; 0: any number, as of types of fewer than three
+ * dimensions here. */
+int cell_type_points(uint8_t type);
+
 #endif

@@ -41,6 +41,7 @@ typedef struct dataset_block {
     const uint8_t *cell_types;   /* unstructured: VTK's numbers of cell types */
     const int64_t *cell_offsets; /* cell_count + 1: where in cell_points the points of a cell begin */
     const int64_t *cell_points;  /* each checked to be below point_count */
+    const int64_t *cell_faces, *face_offsets, *face_points; /* of polyhedra, as in tc_cells; NULL: none */
 
     const uint8_t *blanked_points, *blanked_cells; /* nonzero: missing; NULL: none */
     dataset_field *fields;

@@ -1,10 +1,11 @@
 /*
  * plot3d_text.c - the numbers of a Plot3D file that is text, as Fortran's list-directed output writes them
  *
- * Words are separated by white space and commas; "3*0.5" stands for three values; exponents may be marked by D, or, of
- * three digits, by nothing ("0.1-101"). A first pass counts, so that memory is taken once and never more than the text
- * can account for.
+ * Words are separated by white space and commas; "3*0.5" stands for three values; numbers are Fortran's
+ * (number_text.h), in columns of fixed width too. A first pass counts, so that memory is taken once and never more than
+ * the text can account for.
  */
+#include "number_text.h"
 #include "plot3d.h"
 
 #include "exit_status.h"
@@ -37,57 +38,50 @@ int plot3d_is_text(const mapping *mapped) {
     return count > 0;
 }
 
-/* The next word, with a terminating zero; its length, 0 at the end of the text, -1 where it is too long. */
-static int next_text_word(text_reader *text, char word[WORD_BYTES]) {
-    int length = 0;
+/* The next word, with a terminating zero, or as much of it as there is room for; its length, 0 at the end of the text.
+ */
+static size_t next_text_word(text_reader *text, char word[WORD_BYTES]) {
+    size_t length = 0;
     while (text->next < text->end && is_separator(*text->next)) text->next++;
-    for (; text->next < text->end && !is_separator(*text->next); text->next++) {
-        if (length == WORD_BYTES - 1) return -1;
+    for (; text->next < text->end && !is_separator(*text->next) && length < WORD_BYTES - 1; text->next++)
         word[length++] = (char)*text->next;
-    }
     word[length] = 0;
     return length;
 }
 
-/* Takes Fortran's exponents too. Nonzero where the whole word is a number. */
-static int parse_number(const char *word, double *value) {
-    char c_word[WORD_BYTES + 1], *end;
-    int length = 0, has_exponent = 0;
-    for (const char *p = word; *p; p++) {
-        int is_letter = strchr("dDeE", *p) != NULL;
-        int is_bare = (*p == '+' || *p == '-') && p > word && (isdigit((unsigned char)p[-1]) || p[-1] == '.');
-        if (is_bare && !has_exponent) c_word[length++] = 'e';
-        has_exponent |= is_letter || is_bare;
-        c_word[length++] = (char)(is_letter ? 'e' : *p);
-        if (length >= WORD_BYTES) return 0;
-    }
-    c_word[length] = 0;
-    *value = strtod(c_word, &end);
-    return end > c_word && !*end;
-}
-
-/* "3*0.5": how often, and what. Nonzero where the word is that or a plain number. */
-static int parse_repeated(const char *word, uint64_t *repeats, double *value) {
-    const char *star = strchr(word, '*');
+/* "3*0.5": how often, and what. Returns the characters of that or of a plain number, fewer than the word has where
+ * others follow; 0 where it is neither. */
+static size_t parse_repeated(const char *word, size_t length, uint64_t *repeats, double *value) {
+    char number[WORD_BYTES];
+    size_t digits = strspn(word, "0123456789"), skipped = 0;
     *repeats = 1;
-    if (!star) return parse_number(word, value);
-    *repeats = 0;
-    for (const char *p = word; p < star; p++) {
-        /* The word ends with a zero. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript) */
-        if (!isdigit((unsigned char)*p) || *repeats > UINT64_MAX / 100) return 0;
-        *repeats = 10 * *repeats + (uint64_t)(*p - '0');
+    if (word[digits] == '*') {
+        *repeats = 0;
+        for (const char *p = word; *p != '*'; p++) {
+            if (*repeats > UINT64_MAX / 100) return 0;
+            *repeats = 10 * *repeats + (uint64_t)(*p - '0');
+        }
+        if (!*repeats) return 0;
+        skipped = digits + 1;
     }
-    return *repeats > 0 && parse_number(star + 1, value);
+    size_t used = number_copy(word + skipped, length - skipped, number, sizeof number);
+    *value = strtod(number, NULL);
+    return used ? skipped + used : 0;
 }
 
 /* Counts, and stores where numbers is not NULL. */
 static int read_numbers(text_reader *text, double *numbers) {
     char word[WORD_BYTES];
-    int length;
+    size_t length;
     while ((length = next_text_word(text, word)) > 0) {
         uint64_t repeats;
         double value;
-        if (!parse_repeated(word, &repeats, &value))
+        int is_cut = text->next < text->end && !is_separator(*text->next);
+        size_t used = parse_repeated(word, length, &repeats, &value);
+        if (is_cut && (!used || used == length))
+            return fail(STATUS_INPUT, "%s: its value %" PRIu64 " has more than %d characters; the file is damaged",
+                        text->path, text->count + 1, WORD_BYTES - 1);
+        if (!used)
             return fail(STATUS_INPUT,
                         "%s: its value %" PRIu64 ", '%.30s', is no number; the file is damaged or no Plot3D file",
                         text->path, text->count + 1, word);
@@ -98,10 +92,8 @@ static int read_numbers(text_reader *text, double *numbers) {
                         text->path, text->limit);
         for (uint64_t i = 0; numbers && i < repeats; i++) numbers[text->count + i] = value;
         text->count += repeats;
+        text->next -= length - used;
     }
-    if (length < 0)
-        return fail(STATUS_INPUT, "%s: its value %" PRIu64 " has more than %d characters; the file is damaged",
-                    text->path, text->count + 1, WORD_BYTES - 1);
     return 0;
 }
 

@@ -77,7 +77,7 @@ int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t
 /* Native values of a stored type as others; see legacy_array. How many the wanted type cannot hold. */
 uint64_t legacy_convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to);
 
-/* Passes over a number of text. */
+/* Passes over a number of text, or over a word that is none. */
 int legacy_skip_number(legacy *r, const char *what);
 
 /* The name of a type of values. */
@@ -97,7 +97,7 @@ int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t 
 int legacy_cells(legacy *r);
 int legacy_cell_types(legacy *r);
 
-/* Once all sections of the geometry are read: every index checked, polyhedra emptied. */
+/* Once all sections of the geometry are read: every index checked, the faces of polyhedra taken. */
 int legacy_check_cells(legacy *r);
 
 /* The attribute that the keyword begins; *known is 0 where it begins none. */

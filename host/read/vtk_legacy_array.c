@@ -2,7 +2,8 @@
  * vtk_legacy_array.c - arrays of VTK legacy files: read, converted or passed over; see vtk_legacy.h
  *
  * Types and their sizes as VTK's own reader has them: long is 8 bytes, vtkIdType 4, bits are packed, the first in the
- * highest bit.
+ * highest bit. As there, what follows the name of a type is no matter: "int1" and "int32" are int, "float32" is float.
+ * Of names that tell 8 bytes that is taken as said, and those of unsigned types that VTK does not know.
  */
 #include "vtk_legacy.h"
 
@@ -23,7 +24,14 @@ int legacy_type(legacy *r, int *type) {
     static const struct {
         const char *name;
         int type;
-    } types[] = {{"unsigned_char", TC_U8},
+    } types[] = {{"uint8", TC_U8},
+                 {"uint16", TC_U16},
+                 {"uint32", TC_U32},
+                 {"uint64", ELEMENT_U64},
+                 {"unsigned_int64", ELEMENT_U64},
+                 {"int64", ELEMENT_I64},
+                 {"float64", TC_F64},
+                 {"unsigned_char", TC_U8},
                  {"char", TC_I8},
                  {"signed_char", TC_I8},
                  {"unsigned_short", TC_U16},
@@ -45,7 +53,7 @@ int legacy_type(legacy *r, int *type) {
     int status = legacy_need(r, "a type of values", word);
     if (status) return status;
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (!strcasecmp(word, types[i].name)) {
+        if (!strncasecmp(word, types[i].name, strlen(types[i].name))) {
             *type = types[i].type;
             return 0;
         }

@@ -2,16 +2,17 @@
  * vtk_legacy_cells.c - the cells of unstructured grids in VTK legacy files; see vtk_legacy.h
  *
  * Two layouts: a count before the points of each cell (to version 4.2), or OFFSETS, one more than cells, and
- * CONNECTIVITY. The word behind the counts tells which. Nothing is trusted before legacy_check_cells.
+ * CONNECTIVITY. The word behind the counts tells which. Polyhedra have a stream of their faces in place of points
+ * (cell_faces.h). Nothing is trusted before legacy_check_cells.
  */
 #include "vtk_legacy.h"
 
+#include "cell_faces.h"
 #include "exit_status.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
-
-enum { CELL_POLYHEDRON = 42 };
 
 /* Splits the counts from r->links, where the `size` numbers lie, count and points of each cell in turn. */
 static int split_counted(legacy *r, int64_t cell_count, int64_t size) {
@@ -100,22 +101,39 @@ static int check_cell(const legacy *r, int64_t cell) {
     return 0;
 }
 
-/* Polyhedra have a stream of faces in place of points: they lose it, since all others must be points. */
-static void empty_polyhedra(legacy *r, int64_t cell_count) {
-    int64_t used = 0, emptied = 0;
-    for (int64_t cell = 0, begin = r->offsets[0]; cell < cell_count; cell++) {
+static int compare_points(const void *a, const void *b) {
+    const int64_t *x = a, *y = b;
+    return *x < *y ? -1 : *x > *y;
+}
+
+/* Writes each point of the cell's faces once; no more than the stream of the faces had numbers. How many. */
+static int64_t put_face_points(const dataset_block *b, int64_t cell, int64_t *to) {
+    int64_t begin = b->face_offsets[b->cell_faces[cell]], end = b->face_offsets[b->cell_faces[cell + 1]], used = 0;
+    memcpy(to, b->face_points + begin, (size_t)(end - begin) * sizeof *to);
+    qsort(to, (size_t)(end - begin), sizeof *to, compare_points);
+    for (int64_t n = 0; n < end - begin; n++)
+        if (!used || to[n] != to[used - 1]) to[used++] = to[n];
+    return used;
+}
+
+/* Polyhedra lose the stream of their faces, which is taken first, for the points of these. */
+static int take_polyhedra(legacy *r) {
+    dataset_block *b = r->block;
+    int64_t used = 0;
+    int status = cell_faces_take(r->out, b, r->path, r->links, (uint64_t)r->link_count, r->offsets + 1, 1);
+    if (status) return status;
+    for (int64_t cell = 0, begin = r->offsets[0]; cell < b->cell_count; cell++) {
         int64_t end = r->offsets[cell + 1], count = end - begin;
-        if (r->block->cell_types[cell] == CELL_POLYHEDRON) {
-            count = 0;
-            emptied++;
-        }
-        memmove(r->links + used, r->links + begin, (size_t)count * sizeof *r->links);
+        if (b->cell_types[cell] == CELL_POLYHEDRON)
+            count = put_face_points(b, cell, r->links + used);
+        else
+            memmove(r->links + used, r->links + begin, (size_t)count * sizeof *r->links);
         r->offsets[cell] = used;
         used += count;
         begin = end;
     }
-    r->offsets[cell_count] = used;
-    if (emptied) dataset_notice(r->out, "%" PRId64 " polyhedra have no points here: their faces are not read", emptied);
+    r->offsets[b->cell_count] = used;
+    return 0;
 }
 
 int legacy_check_cells(legacy *r) {
@@ -133,9 +151,8 @@ int legacy_check_cells(legacy *r) {
     if (r->offsets[0] != 0 || r->offsets[cell_count] != r->link_count)
         return legacy_fail(r, "has offsets of cells from %" PRId64 " to %" PRId64 " in a CONNECTIVITY of %" PRId64,
                            r->offsets[0], r->offsets[cell_count], r->link_count);
-    if (has_polyhedra) empty_polyhedra(r, cell_count);
     r->block->cell_count = cell_count;
     r->block->cell_offsets = r->offsets;
     r->block->cell_points = r->links;
-    return 0;
+    return has_polyhedra ? take_polyhedra(r) : 0;
 }

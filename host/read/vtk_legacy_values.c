@@ -1,5 +1,6 @@
 /* vtk_legacy_values.c - values of VTK legacy files, from words or big-endian bytes, and their conversion; see
  * vtk_legacy.h */
+#include "number_text.h"
 #include "vtk_legacy.h"
 
 #include <math.h>
@@ -68,19 +69,17 @@ static int parse_value(const char *word, const char *end, int type, uint8_t *to)
 }
 
 /* The next word where it lies, or, at the very end of the file, in `last`, since parsing goes on to a character that
- * belongs to no number. */
+ * belongs to no number. Of a longer one the first LONGEST_NUMBER + 1 characters. */
 static int number_word(legacy *r, const char *what, char last[LONGEST_NUMBER + 1], const char **word,
                        const char **end) {
     size_t at = r->at;
     while (at < r->size && legacy_is_space(r->bytes[at])) at++;
     size_t start = at;
-    while (at < r->size && !legacy_is_space(r->bytes[at])) at++;
+    while (at < r->size && at - start <= LONGEST_NUMBER && !legacy_is_space(r->bytes[at])) at++;
     r->at = at;
     if (at == start) return legacy_fail(r, "ends within the values of %s; the file is cut", what);
-    if (at - start > LONGEST_NUMBER)
-        return legacy_fail(r, "has a word of %zu characters among the values of %s; it is damaged", at - start, what);
     *word = (const char *)r->bytes + start;
-    if (at == r->size) {
+    if (at == r->size && at - start <= LONGEST_NUMBER) {
         memcpy(last, *word, at - start);
         last[at - start] = 0;
         *word = last;
@@ -89,10 +88,27 @@ static int number_word(legacy *r, const char *what, char last[LONGEST_NUMBER + 1
     return 0;
 }
 
-int legacy_skip_number(legacy *r, const char *what) {
-    char last[LONGEST_NUMBER + 1];
-    const char *word, *end;
-    return number_word(r, what, last, &word, &end);
+/* Parses a word, or the first of several numbers in it, and leaves r->at behind that. Returns 0 where it is none. */
+static int take_value(legacy *r, const char *word, const char *end, int type, uint8_t *to) {
+    char number[LONGEST_NUMBER + 1];
+    size_t length = (size_t)(end - word);
+    if (length <= LONGEST_NUMBER && parse_value(word, end, type, to)) return 1;
+    size_t used = number_copy(word, length, number, sizeof number);
+    if (!used || !parse_value(number, number + strlen(number), type, to)) return 0;
+    r->at -= length - used;
+    return 1;
+}
+
+static int refuse_word(const legacy *r, const char *what, const char *word, const char *end) {
+    char shown[40];
+    size_t length = 0;
+    if (end - word > LONGEST_NUMBER)
+        return legacy_fail(r, "has a word of more than %d characters among the values of %s; it is damaged",
+                           LONGEST_NUMBER, what);
+    for (; word < end && length < sizeof shown - 1; word++)
+        shown[length++] = (char)(*word > ' ' && *word < 127 ? *word : '?');
+    shown[length] = 0;
+    return legacy_fail(r, "has '%s' among the values of %s, which is no number of its type", shown, what);
 }
 
 static int decode_words(legacy *r, const char *what, int type, uint64_t count, uint8_t *to) {
@@ -103,14 +119,20 @@ static int decode_words(legacy *r, const char *what, int type, uint64_t count, u
         int status = number_word(r, what, last, &word, &end);
         if (status) return status;
         /* Set where there is no status. NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage) */
-        if (parse_value(word, end, type, to)) continue;
-        char shown[40];
-        size_t length = 0;
-        for (; word < end && length < sizeof shown - 1; word++)
-            shown[length++] = (char)(*word > ' ' && *word < 127 ? *word : '?');
-        shown[length] = 0;
-        return legacy_fail(r, "has '%s' among the values of %s, which is no number of its type", shown, what);
+        if (!take_value(r, word, end, type, to)) return refuse_word(r, what, word, end);
     }
+    return 0;
+}
+
+int legacy_skip_number(legacy *r, const char *what) {
+    char last[LONGEST_NUMBER + 1], number[LONGEST_NUMBER + 1];
+    const char *word, *end;
+    int status = number_word(r, what, last, &word, &end);
+    if (status) return status;
+    /* Set where there is no status. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
+    size_t length = (size_t)(end - word), used = number_copy(word, length, number, sizeof number);
+    if (!used && length > LONGEST_NUMBER) return refuse_word(r, what, word, end);
+    if (used) r->at -= length - used;
     return 0;
 }
 

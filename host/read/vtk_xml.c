@@ -4,10 +4,11 @@
  *
  * Every piece that holds points becomes a block. Values that lie in the file as this machine wants them, which is so
  * for aligned raw appended data, are used in the mapped file; all others are copied. Arrays of no use here (FieldData,
- * strings, polyhedral faces) are left where they are.
+ * strings) are left where they are.
  */
 #include "vtk_xml.h"
 
+#include "cell_faces.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
@@ -47,8 +48,8 @@ static void *reader_memory(xml_reader *r, uint64_t bytes) {
 }
 
 static void note_more(xml_reader *r, const xml_values *v) {
-    const char *path_end = v->more ? strstr(v->label, ": its array") : NULL; /* notices do not name the input */
-    if (path_end) dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", path_end + 2);
+    if (v->more)
+        dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", v->label + v->label_array);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- values */
@@ -275,6 +276,62 @@ static int load_connectivity(xml_reader *r, const xml_array *array, uint64_t cou
     return status;
 }
 
+static const xml_array *find_cells_array(const xml_reader *r, const xml_piece *piece, const char *name) {
+    return find_array(r, piece, SECTION_CELLS, name, 0);
+}
+
+/* The first `count` integers of an array of the cells, as int64. */
+static int load_indices(xml_reader *r, const xml_piece *piece, const char *name, uint64_t count,
+                        const int64_t **values) {
+    const xml_array *array = find_cells_array(r, piece, name);
+    xml_values v;
+    if (!array)
+        return fail(STATUS_INPUT,
+                    "%s: its Cells have no array '%s', which goes with others of polyhedra; the file is "
+                    "damaged",
+                    r->doc.path, name);
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (status) return status;
+    int64_t *memory = reader_memory(r, count * sizeof *memory);
+    *values = memory;
+    return memory ? load_integers(r, array, count, memory) : STATUS_FAILED;
+}
+
+/* Faces as VTK had them up to version 9.3: a stream, and where each cell's ends, -1 where there is none. */
+static int load_face_stream(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    const int64_t *ends, *stream;
+    int64_t length = 0;
+    int status = load_indices(r, piece, "faceoffsets", piece->cell_count, &ends);
+    for (uint64_t cell = 0; cell < piece->cell_count && !status; cell++)
+        if (block->cell_types[cell] == CELL_POLYHEDRON && ends[cell] > length) length = ends[cell];
+    if (!status) status = load_indices(r, piece, "faces", (uint64_t)length, &stream);
+    return status ? status : cell_faces_take(r->out, block, r->doc.path, stream, (uint64_t)length, ends, 0);
+}
+
+/* And from 9.4 on: each cell's list of faces, which stand for themselves. Lengths that make no sense are more than the
+ * next array has. */
+static int load_face_lists(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    face_lists l = {0};
+    int status = load_indices(r, piece, "polyhedron_offsets", piece->cell_count, &l.cell_ends);
+    uint64_t used = status || !piece->cell_count ? 0 : (uint64_t)l.cell_ends[piece->cell_count - 1];
+    if (!status) status = load_indices(r, piece, "polyhedron_to_faces", used, &l.faces);
+    for (uint64_t n = 0; n < used && !status; n++)
+        if (l.faces[n] >= l.face_count) l.face_count = l.faces[n] < INT64_MAX ? l.faces[n] + 1 : INT64_MAX;
+    if (!status) status = load_indices(r, piece, "face_offsets", (uint64_t)l.face_count, &l.face_ends);
+    used = status || !l.face_count ? 0 : (uint64_t)l.face_ends[l.face_count - 1];
+    if (!status) status = load_indices(r, piece, "face_connectivity", used, &l.points);
+    return status ? status : cell_faces_gather(r->out, block, r->doc.path, &l);
+}
+
+static int load_faces(xml_reader *r, const xml_piece *piece, dataset_block *block) {
+    int has_polyhedra = 0;
+    for (uint64_t cell = 0; cell < piece->cell_count && !has_polyhedra; cell++)
+        has_polyhedra = block->cell_types[cell] == CELL_POLYHEDRON;
+    if (!has_polyhedra) return 0;
+    if (find_cells_array(r, piece, "faceoffsets")) return load_face_stream(r, piece, block);
+    return find_cells_array(r, piece, "polyhedron_offsets") ? load_face_lists(r, piece, block) : 0;
+}
+
 static int load_cells(xml_reader *r, const xml_piece *piece, dataset_block *block) {
     static const xml_array nothing = {.section = SECTION_CELLS, .element = TC_U8};
     static const char *const names[] = {"types", "offsets", "connectivity"};
@@ -288,7 +345,7 @@ static int load_cells(xml_reader *r, const xml_piece *piece, dataset_block *bloc
     int status = load_cell_types(r, arrays[0], piece->cell_count, block);
     if (!status) status = load_cell_offsets(r, arrays[1], piece->cell_count, block);
     if (!status) status = load_connectivity(r, arrays[2], (uint64_t)block->cell_offsets[piece->cell_count], block);
-    return status;
+    return status ? status : load_faces(r, piece, block);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- fields */

@@ -79,6 +79,7 @@ typedef struct xml_values {
     const unsigned char *in_place; /* where they lie in the file as this machine wants them; NULL: vtk_xml_take */
     int more;                      /* whether the array holds more than that; of text only known when it is taken */
     char label[512];               /* file and array, for messages */
+    size_t label_array;            /* where in it the array begins */
 
     xml_source data, sizes; /* sizes: of compressed blocks */
     uint64_t block_bytes, largest_block;

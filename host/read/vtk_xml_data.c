@@ -213,7 +213,8 @@ static int find_data(const xml_document *doc, xml_values *v) {
     return 0;
 }
 
-static void make_label(const xml_document *doc, const xml_array *array, char *label, size_t bytes) {
+/* Returns where the array begins in the label. */
+static size_t make_label(const xml_document *doc, const xml_array *array, char *label, size_t bytes) {
     static const char *const sections[] = {"", "", "", "of Points", "of Cells", "of Coordinates"};
     const char *name = doc->names + array->name;
     if (*name)
@@ -221,12 +222,13 @@ static void make_label(const xml_document *doc, const xml_array *array, char *la
     else
         snprintf(label, bytes, "%.380s: its array %s", doc->path,
                  *sections[array->section] ? sections[array->section] : "without a name");
+    return strnlen(doc->path, 380) + 2;
 }
 
 int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_values *out) {
     *out = (xml_values){.doc = doc, .array = array, .count = count};
     xml_values *v = out;
-    make_label(doc, array, v->label, sizeof v->label);
+    v->label_array = make_label(doc, array, v->label, sizeof v->label);
     if (array->element < 0) return fail(STATUS_INPUT, "%s holds no numbers of a type that is read", v->label);
     if (__builtin_mul_overflow(count, element_bytes(array->element), &v->bytes) || v->bytes > INT64_MAX / 8)
         return fail(STATUS_INPUT, "%s should have %" PRIu64 " values; the file is damaged", v->label, count);

@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "number_text.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -93,6 +94,18 @@ static int store_number(const char *word, int element, unsigned char *to) {
     return 1;
 }
 
+/* Stores a word, or the first of several numbers in it, of which *at is then moved back to the second. What the word is
+ * cut to is no end of a number. Returns 0 where it is none. */
+static int take_word(const char *word, size_t length, int is_cut, int element, unsigned char *to,
+                     const unsigned char **at) {
+    char number[WORD_BYTES];
+    if (!is_cut && store_number(word, element, to)) return 1;
+    size_t used = number_copy(word, length, number, sizeof number);
+    if (!used || (is_cut && used == length) || !store_number(number, element, to)) return 0;
+    *at -= length - used;
+    return 1;
+}
+
 int vtk_xml_take_text(xml_values *v, void *to) {
     const unsigned char *at = v->array->text, *end = v->array->text_end;
     size_t bytes = element_bytes(v->array->element);
@@ -107,7 +120,7 @@ int vtk_xml_take_text(xml_values *v, void *to) {
             return fail(STATUS_INPUT,
                         "%s has %" PRIu64 " numbers of text, but %" PRIu64 " are needed; the file is damaged or cut",
                         v->label, i, v->count);
-        if ((end > at && *at > ' ') || !store_number(word, v->array->element, value))
+        if (!take_word(word, length, end > at && *at > ' ', v->array->element, value, &at))
             return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", v->label, i + 1,
                         word);
     }

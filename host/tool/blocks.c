@@ -61,6 +61,22 @@ static int cut_structured(const options *o, prepared_block *b) {
     return input_status(o, status);
 }
 
+/* The failure of a cut, with the option that helps where nothing is amiss but cells that cannot be cut. */
+static int refuse_cells(const options *o, const tc_cells *cells, tc_status status) {
+    tc_cells others = *cells;
+    tc_complex complex = {.struct_size = sizeof complex};
+    char text[900];
+    snprintf(text, sizeof text, "%s", tc_message());
+    others.skip_unsupported = 1;
+    int is_help = status == TC_ERROR_DATA && !cells->skip_unsupported && !tc_tetrahedralize(&others, &complex);
+    uint64_t count = complex.unsupported_cell_count;
+    tc_complex_release(&complex);
+    if (is_help)
+        return fail(STATUS_INPUT, "%s: %s; --skip-unsupported leaves out the %" PRIu64 " cells that cannot be cut",
+                    o->operands[0], text, count);
+    return status == TC_ERROR_DATA ? fail(STATUS_INPUT, "%s: %s", o->operands[0], text) : input_status(o, status);
+}
+
 static int cut_unstructured(const options *o, prepared_block *b) {
     const dataset_block *from = b->source;
     const tc_cells cells = {.struct_size = sizeof cells,
@@ -72,8 +88,13 @@ static int cut_unstructured(const options *o, prepared_block *b) {
                             .offsets = from->cell_offsets,
                             .connectivity = from->cell_points,
                             .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
-                            .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells};
-    return input_status(o, tc_tetrahedralize(&cells, &b->complex));
+                            .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells,
+                            .cell_faces = from->cell_faces,
+                            .face_offsets = from->face_offsets,
+                            .face_connectivity = from->face_points,
+                            .skip_unsupported = o->skip_unsupported};
+    tc_status status = tc_tetrahedralize(&cells, &b->complex);
+    return status ? refuse_cells(o, &cells, status) : 0;
 }
 
 /* Cubes of a structured block, none where it is flat; cells of three dimensions of an unstructured one. */
@@ -118,9 +139,26 @@ static int has_ambiguous_cells(const block_list *list) {
     return 0;
 }
 
+/* Points of unstructured blocks that no cell has; 0 where memory for that runs out, as it is told only. */
+static uint64_t count_unused_points(const block_list *list) {
+    uint64_t unused = 0;
+    for (int n = 0; n < list->count; n++) {
+        const dataset_block *b = list->blocks[n].source;
+        if (b->kind != GRID_UNSTRUCTURED) continue;
+        uint8_t *used = calloc((size_t)b->point_count + 1, 1);
+        if (!used) return 0;
+        for (int64_t i = 0; i < b->cell_offsets[b->cell_count]; i++) used[b->cell_points[i]] = 1;
+        for (int64_t i = 0; b->cell_faces && i < b->face_offsets[b->cell_faces[b->cell_count]]; i++)
+            used[b->face_points[i]] = 1;
+        unused += (uint64_t)b->point_count - count_set(used, b->point_count);
+        free(used);
+    }
+    return unused;
+}
+
 static void tell_all(const block_list *list) {
-    uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, blanked_points = 0,
-             blanked_cells = 0;
+    uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, unsupported = 0,
+             surplus = 0, blanked_points = 0, blanked_cells = 0;
     int all_cut = 1;
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
@@ -130,6 +168,8 @@ static void tell_all(const block_list *list) {
         inverted += b->complex.inverted_cell_count;
         folded += b->complex.folded_cell_count;
         left_out += b->complex.blanked_cell_count;
+        unsupported += b->complex.unsupported_cell_count;
+        surplus += b->complex.surplus_cell_count;
         all_cut = all_cut && b->is_cut;
         if (b->is_cut) continue;
         blanked_points += count_set(b->source->blanked_points, b->source->point_count);
@@ -138,6 +178,9 @@ static void tell_all(const block_list *list) {
     tell(flat_blocks, "blocks of one point along an axis are skipped");
     tell(flat, "cells of fewer than three dimensions are skipped");
     tell(curved, "quadratic or higher cells are taken as linear, by their corners");
+    tell(unsupported, "cells are left out: of a type that is not cut, or polyhedra whose faces are not closed");
+    tell(surplus, "cells have more points than their type: the first ones are taken");
+    tell(count_unused_points(list), "points are used by no cell");
     tell(left_out, "cells are left out: blanked, or with a corner that is missing");
     tell(inverted, "cells of negative volume are turned over");
     tell(folded, "cells are folded: their tetrahedra overlap");

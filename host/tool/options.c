@@ -112,6 +112,9 @@ static const option table[] = {
     {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
      "a missing corner is left out; of f32 samples the float nearest to V counts"},
+    {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
+     "leave out cells of types that are not cut, and polyhedra whose faces are\n"
+     "not closed, with a notice, instead of refusing the input"},
     {"--component", NULL, "C", READS, VALUE_INDEX, IN(component), NULL,
      "which value, from 0, of data with several values per sample"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,

@@ -43,6 +43,7 @@ typedef struct options {
     const char *field;
     const char *carry;   /* names with commas between */
     int separate_blocks; /* a file for each */
+    int skip_unsupported;
     int has_nodata;
     double nodata;
     int component, frame; /* -1 where not given */

@@ -27,7 +27,7 @@ typedef struct conversion {
     block_list blocks;
     complex_faces faces;
     complex_file file;
-    uint64_t flat, curved, blanked, inverted, folded;
+    uint64_t flat, curved, blanked, inverted, folded, unsupported, surplus;
     double total_ms;
 } conversion;
 
@@ -55,6 +55,8 @@ static int cut(conversion *c) {
         c->blanked += one->blanked_cell_count;
         c->inverted += one->inverted_cell_count;
         c->folded += one->folded_cell_count;
+        c->unsupported += one->unsupported_cell_count;
+        c->surplus += one->surplus_cell_count;
         c->file.point_count += (uint64_t)c->data.blocks[n].point_count;
         c->file.tetrahedron_count += one->tetrahedron_count;
     }
@@ -229,6 +231,8 @@ static int print_json(const conversion *c) {
     json_object_set_new(object, "blanked_cells", count_json(c->blanked));
     json_object_set_new(object, "inverted_cells", count_json(c->inverted));
     json_object_set_new(object, "folded_cells", count_json(c->folded));
+    json_object_set_new(object, "unsupported_cells", count_json(c->unsupported));
+    json_object_set_new(object, "surplus_cells", count_json(c->surplus));
     json_object_set_new(object, "folded_faces", count_json(c->faces.folded_faces));
     json_object_set_new(object, "fields", fields);
     json_object_set_new(object, "total_ms", report_real(c->total_ms));
