@@ -232,8 +232,11 @@ static void touch(const dataset *d) {
     for (int64_t i = 0; b->blanked_cells && i < b->cell_count; i++) sum = sum + b->blanked_cells[i];
     for (int64_t c = 0; b->cell_offsets && c < b->cell_count; c++)
         for (int64_t i = b->cell_offsets[c]; i < b->cell_offsets[c + 1]; i++)
-            EXPECT(b->cell_types[c] != 42 && b->cell_points[i] >= 0 && b->cell_points[i] < b->point_count,
-                   "cell %d has point %d", (int)c, (int)b->cell_points[i]);
+            EXPECT(b->cell_points[i] >= 0 && b->cell_points[i] < b->point_count, "cell %d has point %d", (int)c,
+                   (int)b->cell_points[i]);
+    for (int64_t i = 0; b->cell_faces && i < b->face_offsets[b->cell_faces[b->cell_count]]; i++)
+        EXPECT(b->face_points[i] >= 0 && b->face_points[i] < b->point_count, "a face has point %d",
+               (int)b->face_points[i]);
 }
 
 static void expect_survives(const char *what, const unsigned char *data, size_t size) {
@@ -402,20 +405,145 @@ static void test_blanking(void) {
     }
 }
 
+/* Types as programs write them; VTK takes them by how they begin. */
+static void test_types(void) {
+    static const struct {
+        const char *name;
+        int type;
+    } names[] = {{"int1", TC_I32},          {"Int", TC_I32},
+                 {"int32", TC_I32},         {"float32", TC_F32},
+                 {"Float1", TC_F32},        {"UNSIGNED_CHAR", TC_U8},
+                 {"float64", TC_F64},       {"double3", TC_F64},
+                 {"vtkidtype", TC_I32},     {"int64", TC_F64},
+                 {"uint8", TC_U8},          {"uint16", TC_U16},
+                 {"long_long", TC_F64},     {"unsigned_int64", TC_F64},
+                 {"short2", TC_I16},        {"unsigned_short", TC_U16},
+                 {"signed_char", TC_I8},    {"char8", TC_I8},
+                 {"uint32", TC_U32},        {"unsigned_int1", TC_U32},
+                 {"vtktypeint64_t", TC_F64}};
+    static const double values[] = {1, 2, 3, 4};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        dataset d;
+        bytes file = {0};
+        bytes_text(&file, IMAGE "POINT_DATA 4\nSCALARS s %s\nLOOKUP_TABLE default\n1 2 3 4\n", names[n].name);
+        int status = read_bytes("types.vtk", file.data, file.size, &d);
+        EXPECT(!status, "%s: %s", names[n].name, failure_text());
+        if (!status) expect_field(names[n].name, &d, "s", 0, names[n].type, 1, values);
+        if (!status) dataset_release(&d);
+        bytes_free(&file);
+    }
+}
+
+/* Columns of fixed width, as Fortran writes them. */
+static void expect_numbers(const char *type, int read_as, const char *text, double a, double b, double c, double e) {
+    const double values[] = {a, b, c, e};
+    dataset d;
+    bytes file = {0};
+    bytes_text(&file, IMAGE "FIELD x 1\na 1 4 %s\n%s\nPOINT_DATA 4\nSCALARS s %s\nLOOKUP_TABLE t\n%s\n" LAST "1 2 3 4",
+               type, text, type, text);
+    int status = read_bytes("numbers.vtk", file.data, file.size, &d);
+    EXPECT(!status, "%s: %s", text, failure_text());
+    if (!status) expect_field(text, &d, "s", 0, read_as, 1, values);
+    if (!status) expect_field(text, &d, "last", 0, TC_I32, 1, (const double[]){1, 2, 3, 4});
+    if (!status) dataset_release(&d);
+    bytes_free(&file);
+}
+
+static void expect_no_number(const char *type, const char *text) {
+    dataset d;
+    bytes file = {0};
+    bytes_text(&file, IMAGE "POINT_DATA 4\nSCALARS s %s\nLOOKUP_TABLE t\n%s\n", type, text);
+    int status = read_bytes("numbers.vtk", file.data, file.size, &d);
+    EXPECT(status == STATUS_INPUT && strstr(failure_text(), "no number"), "%s: %s", text, failure_text());
+    if (!status) dataset_release(&d);
+    bytes_free(&file);
+}
+
+static void test_columns(void) {
+    expect_numbers("float", TC_F32, "-1.00000E+00-2.00000E+00 3.00000E+00-4.00000E+00", -1, -2, 3, -4);
+    expect_numbers("double", TC_F64, "-1.0D+00-2.0d+01-3.5Q-01+4.0D00", -1, -20, -0.35, 4);
+    expect_numbers("double", TC_F64, "0.25-101-0.5+102-1.-100-2.0-200", 0.25e-101, -0.5e102, -1e-100, -2e-200);
+    expect_numbers("double", TC_F64, "1.00E+002.00E+00.50E+01-.25E+00", 1, 2, 5, -0.25);
+    expect_numbers("double", TC_F64, "1.00E+1002.00E-1003.E+004.E+00", 1e100, 2e-100, 3, 4);
+    expect_numbers("double", TC_F64, "1.5-3.25-100.5-2", 1.5, -3.25, -100.5, -2);
+    expect_numbers("int", TC_I32, "-1-2 3-4", -1, -2, 3, -4);
+    expect_numbers("char", TC_I8, "1-128+3-4", 1, -128, 3, -4);
+    expect_numbers("double", TC_F64, "1e0 0x1p1 3 4", 1, 2, 3, 4);
+    expect_no_number("double", "1.0002.000 3 4 5");
+    expect_no_number("double", "1.0E+5.0 3 4 5");
+    expect_no_number("double", "1.0E+000005.0 3 4 5");
+    expect_no_number("double", "1.0E-2.0 3 4");
+    expect_no_number("double", "1.0E 2 3 4");
+    expect_no_number("double", "1-- 2 3 4");
+    expect_no_number("double", "1.0x-2 2 3 4");
+    expect_no_number("double", "-. 2 3 4");
+    expect_no_number("int", "1-2.5-3 4");
+    expect_no_number("char", "1-129 3 4");
+    bytes file = {0}; /* a line of a thousand numbers without a blank */
+    dataset d;
+    bytes_text(&file, HEAD "DATASET STRUCTURED_POINTS\nDIMENSIONS 10 10 10\nPOINT_DATA 1000\nSCALARS s float\n");
+    for (int n = 0; n < 1000; n++) bytes_text(&file, "-%d.0E+00", n);
+    int status = read_bytes("line.vtk", file.data, file.size, &d);
+    EXPECT(!status, "%s", failure_text());
+    for (int n = 0; n < 1000 && !status; n++) EXPECT(value_at(d.blocks->fields, n) == -n, "number %d of a line", n);
+    if (!status) dataset_release(&d);
+    bytes_free(&file);
+}
+
 #define UNSTRUCTURED(points) "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " points
+
+#define FOUR_POINTS UNSTRUCTURED("5 float\n0 0 0 1 0 0 0 1 0 0 0 1 9 9 9\n")
+
+/* A tetrahedron, the same as a polyhedron of 4 faces, and a line; in both layouts. */
+static void expect_polyhedron(const char *what, const char *cells) {
+    static const int64_t offsets[] = {0, 4, 8, 10}, points[] = {0, 1, 2, 3, 0, 1, 2, 3, 3, 4};
+    static const int64_t starts[] = {0, 0, 4, 4}, face_offsets[] = {0, 3, 6, 9, 12};
+    static const int64_t face_points[] = {0, 1, 2, 0, 1, 3, 3, 1, 2, 0, 2, 3};
+    dataset d;
+    bytes file = {0};
+    bytes_text(&file, FOUR_POINTS "%sCELL_TYPES 3\n10 42 3\n", cells);
+    int status = read_bytes(what, file.data, file.size, &d);
+    EXPECT(!status, "%s: %s", what, failure_text());
+    bytes_free(&file);
+    if (status) return;
+    const dataset_block *b = d.blocks;
+    EXPECT(!memcmp(b->cell_offsets, offsets, sizeof offsets) && !memcmp(b->cell_points, points, sizeof points),
+           "%s: points of cells", what);
+    EXPECT(b->cell_faces && !memcmp(b->cell_faces, starts, sizeof starts) &&
+               !memcmp(b->face_offsets, face_offsets, sizeof face_offsets) &&
+               !memcmp(b->face_points, face_points, sizeof face_points),
+           "%s: faces", what);
+    EXPECT(!*d.notice, "%s: notice '%s'", what, d.notice);
+    dataset_release(&d);
+}
+
+static void expect_no_polyhedron(const char *stream, int length) {
+    dataset d;
+    bytes file = {0};
+    bytes_text(&file, FOUR_POINTS "CELLS 1 %d\n%d %s\nCELL_TYPES 1\n42\n", length + 1, length, stream);
+    int status = read_bytes("x.vtk", file.data, file.size, &d);
+    EXPECT(status == STATUS_INPUT && strstr(failure_text(), "x.vtk: ") && strstr(failure_text(), "damaged"),
+           "%s: status %d: %s", stream, status, failure_text());
+    if (!status) dataset_release(&d);
+    bytes_free(&file);
+}
+
+#define STREAM "4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 3"
 
 static void test_polyhedra(void) {
     dataset d;
-    if (!READ(&d, UNSTRUCTURED("4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n") "CELLS 4 25\nOFFSETS vtktypeint64\n0 4 21 25\n"
-                                                                     "CONNECTIVITY vtktypeint64\n0 1 2 3 4 3 0 1 2 3 0 "
-                                                                     "1 3 3 1 2 3 3 0 2 3 3 2 1 0\nCELL_TYPES 3\n"
-                                                                     "10 42 10\nPOINT_DATA 4\n" LAST "1 2 3 4")) {
-        static const int64_t offsets[] = {0, 4, 4, 8}, points[] = {0, 1, 2, 3, 3, 2, 1, 0};
-        EXPECT(!memcmp(d.blocks->cell_offsets, offsets, sizeof offsets), "offsets beside a polyhedron");
-        EXPECT(!memcmp(d.blocks->cell_points, points, sizeof points), "points beside a polyhedron");
-        EXPECT(strstr(d.notice, "1 polyhedra"), "notice: %s", d.notice);
-        dataset_release(&d);
-    }
+    expect_polyhedron("counted", "CELLS 3 26\n4 0 1 2 3\n17 " STREAM "\n2 3 4\n");
+    expect_polyhedron("with offsets", "CELLS 4 23\nOFFSETS vtktypeint64\n0 4 21 23\nCONNECTIVITY vtktypeint64\n"
+                                      "0 1 2 3 " STREAM " 3 4\n");
+    expect_no_polyhedron("5 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 3", 17);
+    expect_no_polyhedron("3 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 3", 17);
+    expect_no_polyhedron("4 3 0 1 2 3 0 1 3 3 3 1 2 4 0 2 3", 17);
+    expect_no_polyhedron("4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 5", 17);
+    expect_no_polyhedron("4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 -1", 17);
+    expect_no_polyhedron("-1 3 0 1 2", 5);
+    expect_no_polyhedron("1 -1 0 1 2", 5);
+    expect_no_polyhedron("2147483647 3 0 1 2", 5);
+    expect_no_polyhedron("1 2147483647 0 1 2", 5);
     if (!READ(&d, UNSTRUCTURED("4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n") "POINT_DATA 4\n" LAST "1 2 3 4")) {
         EXPECT(d.blocks->cell_count == 0 && d.blocks->cell_offsets[0] == 0, "no cells");
         dataset_release(&d);
@@ -672,6 +800,8 @@ int main(void) {
     test_forms();
     test_blanking();
     test_polyhedra();
+    test_types();
+    test_columns();
     test_in_place();
     test_damaged();
     folder_remove();

@@ -197,7 +197,7 @@ static void expect_in_place(const char *what, const dataset *d) {
 static void test_shape(enum grid_kind kind, const vtk_shape *s, int pieces) {
     static const char *const names[] = {"text", "inline", "raw", "base64"};
     char what[128];
-    snprintf(what, sizeof what, "%s, %s, UInt%d, big %d, zlib %d, breaks %d", grid_names[kind], names[s->encoding],
+    snprintf(what, sizeof what, "%s, %s, UInt%d, big %d, packed by %d, breaks %d", grid_names[kind], names[s->encoding],
              8 * s->header_bytes, s->big, s->is_compressed, s->line_breaks);
     bytes file = make_file(kind, s, pieces);
     dataset d;
@@ -223,6 +223,10 @@ static void test_shapes(void) {
                                bits >> 2 & 1, bits & 1 ? 48 : 1000, bits >> 3 & 1};
                 if (encoding == AS_TEXT && bits) continue;
                 test_shape((enum grid_kind)kind, &s, 1 + (bits & 1));
+                for (int by = BY_LZ4; by <= BY_LZMA && s.is_compressed && can_pack(by); by++) {
+                    s.is_compressed = by;
+                    test_shape((enum grid_kind)kind, &s, 1 + (bits & 1));
+                }
             }
 }
 
@@ -284,17 +288,21 @@ static void test_damage(int rounds) {
                                        {AS_APPENDED_RAW, 8, 0, 0, 0, 0},
                                        {AS_APPENDED_RAW, 4, 0, 1, 64, 0},
                                        {AS_APPENDED_BASE64, 8, 1, 0, 0, 1},
-                                       {AS_APPENDED_BASE64, 4, 0, 1, 50, 0}};
+                                       {AS_APPENDED_BASE64, 4, 0, 1, 50, 0},
+                                       {AS_APPENDED_RAW, 4, 0, BY_LZ4, 64, 0},
+                                       {AS_APPENDED_RAW, 8, 0, BY_LZMA, 64, 0},
+                                       {AS_APPENDED_BASE64, 4, 1, BY_LZ4, 100, 0}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        if (shapes[i].is_compressed && !can_pack(shapes[i].is_compressed)) continue;
         test_truncation(GRID_UNSTRUCTURED, &shapes[i]);
         for (int kind = 0; kind < 4; kind++) test_changes((enum grid_kind)kind, &shapes[i], rounds);
     }
 }
 
 /* So many blocks that threads share them; then one that is damaged. */
-static void test_many_blocks(void) {
+static void test_many_blocks(int by) {
     enum { SIDE = 100, VALUES = SIDE * SIDE * SIDE };
-    vtk_shape shape = {AS_APPENDED_RAW, 8, 0, 1, 10000, 0};
+    vtk_shape shape = {AS_APPENDED_RAW, 8, 0, by, 10000, 0};
     vtk_writer w;
     bytes data = {malloc(VALUES), VALUES};
     for (size_t i = 0; i < VALUES; i++) data.data[i] = (unsigned char)(i * i / 1000 + i % 3);
@@ -320,7 +328,8 @@ int main(int argc, char **argv) {
     random_state = 1996;
     folder_make("vtk-xml");
     test_shapes();
-    test_many_blocks();
+    for (int by = BY_ZLIB; by <= BY_LZMA; by++)
+        if (can_pack(by)) test_many_blocks(by);
     test_damage(argc > 1 ? atoi(argv[1]) : 200);
     folder_remove();
     return EXPECT_DONE();

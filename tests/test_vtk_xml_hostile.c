@@ -105,8 +105,8 @@ static void test_arrays(void) {
     expect_refused("'a' ends", IMAGE(CUBE, POINTS("type=\"Int32\" format=\"binary\"", "IAA")));
     expect_refused("'a' ends", IMAGE(CUBE, POINTS("type=\"Int32\" format=\"binary\"", "*AAA")));
     expect_refused("has 32 bytes", IMAGE(CUBE, POINTS("type=\"Int64\" format=\"binary\"", "IAAAAAAAAAAA")));
-    expect_refused("vtkLZ4DataCompressor",
-                   FILE_OF("ImageData", " compressor=\"vtkLZ4DataCompressor\"",
+    expect_refused("vtkLZ5DataCompressor",
+                   FILE_OF("ImageData", " compressor=\"vtkLZ5DataCompressor\"",
                            "<ImageData><Piece Extent=\"" CUBE
                            "\">" POINTS("type=\"UInt8\" format=\"binary\"", "AAAA") "</Piece></ImageData>"));
     expect_refused("begin with '_'",
@@ -121,12 +121,14 @@ static void test_arrays(void) {
 }
 
 /* Headers of compressed data: blocks, bytes of one, bytes of the last, then packed bytes; 32 bits each. */
-static void expect_blocks_refused(const char *words, const uint32_t *header, size_t count) {
+static void expect_packed_refused(const char *compressor, const char *words, const uint32_t *header, size_t count) {
     bytes raw = {0}, file = {0};
     for (size_t i = 0; i < count; i++) bytes_put(&raw, header[i], 4, 0);
     bytes_add(&raw, "some bytes that are nothing that was packed", 43);
-    bytes_text(&file, "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
-                      "<ImageData><Piece Extent=\"0 99 0 99 0 99\">" POINTS("type=\"UInt8\" format=\"binary\"", ""));
+    bytes_text(&file,
+               "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" compressor=\"vtk%sDataCompressor\">"
+               "<ImageData><Piece Extent=\"0 99 0 99 0 99\">" POINTS("type=\"UInt8\" format=\"binary\"", ""),
+               compressor);
     file.size -= strlen("</DataArray></PointData>");
     add_base64(&file, &raw, 0);
     bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
@@ -136,7 +138,49 @@ static void expect_blocks_refused(const char *words, const uint32_t *header, siz
     bytes_free(&file);
 }
 
+static void expect_blocks_refused(const char *words, const uint32_t *header, size_t count) {
+    expect_packed_refused("ZLib", words, header, count);
+    expect_packed_refused("LZ4", can_pack(BY_LZ4) ? words : "", header, count);
+    expect_packed_refused("LZMA", can_pack(BY_LZMA) ? words : "", header, count);
+}
+
+/* A block of zeros, packed by LZMA, that asks for a dictionary of 4 GiB; else a good one. */
+static void test_dictionary(void) {
+#ifdef HAVE_LZMA
+    for (int huge = 0; huge < 2; huge++) {
+        unsigned char zeros[8] = {0};
+        bytes block = packed_block(BY_LZMA, zeros, sizeof zeros), raw = {0}, file = {0};
+        dataset d;
+        unsigned char *header = block.data + 12, *at = header + 2; /* behind the header of the stream; the flags */
+        size_t checked = 4 * (size_t)header[0];
+        for (int n = 6; n < 8; n++) /* two optional sizes, of 7 bits in each byte */
+            if (header[1] >> n & 1)
+                while (*at++ & 0x80) {
+                }
+        EXPECT(at[0] == 0x21 && at[1] == 1, "no filter LZMA2 in the header of the block");
+        if (huge) at[2] = 40;
+        uint32_t sum = lzma_crc32(header, checked, 0);
+        memcpy(header + checked, &sum, sizeof sum);
+        const uint32_t sizes[] = {1, 8, 0, (uint32_t)block.size};
+        for (int n = 0; n < 4; n++) bytes_put(&raw, sizes[n], 4, 0);
+        bytes_add(&raw, block.data, block.size);
+        bytes_text(&file, "<VTKFile type=\"ImageData\" compressor=\"vtkLZMADataCompressor\"><ImageData><Piece "
+                          "Extent=\"" CUBE "\"><PointData><DataArray Name=\"a\" type=\"UInt8\" format=\"binary\">");
+        add_base64(&file, &raw, 0);
+        bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
+        int status = read_bytes("dictionary.vtk", &file, &d);
+        EXPECT(huge ? status == STATUS_INPUT && strstr(failure_text(), "dictionary of more") : status == 0,
+               "dictionary, huge %d: status %d: %s", huge, status, failure_text());
+        dataset_release(&d);
+        bytes_free(&block);
+        bytes_free(&raw);
+        bytes_free(&file);
+    }
+#endif
+}
+
 static void test_blocks(void) {
+    test_dictionary();
     expect_blocks_refused("ends", (uint32_t[]){0xffffffff, 1000000, 0, 10}, 4);
     expect_blocks_refused("ends", (uint32_t[]){1, 1000000, 0, 0xffffffff}, 4);
     expect_blocks_refused("ends", (uint32_t[]){2, 500000, 0, 40, 40}, 5);
@@ -184,6 +228,84 @@ static void test_cells(void) {
                                           "type=\"UInt8\">1 2</DataArray></Coordinates></Piece></RectilinearGrid>"));
 }
 
+#define POLYHEDRON(arrays) POLYHEDRON_OF("0 1 2 3 0 1 2 3 2 3", arrays)
+#define POLYHEDRON_OF(connectivity, arrays)                                                                            \
+    FILE_OF("UnstructuredGrid", "",                                                                                    \
+            "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"3\"><Points><DataArray type=\"Float32\" "   \
+            "NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>" INTEGERS(                   \
+                "connectivity", connectivity) INTEGERS("offsets", "4 8 10") INTEGERS("types", "10 42 3") arrays        \
+            "</Cells></Piece></UnstructuredGrid>")
+#define INTEGERS(name, values)  "<DataArray type=\"Int64\" Name=\"" name "\">" values "</DataArray>"
+#define STREAM                  "4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 3"
+#define OLD_FACES(ends, stream) POLYHEDRON(INTEGERS("faceoffsets", ends) INTEGERS("faces", stream))
+#define NEW_FACES(cells, faces, ends, points)                                                                          \
+    POLYHEDRON(INTEGERS("polyhedron_offsets", cells) INTEGERS("polyhedron_to_faces", faces)                            \
+                   INTEGERS("face_offsets", ends) INTEGERS("face_connectivity", points))
+
+static void expect_faces(const char *what, const char *text, const int64_t *first_face) {
+    static const int64_t starts[] = {0, 0, 4, 4}, offsets[] = {0, 3, 6, 9, 12};
+    dataset d;
+    int status = read_path(file_text("faces.vtk", text), &d);
+    const dataset_block *b = d.blocks;
+    EXPECT(status == 0, "%s: %s", what, failure_text());
+    EXPECT(status || (b->cell_faces && !memcmp(b->cell_faces, starts, sizeof starts) &&
+                      !memcmp(b->face_offsets, offsets, sizeof offsets) &&
+                      !memcmp(b->face_points, first_face, 3 * sizeof *first_face)),
+           "%s: the faces differ", what);
+    dataset_release(&d);
+}
+
+/* The two layouts that VTK has written. */
+static void test_faces(void) {
+    expect_faces("old", OLD_FACES("-1 17 -1", STREAM), (const int64_t[]){0, 1, 2});
+    expect_faces("new", NEW_FACES("0 4 4", "3 1 2 0", "3 6 9 12", "0 1 2 0 1 3 3 1 2 0 2 3"),
+                 (const int64_t[]){0, 2, 3});
+    expect_refused("do not fit", OLD_FACES("-1 16 -1", STREAM));
+    expect_refused("'faces' has at most", OLD_FACES("-1 30 -1", STREAM));
+    expect_refused("'faces' has at most", OLD_FACES("-1 9223372036854775 -1", STREAM));
+    expect_refused("do not fit", OLD_FACES("-1 -1 -1", STREAM));
+    expect_refused("do not fit", OLD_FACES("-1 17 -1", "4 3 0 1 2 3 0 1 3 3 3 1 2 4 0 2 3"));
+    expect_refused("has the point 4", OLD_FACES("-1 17 -1", "4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 4"));
+    expect_refused("no array 'faces'", POLYHEDRON(INTEGERS("faceoffsets", "-1 17 -1")));
+    expect_refused("no array 'polyhedron_to_faces'", POLYHEDRON(INTEGERS("polyhedron_offsets", "0 4 4")));
+    expect_refused("the numbers", NEW_FACES("0 4 3", "3 1 2 0", "3 6 9 12", "0 1 2 0 1 3 3 1 2 0 2 3"));
+    expect_refused("the numbers", NEW_FACES("-1 4 4", "3 1 2 0", "3 6 9 12", "0 1 2 0 1 3 3 1 2 0 2 3"));
+    expect_refused("the numbers", NEW_FACES("0 4 4", "3 1 -2 0", "3 6 9 12", "0 1 2 0 1 3 3 1 2 0 2 3"));
+    expect_refused("the offsets", NEW_FACES("0 4 4", "3 1 2 0", "3 2 9 12", "0 1 2 0 1 3 3 1 2 0 2 3"));
+    expect_refused("'face_offsets'", NEW_FACES("0 4 4", "3 1 2 9223372036854775807", "3 6 9 12", "0 1 2"));
+    expect_refused("'polyhedron_to_faces'", NEW_FACES("0 4 9223372036854775807", "3 1 2 0", "3 6 9 12", "0 1 2"));
+    expect_refused("'face_connectivity'", NEW_FACES("0 4 4", "3 1 2 0", "3 6 9 120", "0 1 2"));
+    expect_refused("has the point 4", NEW_FACES("0 4 4", "3 1 2 0", "3 6 9 12", "0 1 2 0 1 3 3 1 2 0 2 4"));
+    dataset d;
+    EXPECT(read_path(file_text("none.vtk", POLYHEDRON("")), &d) == 0 && !d.blocks[0].cell_faces, "%s", failure_text());
+    dataset_release(&d);
+}
+
+/* One face in cells by the ten thousand. */
+static void test_shared_faces(void) {
+    enum { CELLS_MADE = 20000, CORNERS = 20000 };
+    bytes file = {0};
+    dataset d;
+    bytes_text(&file,
+               "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"%d\">"
+               "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0</DataArray></Points><Cells>",
+               CELLS_MADE);
+    static const char *const names[] = {"types", "offsets", "polyhedron_offsets", "polyhedron_to_faces",
+                                        "face_connectivity"};
+    bytes_text(&file, INTEGERS("connectivity", "") INTEGERS("face_offsets", "20000"));
+    for (int n = 0; n < 5; n++) {
+        bytes_text(&file, "<DataArray type=\"Int32\" Name=\"%s\">", names[n]);
+        for (int i = 0; i < CELLS_MADE; i++) bytes_text(&file, "%d ", n == 0 ? 42 : n == 2 ? i + 1 : 0);
+        bytes_text(&file, "</DataArray>");
+    }
+    bytes_text(&file, "</Cells></Piece></UnstructuredGrid></VTKFile>");
+    EXPECT(CORNERS == CELLS_MADE && read_bytes("shared.vtk", &file, &d) == STATUS_INPUT &&
+               strstr(failure_text(), "too many of its polyhedra"),
+           "%s", failure_text());
+    dataset_release(&d);
+    bytes_free(&file);
+}
+
 /* Many arrays that share one, each of which would be unpacked. */
 static void test_sharing(void) {
     bytes file = {0};
@@ -220,8 +342,8 @@ static void test_notices(void) {
     dataset_release(&d);
 
     const char *more = IMAGE(CUBE, POINTS("type=\"Int16\"", "1 2 3 4 5 6 7 8 9"));
-    EXPECT(read_path(file_text("more.vtk", more), &d) == 0 && strstr(d.notice, "more values"), "%s, notice '%s'",
-           failure_text(), d.notice);
+    EXPECT(read_path(file_text("more.vtk", more), &d) == 0 && !strncmp(d.notice, "its array 'a' holds more values", 31),
+           "%s, notice '%s'", failure_text(), d.notice);
     dataset_release(&d);
 
     const char *levels = IMAGE("0 2 0 1 0 1", "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostLevels\">0 "
@@ -256,6 +378,8 @@ static void test_numbers(void) {
                                         "1e400",
                                         "9007199254740993",
                                         "5e-22"};
+    static const char columns[] = "-1.0E+00-2.0D+01 0.5-101-4.25E+004.0E+00-1-2+3";
+    static const double of_columns[] = {-1, -20, 0.5e-101, -4.25, 4, -1, -2, 3};
     enum { COUNT = sizeof words / sizeof *words };
     bytes file = {0};
     bytes_text(&file, "<VTKFile type=\"ImageData\"><ImageData><Piece Extent=\"0 3 0 1 0 1\"><PointData><DataArray "
@@ -270,6 +394,13 @@ static void test_numbers(void) {
         EXPECT(memcmp(&is, &should, 8) == 0, "%s is %.17g", words[i], is);
     }
     dataset_release(&d);
+    file.size = 0;
+    bytes_text(&file, IMAGE(CUBE, POINTS("type=\"Float64\"", "%s")), columns);
+    EXPECT(read_bytes("columns.vtk", &file, &d) == 0, "%s", failure_text());
+    for (uint64_t i = 0; i < 8 && d.block_count; i++)
+        EXPECT(field_value(&d.blocks[0].fields[0], i) == of_columns[i], "column %d is %.17g", (int)i,
+               field_value(&d.blocks[0].fields[0], i));
+    dataset_release(&d);
     bytes_free(&file);
 }
 
@@ -281,6 +412,8 @@ int main(void) {
     test_arrays();
     test_blocks();
     test_cells();
+    test_faces();
+    test_shared_faces();
     test_sharing();
     test_notices();
     test_numbers();

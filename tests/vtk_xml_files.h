@@ -9,12 +9,20 @@
 #include "read_files.h"
 #include "readers.h"
 
+#ifdef HAVE_LZ4
+#include <lz4.h>
+#endif
+#ifdef HAVE_LZMA
+#include <lzma.h>
+#endif
+
+enum { BY_ZLIB = 1, BY_LZ4, BY_LZMA }; /* of compressed data */
 enum { AS_TEXT, AS_INLINE, AS_APPENDED_RAW, AS_APPENDED_BASE64 };
 
 typedef struct vtk_shape {
-    int encoding, header_bytes, big, is_compressed;
-    size_t block_bytes; /* of compressed data */
-    int line_breaks;    /* within base64 */
+    int encoding, header_bytes, big, is_compressed; /* 0 or what by */
+    size_t block_bytes;                             /* of compressed data */
+    int line_breaks;                                /* within base64 */
 } vtk_shape;
 
 typedef struct vtk_writer {
@@ -39,6 +47,32 @@ static inline void add_base64(bytes *to, const bytes *from, int line_breaks) {
     }
 }
 
+/* What the readers were built with. */
+static inline int can_pack(int by) {
+#ifdef HAVE_LZ4
+    if (by == BY_LZ4) return 1;
+#endif
+#ifdef HAVE_LZMA
+    if (by == BY_LZMA) return 1;
+#endif
+    return by == BY_ZLIB;
+}
+
+static inline bytes packed_block(int by, const unsigned char *data, size_t size) {
+    bytes b = {malloc(2 * size + 1000), 0};
+    (void)by;
+#ifdef HAVE_LZ4
+    if (by == BY_LZ4)
+        b.size = (size_t)LZ4_compress_default((const char *)data, (char *)b.data, (int)size, 2 * (int)size + 1000);
+#endif
+#ifdef HAVE_LZMA
+    if (by == BY_LZMA) lzma_easy_buffer_encode(1, LZMA_CHECK_CRC32, NULL, data, size, b.data, &b.size, 2 * size + 1000);
+#endif
+    if (b.size) return b;
+    bytes_free(&b);
+    return gzipped(data, size, AS_ZLIB);
+}
+
 /* Blocks packed one by one, and the header that tells their sizes. */
 static inline void pack_blocks(const vtk_shape *s, const bytes *data, bytes *header, bytes *packed) {
     size_t count = (data->size + s->block_bytes - 1) / s->block_bytes;
@@ -47,7 +81,7 @@ static inline void pack_blocks(const vtk_shape *s, const bytes *data, bytes *hea
     bytes_put(header, data->size % s->block_bytes, (size_t)s->header_bytes, s->big);
     for (size_t i = 0; i < count; i++) {
         size_t at = i * s->block_bytes, left = data->size - at;
-        bytes block = gzipped(data->data + at, left < s->block_bytes ? left : s->block_bytes, AS_ZLIB);
+        bytes block = packed_block(s->is_compressed, data->data + at, left < s->block_bytes ? left : s->block_bytes);
         bytes_put(header, block.size, (size_t)s->header_bytes, s->big);
         bytes_add(packed, block.data, block.size);
         bytes_free(&block);
@@ -107,11 +141,13 @@ static inline void array_add(vtk_writer *w, int type, const char *name, int comp
 }
 
 static inline void vtk_xml_begin(vtk_writer *w, const vtk_shape *shape, const char *type) {
+    static const char *const compressors[] = {"", " compressor=\"vtkZLibDataCompressor\"",
+                                              " compressor=\"vtkLZ4DataCompressor\"",
+                                              " compressor=\"vtkLZMADataCompressor\""};
     *w = (vtk_writer){.shape = *shape};
     bytes_text(&w->text, "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"%s\" byte_order=\"%s\"%s%s>\n", type,
                shape->header_bytes == 8 ? "1.0" : "0.1", shape->big ? "BigEndian" : "LittleEndian",
-               shape->header_bytes == 8 ? " header_type=\"UInt64\"" : "",
-               shape->is_compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+               shape->header_bytes == 8 ? " header_type=\"UInt64\"" : "", compressors[shape->is_compressed]);
 }
 
 /* The file, to be freed; frees the writer. The appended data begins at a multiple of eight. */

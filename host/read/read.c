@@ -38,7 +38,17 @@ const char *volume_formats(void) {
 #endif
            ", VTK legacy"
 #ifdef HAVE_EXPAT
-           ", VTK XML (.vti .vtr .vts .vtu)"
+           ", VTK XML (.vti .vtr .vts .vtu"
+#ifdef HAVE_ZLIB
+           "; zlib"
+#endif
+#ifdef HAVE_LZ4
+           "; LZ4"
+#endif
+#ifdef HAVE_LZMA
+           "; LZMA"
+#endif
+           ")"
 #endif
            ", Plot3D (grid and solution)";
 }

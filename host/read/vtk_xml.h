@@ -13,6 +13,7 @@
 
 #include "dataset.h"
 #include "mapping.h"
+#include "unpack_block.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -44,6 +45,7 @@ typedef struct xml_document {
     int swapped;         /* the other byte order than this machine's */
     size_t header_bytes; /* 4 or 8: of each number in front of binary data */
     char compressor[40]; /* "" where binary data is not compressed */
+    packing packed;      /* what that makes */
     double origin[3], spacing[3], direction[9];
 
     const unsigned char *appended; /* first byte of the appended data; NULL: none */

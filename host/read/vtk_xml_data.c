@@ -16,7 +16,6 @@
 #include "failure.h"
 #include "layout.h"
 #include "parallel.h"
-#include "unpack.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -147,7 +146,7 @@ int vtk_xml_note_taken(xml_document *doc, const xml_values *v, uint64_t stored) 
 /* All that is unpacked of a file is bounded as one stream of its size would be. */
 static int note_unpacked(xml_document *doc, const xml_values *v) {
     int too_many = __builtin_add_overflow(doc->unpacked, v->bytes, &doc->unpacked);
-    return too_many || unpack_check(v->label, ENCODING_DEFLATE, file_bytes(doc), doc->unpacked) ? are_too_many(v) : 0;
+    return too_many || unpack_block_check(v->label, doc->packed, file_bytes(doc), doc->unpacked) ? are_too_many(v) : 0;
 }
 
 static int open_plain(xml_document *doc, xml_values *v) {
@@ -185,7 +184,7 @@ static int open_blocks(xml_document *doc, xml_values *v) {
     if (packed > source_left(&v->data)) return is_cut(v);
     if (unpacked < v->bytes) return has_too_few(v, unpacked);
     v->more = unpacked > v->bytes;
-    int status = unpack_check(v->label, ENCODING_DEFLATE, (size_t)packed, unpacked);
+    int status = unpack_block_check(v->label, doc->packed, packed, unpacked);
     if (!status) status = note_unpacked(doc, v);
     return status ? status : vtk_xml_note_taken(doc, v, packed);
 }
@@ -235,10 +234,10 @@ int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_
     if (!count) return 0;
     if (array->format == FORMAT_TEXT) return open_text(v);
     v->is_compressed = doc->compressor[0] != 0;
-    if (v->is_compressed && strcmp(doc->compressor, "vtkZLibDataCompressor"))
+    if (v->is_compressed && doc->packed == PACKING_UNKNOWN)
         return fail(STATUS_INPUT,
-                    "%s is compressed by %s; only vtkZLibDataCompressor can be read: write the file with that, or "
-                    "without compression",
+                    "%s is compressed by %s, which is unknown; write the file with vtkZLibDataCompressor, or without "
+                    "compression",
                     v->label, doc->compressor);
     int status = find_data(doc, v);
     if (status) return status;
@@ -294,7 +293,7 @@ static void unpack_blocks(void *shared) {
     unsigned char *packed = malloc(w->v->data.is_base64 ? (size_t)w->v->largest_block + 1 : 1), *to;
     uint64_t size, wanted;
     while (packed && take_block(w, packed, &from, &size, &to, &wanted)) {
-        int status = unpack(w->v->label, ENCODING_DEFLATE, from, (size_t)size, 0, to, wanted, NULL);
+        int status = unpack_block(w->v->label, w->v->doc->packed, from, size, to, wanted);
         if (!status) continue;
         pthread_mutex_lock(&w->lock);
         note_failure(w, status);

@@ -139,6 +139,7 @@ static int begin_file(header_parser *p, const char *name, const char **attribute
     doc->swapped = order && (strcmp(order, "BigEndian") == 0) != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
     doc->header_bytes = header && strcmp(header, "UInt64") == 0 ? 8 : 4;
     snprintf(doc->compressor, sizeof doc->compressor, "%s", compressor ? compressor : "");
+    doc->packed = packing_of(doc->compressor);
     return 0;
 }
 
