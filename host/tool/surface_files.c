@@ -1,9 +1,9 @@
 #include "surface_files.h"
 
-#include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
+#include "notice.h"
 #include "output.h"
 
 #include <stdio.h>
@@ -140,8 +140,8 @@ int surface_files_write(const options *o, const typed_isovalue *iso, const tc_me
                                     .fields = fields,
                                     .field_count = field_count,
                                     .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
-    if (!o->quiet && mesh_write_is_relative(o->output, mesh, &how))
-        message(
+    if (mesh_write_is_relative(o->output, mesh, &how))
+        notice(
             "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %.15g,%.15g,%.15g "
             "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
             mesh->origin[0], mesh->origin[1], mesh->origin[2]);
