@@ -13,17 +13,17 @@
  */
 #include "carry.h"
 #include "commands.h"
+#include "drop.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "faces.h"
 #include "input.h"
 #include "mesh_check.h"
 #include "notice.h"
 #include "progress.h"
 #include "report.h"
+#include "surface_check.h"
 #include "surface_files.h"
 #include "surface_notices.h"
-#include "verify.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -43,8 +43,8 @@ typedef struct job {
 } job;
 
 static int check_usage(const options *o) {
-    static const char *const need_mesh[] = {"--output", "--verify", "--check",  "--normals",
-                                            "--soup",   "--format", "--blocks", "--carry"};
+    static const char *const need_mesh[] = {"--output", "--verify", "--check", "--normals",        "--soup",
+                                            "--format", "--blocks", "--carry", "--drop-degenerate"};
     if (!o->isovalue_count)
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
@@ -192,69 +192,40 @@ static void describe_mesh(const options *o, const tc_mesh_data *m, surface_repor
     s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
 }
 
-static int verify_surface(job *j, const tc_extract_options *how, const tc_mesh_data *m, surface_report *s) {
-    tc_mesh_data reference;
-    char text[256];
-    int status = engine_extract(&j->reference, how, &reference);
-    if (status) return status;
-    s->has_verdict = 1;
-    s->verified = verify_same(m, &reference, text, sizeof text);
-    if (!s->verified) message("isovalue %s: verification failed: %s", s->iso->text, text);
-    return 0;
-}
-
-/* A surface can be no better than its input. Where each misoriented edge lies in a face whose two cells are on one side
- * of it, and nothing else is wrong, *good is set. */
-static int explain_faults(const job *j, const surface_report *s, int *good) {
-    const mesh_topology *t = &s->topology;
-    void (*tell)(const char *format, ...) __attribute__((format(printf, 1, 2)));
-    complex_faces crossed;
-    int status = blocks_check_faces(&j->blocks, &s->iso->value, &crossed);
-    if (status) return status;
-    int is_explained = crossed.folded_faces && crossed.folded_faces == t->misoriented_edges;
-    *good = is_explained && !t->nonmanifold_edges && !t->orphan_vertices && !t->invalid_triangles;
-    tell = *good ? notice : message; /* the second with --quiet too */
-    if (crossed.folded_faces)
-        tell("isovalue %s: cells of the input overlap or have no volume: the surface crosses %llu faces that have "
-             "both cells on the same side%s",
-             s->iso->text, (unsigned long long)crossed.folded_faces,
-             is_explained ? "; these are its misoriented edges" : "");
-    if (crossed.crowded_faces)
-        tell("isovalue %s: cells of the input overlap: the surface crosses %llu faces of three cells or more",
-             s->iso->text, (unsigned long long)crossed.crowded_faces);
-    return 0;
-}
-
-/* Sets *good. */
-static int check_surface(const job *j, const tc_mesh_data *m, surface_report *s, int *good) {
-    const mesh_topology *t = &s->topology;
-    int status = mesh_check(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->topology);
-    if (status) return status;
-    s->has_topology = 1;
-    *good = !t->nonmanifold_edges && !t->misoriented_edges && !t->orphan_vertices && !t->invalid_triangles &&
-            (!t->nonmanifold_vertices || blocks_may_touch(&j->blocks));
-    if ((t->misoriented_edges || t->nonmanifold_edges) && (status = explain_faults(j, s, good))) return status;
-    if (!*good)
-        message("isovalue %s: check failed: %llu non-manifold edges, %llu non-manifold vertices, %llu misoriented "
-                "edges, %llu unused vertices, %llu invalid triangles",
-                s->iso->text, (unsigned long long)t->nonmanifold_edges, (unsigned long long)t->nonmanifold_vertices,
-                (unsigned long long)t->misoriented_edges, (unsigned long long)t->orphan_vertices,
-                (unsigned long long)t->invalid_triangles);
-    return 0;
-}
-
-static int write_surface(job *j, const tc_extract_options *how, const tc_mesh_data *m, surface_report *s) {
+static int write_surface(job *j, const tc_extract_options *how, const tc_mesh_data *m, const shown_surface *shown,
+                         surface_report *s) {
     double begin = now_ms();
     int status = carry_to_mesh(&j->carried, &j->main, how, m);
-    if (!status) status = surface_files_write(j->o, s->iso, m, &j->main, j->carried.fields, j->carried.count, &s->path);
+    if (!status) status = surface_carry(shown, &j->carried);
+    if (!status) status = surface_files_write(j->o, s->iso, shown, j->carried.fields, j->carried.count, &s->path);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
 
+/* The surface that is made of the engine's mesh: told, checked, written. */
+static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_data *mesh, shown_surface *shown,
+                          surface_report *s) {
+    int good = 1, status = j->o->verify ? surface_verify(&j->reference, how, mesh, s) : 0;
+    if (!status && j->o->drop_degenerate) status = surface_drop_degenerate(shown, s);
+    if (status) return status;
+    describe_mesh(j->o, &shown->mesh, s);
+    status = surface_tell_empty(&j->data, &j->field, s);
+    if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, &shown->mesh, s);
+    surface_tell_dropped(shown, s);
+    if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);
+    if (status || (status = progress_status())) return status;
+    if (!good || (s->has_verdict && !s->verified)) {
+        j->failed_count++;
+        return 0;
+    }
+    return j->o->output ? write_surface(j, how, mesh, shown, s) : 0;
+}
+
 static int make_surface(job *j, surface_report *s) {
     tc_mesh_data mesh;
+    shown_surface shown;
     tc_extract_options how;
-    int status, good = 1;
+    int status;
     tc_extract_options_init(&how);
     how.isovalue = s->iso->value;
     how.normals = j->o->normals;
@@ -265,17 +236,10 @@ static int make_surface(job *j, surface_report *s) {
     if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, &how, &mesh);
     if (status) return status;
     add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
-    describe_mesh(j->o, &mesh, s);
-    if ((status = surface_tell_empty(&j->data, &j->field, s))) return status;
-    if ((status = surface_tell_degenerate(&j->data, &j->field, &mesh, s))) return status;
-    if (j->o->verify && (status = verify_surface(j, &how, &mesh, s))) return status;
-    if (j->o->check && (status = check_surface(j, &mesh, s, &good))) return status;
-    if ((status = progress_status())) return status;
-    if (!good || (s->has_verdict && !s->verified)) {
-        j->failed_count++;
-        return 0;
-    }
-    return j->o->output ? write_surface(j, &how, &mesh, s) : 0;
+    surface_show(&j->main, &mesh, &shown);
+    status = finish_surface(j, &how, &mesh, &shown, s);
+    surface_release(&shown);
+    return status;
 }
 
 static int make_surfaces(job *j) {

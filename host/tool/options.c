@@ -90,6 +90,9 @@ static const option table[] = {
      "write coordinates relative to this point of the input's space (default: the\n"
      "input's own; STL, which holds float32 alone, of data far from zero relative\n"
      "to a point near it, which is told)"},
+    {"--drop-degenerate", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(drop_degenerate), NULL,
+     "leave out triangles of zero area, as samples that equal the isovalue make:\n"
+     "their edges without length are contracted, what was closed stays closed"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
      "classify only: count vertices, triangles and active cells, make no mesh"},
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,

@@ -58,7 +58,7 @@ typedef struct options {
     double origin_at[3]; /* where given: coordinates of the output are relative to it */
 
     uint64_t given; /* bit n: row n of the table stood on the command line */
-    int verify, check, json, count, soup, normals, quiet, help;
+    int verify, check, json, count, soup, normals, drop_degenerate, quiet, help;
 } options;
 
 /* Parses what follows the command's name into *o, to be released. Returns 0 or STATUS_USAGE with its text. */

@@ -136,6 +136,7 @@ static json_t *surface_json(const surface_report *s) {
     json_object_set_new(object, "triangles", count_json(s->triangle_count));
     json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
     if (s->has_mesh) add_mesh(object, s);
+    if (s->has_dropped) json_object_set_new(object, "dropped_triangles", count_json(s->dropped_count));
     json_object_set_new(timings, "classify", ms_json(s->classify_ms));
     if (s->has_mesh) {
         json_object_set_new(timings, "emit", ms_json(s->emit_ms));
@@ -207,10 +208,12 @@ static void surface_text(const surface_report *s, const char *cells) {
     printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles", s->vertex_count, s->triangle_count);
     if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
     printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
+    if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
     if (s->has_mesh) {
         bounds_text(s);
         if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0)
-            printf("  origin      %.15g %.15g %.15g\n", s->origin[0], s->origin[1], s->origin[2]);
+            printf("  origin      %s %s %s\n", report_number(s->origin[0]).text, report_number(s->origin[1]).text,
+                   report_number(s->origin[2]).text);
         printf("  hash        %016" PRIx64 "\n", s->hash);
         printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
                s->readback_ms);

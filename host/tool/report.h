@@ -24,6 +24,8 @@ typedef struct surface_report {
     mesh_summary summary; /* bounds in world space. This and the hash: not where no report is printed */
     uint64_t hash;
     double origin[3]; /* that positions in memory, and so hash and volume of an open surface, are relative to */
+    int has_dropped;
+    uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
     int has_topology;
     mesh_topology topology;
     int has_verdict;

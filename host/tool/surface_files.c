@@ -5,6 +5,7 @@
 #include "input.h"
 #include "notice.h"
 #include "output.h"
+#include "report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,15 +102,15 @@ static int write_part(const options *o, const char *path, const tc_mesh_data *me
     return status;
 }
 
-static int write_parts(const options *o, const typed_isovalue *iso, const tc_mesh_data *mesh, const engine *made_by,
+static int write_parts(const options *o, const typed_isovalue *iso, const shown_surface *shown,
                        const mesh_write_options *how) {
     uint64_t vertex = 0, triangle = 0;
     int status = 0;
-    for (int n = 0; n < made_by->block_count && !status; n++) {
-        const mesh_part *size = &made_by->parts[n];
+    for (int n = 0; n < shown->part_count && !status; n++) {
+        const mesh_part *size = &shown->parts[n];
         mesh_write_options own = *how;
         char *path = file_name(o, iso, n);
-        status = path ? write_part(o, path, mesh, vertex, triangle, *size, &own) : STATUS_FAILED;
+        status = path ? write_part(o, path, &shown->mesh, vertex, triangle, *size, &own) : STATUS_FAILED;
         free(path);
         vertex += size->vertex_count;
         triangle += size->triangle_count;
@@ -133,19 +134,19 @@ static char *describe_files(const options *o, const typed_isovalue *iso, int blo
     return text;
 }
 
-int surface_files_write(const options *o, const typed_isovalue *iso, const tc_mesh_data *mesh, const engine *made_by,
+int surface_files_write(const options *o, const typed_isovalue *iso, const shown_surface *shown,
                         const mesh_field *fields, int field_count, char **written) {
     const mesh_write_options how = {.format = o->format,
                                     .soup = o->soup,
                                     .fields = fields,
                                     .field_count = field_count,
                                     .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
-    if (mesh_write_is_relative(o->output, mesh, &how))
-        notice(
-            "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %.15g,%.15g,%.15g "
-            "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
-            mesh->origin[0], mesh->origin[1], mesh->origin[2]);
-    *written = o->separate_blocks ? describe_files(o, iso, made_by->block_count) : file_name(o, iso, ALL_BLOCKS);
+    const double *origin = shown->mesh.origin;
+    if (mesh_write_is_relative(o->output, &shown->mesh, &how))
+        notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %s,%s,%s "
+               "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
+               report_number(origin[0]).text, report_number(origin[1]).text, report_number(origin[2]).text);
+    *written = o->separate_blocks ? describe_files(o, iso, shown->part_count) : file_name(o, iso, ALL_BLOCKS);
     if (!*written) return STATUS_FAILED;
-    return o->separate_blocks ? write_parts(o, iso, mesh, made_by, &how) : mesh_write(*written, mesh, &how);
+    return o->separate_blocks ? write_parts(o, iso, shown, &how) : mesh_write(*written, &shown->mesh, &how);
 }

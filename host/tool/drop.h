@@ -1,0 +1,37 @@
+/* drop.h - --drop-degenerate: a surface without its triangles of zero area (mesh_collapse.h), with all that belongs to
+ * it */
+#ifndef DROP_H
+#define DROP_H
+
+#include "carry.h"
+#include "engine.h"
+#include "mesh_collapse.h"
+#include "report.h"
+
+/* A surface as it is shown and written: that of the engine, or what is left of it. */
+typedef struct shown_surface {
+    tc_mesh_data mesh;
+    const mesh_part *parts; /* what each block gave to it */
+    int part_count;
+
+    collapsed_mesh collapsed; /* these where triangles were dropped */
+    float *positions, *normals;
+    mesh_part *own_parts;
+} shown_surface;
+
+/* The engine's surface, as it is; to be released. */
+void surface_show(const engine *e, const tc_mesh_data *mesh, shown_surface *out);
+
+/* Drops the triangles; s is told how many. Returns 0 or STATUS_FAILED. */
+int surface_drop_degenerate(shown_surface *shown, surface_report *s);
+
+/* What dropping has left undone, as notices. s has the summary of what is left. */
+void surface_tell_dropped(const shown_surface *shown, const surface_report *s);
+
+/* The fields that were carried to the engine's surface, brought to the one that is shown. Returns 0 or STATUS_FAILED.
+ */
+int surface_carry(const shown_surface *shown, carried *fields);
+
+void surface_release(shown_surface *shown);
+
+#endif
