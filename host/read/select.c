@@ -108,6 +108,9 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     if (!count)
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
+    else if (!out->name && count == 1 && !names[0][0])
+        status = fail(STATUS_USAGE, "%s: no field is named '%s': its only one has no name; leave out %.*s", path,
+                      wanted, (int)strcspn(option, " "), option);
     else if (!out->name)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);

@@ -6,8 +6,10 @@ interrupted, killed, out of space. What may be left is what was there before; af
 name tells what it is. Needs no OpenCL device: the reference engine makes what is written. Standard library only.
 """
 import errno
+import fcntl
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -74,12 +76,38 @@ class Struck(EndCase):
             self.assertIn(self.written(name), self.files())
 
     def test_signals_cancel(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT, signal.SIGXCPU, signal.SIGHUP):
             def check(arguments, _):
                 self.struck(1, arguments, "cancelled; no file was left unfinished",
                             STRIKE_WRITE=f"1 signal {number.value}")
                 return []
             self.each(check)
+
+    def test_signals_cancel_with_kernels(self):
+        """Compilers of kernels put handlers of their own before others'."""
+        if not test_cli.HAS_DEVICE:
+            self.skipTest("no OpenCL device")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT, signal.SIGXCPU, signal.SIGHUP):
+            before = self.files()
+            self.struck(1, ["extract", self.volume, "--iso", "127.5", "-o", self.path("out.ply")],
+                        "cancelled; no file was left unfinished", STRIKE_WRITE=f"1 signal {number.value}")
+            self.assertEqual(self.files(), before)
+
+    def test_second_signal_ends_at_once(self):
+        """Nobody reads the pipe, so the run cannot go on to where it would see the first."""
+        os.mkfifo(self.path("pipe.obj"))
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT):
+            process = subprocess.Popen([test_cli.TOOL, *self.extract, "-o", self.path("pipe.obj")],
+                                       stderr=subprocess.PIPE, preexec_fn=lambda: resource.setrlimit(
+                                           resource.RLIMIT_CORE, (0, 0)))
+            with self.assertRaises(subprocess.TimeoutExpired):
+                process.wait(0.5)
+            process.send_signal(number)
+            with self.assertRaises(subprocess.TimeoutExpired):
+                process.wait(0.5)
+            process.send_signal(number)
+            self.assertEqual(process.wait(100), -number)
+            process.stderr.close()
 
     def test_kill(self):
         def check(arguments, name):
@@ -90,6 +118,37 @@ class Struck(EndCase):
             self.assertRegex(left[0], "^" + re.escape(f".{name}.") + r"[0-9a-f]{6}\.tmp$")
             return left
         self.each(check)
+
+    def test_what_was_killed_goes(self):
+        """The next run of the same name removes what a killed one left, and nothing else."""
+        for arguments, name in self.outputs():
+            written = self.written(name)
+            path = self.path(name)
+            self.struck(-signal.SIGKILL, [*arguments, path], STRIKE_WRITE=f"1 signal {signal.SIGKILL.value}")
+            [left] = [file for file in self.files() if file.endswith(".tmp")]
+            others = [f".{written}.12345.tmp", f".{written}.12345g.tmp", f".x{written}.123456.tmp",
+                      f"{written}.123456.tmp", f".{written}.abcdef.tmp.old"]
+            for other in others:
+                self.write_file(other)
+            locked = self.write_file(f".{written}.abcdef.tmp")  # of a run that goes on
+            os.symlink("a.nrrd", self.path(f".{written}.fedcba.tmp"))
+            with open(locked, "rb") as held:
+                fcntl.flock(held, fcntl.LOCK_EX)
+                self.expect(0, *arguments, path)
+                self.assertNotIn(left, self.files())
+                self.assertEqual([other for other in others if other not in self.files()], [])
+                self.assertIn(os.path.basename(locked), self.files())
+            self.expect(0, *arguments, path)
+            self.assertNotIn(os.path.basename(locked), self.files())
+            self.assertIn("a.nrrd", self.files())
+            for file in self.files():
+                if file != "a.nrrd":
+                    os.unlink(self.path(file))
+
+    def write_file(self, name):
+        with open(self.path(name), "wb") as file:
+            file.write(OLD)
+        return self.path(name)
 
     def test_full_disk(self):
         for number, says in ((errno.ENOSPC, "No space left.*free space"), (errno.EDQUOT, "quota"),
@@ -113,6 +172,43 @@ class Places(EndCase):
         for arguments, name in self.outputs():
             for place, says in (("no/folder", "create the folder"), ("a.nrrd", "Not a directory"), ("/proc", ".")):
                 self.refuses(1, *arguments, os.path.join(self.path(place), name), says=says)
+
+    def test_folders_are_looked_at_first(self):
+        """A long extraction, and an input that cannot be read: the folder is told of before either."""
+        for arguments, name in self.outputs():
+            if "generate" in arguments:
+                continue
+            words = [word.replace("a.nrrd", "broken.nrrd") for word in arguments]
+            with open(self.path("broken.nrrd"), "w") as file:
+                file.write("no volume")
+            self.refuses(1, *words, os.path.join(self.path("no/folder"), name), says="create the folder")
+            self.refuses(4, *words, self.path(name), says="broken.nrrd")
+
+    def test_links_are_followed(self):
+        os.mkdir(self.path("there"))
+        for arguments, name in self.outputs():
+            written = self.written(name)
+            for target in (os.path.join("there", written), os.path.join(self.path("there"), written), "second"):
+                os.symlink(target, self.path(written))
+                os.symlink(os.path.join("there", written), self.path("second"))
+                for _ in range(2):  # to where nothing is yet; to a file
+                    self.expect(0, *arguments, self.path(name))
+                    self.assertTrue(os.path.islink(self.path(written)))
+                    self.assertEqual(os.listdir(self.path("there")), [written])
+                    self.assertGreater(os.path.getsize(self.path(written)), 0)
+                os.unlink(os.path.join(self.path("there"), written))
+                os.unlink(self.path(written))
+                os.unlink(self.path("second"))
+            os.symlink(os.path.join("nowhere", written), self.path(written))
+            self.refuses_link(arguments, name, "create the folder")
+            os.unlink(self.path(written))
+            os.symlink(written, self.path(written))
+            self.refuses_link(arguments, name, "symbolic links")
+            os.unlink(self.path(written))
+
+    def refuses_link(self, arguments, name, says):
+        self.expect(1, *arguments, self.path(name), says=says)
+        self.assertTrue(os.path.islink(self.path(self.written(name))))
 
     def test_folder_of_another(self):
         if os.getuid():
