@@ -3,6 +3,7 @@
 #include "context.h"
 #include "failure.h"
 #include "float_environment.h"
+#include "pocl_cache.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -52,6 +53,15 @@ static void devices_append(device_list *list, const platform_list *platforms, cl
         list->devices[list->count++] = (device_choice){platforms->platforms[p], devices[d], (int)p, (int)d};
 }
 
+static bool has_pocl(const platform_list *list) {
+    for (cl_uint p = 0; p < list->count; p++) {
+        char name[128] = "";
+        cl_int error = cl->GetPlatformInfo(list->platforms[p], CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
+        if (!error && strstr(name, "Portable Computing Language")) return true;
+    }
+    return false;
+}
+
 static tc_status no_device(const platform_list *platforms, const device_list *list) {
     if (list->error)
         return (tc_status)fail(
@@ -59,6 +69,13 @@ static tc_status no_device(const platform_list *platforms, const device_list *li
             "an OpenCL platform does not tell its devices (%d), and none of the %u installed has one; "
             "the reference engine needs none",
             (int)list->error, platforms->count);
+    char folder[512];
+    if (has_pocl(platforms) && pocl_cache_is_locked(folder, sizeof folder))
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "PoCL, the OpenCL of the CPU, is installed and has no device, as it cannot write its "
+                               "cache folder %s: set POCL_CACHE_DIR to a folder that this user may write, or HOME; the "
+                               "reference engine needs none",
+                               folder);
     return (tc_status)fail(TC_ERROR_DEVICE,
                            "the %u OpenCL platform(s) installed have no device (for the CPU on "
                            "Debian: apt install pocl-opencl-icd); the reference engine needs none",

@@ -6,6 +6,7 @@
 #include "context.h"
 
 #include "failure.h"
+#include "pocl_cache.h"
 #include "grid.h"
 #include "kernel_sources.h"
 #include "program_cache.h"
@@ -62,6 +63,12 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
         !cl->GetProgramBuildInfo(p->program, context->device, CL_PROGRAM_BUILD_LOG, bytes, whole, NULL))
         snprintf(log, sizeof log, "%s", whole);
     free(whole);
+    char folder[512];
+    if (strstr(context->info.platform, "Portable Computing Language") && pocl_cache_is_locked(folder, sizeof folder))
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "%s does not build the kernels (%d), as PoCL cannot write its cache folder %s: set "
+                               "POCL_CACHE_DIR to a folder that this user may write, or HOME",
+                               context->info.name, (int)error, folder);
     return (tc_status)fail(TC_ERROR_DEVICE, "%s does not build the kernels (%d) with %s: %s", context->info.name,
                            (int)error, p->options, log);
 }
