@@ -210,6 +210,11 @@ class Memory(Failures):
         self.fail_requests("info", "@grid.vtk")
         self.fail_requests("info", "@grid.vtk", "--json")
         self.fail_requests("extract", "@a.nrrd", "--iso", "80", "--engine", "reference", "--check", "--json")
+        self.fail_requests("extract", "@a.nrrd", "--iso", "999", "--nodata", "-7", "--engine", "reference", "--json")
+        self.fail_requests("extract", "@a.nrrd", "--iso", "91", "--engine", "reference", "--drop-degenerate", "--normals",
+                           "-o", "s.ply")
+        self.fail_requests("extract", "@grid.vts", "--iso", "91", "--engine", "reference", "--drop-degenerate", "--carry",
+                           "bump", "-o", "s.vtp")
         self.fail_requests("devices", "--json")
         self.fail_requests("generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "s.nrrd")
         self.fail_requests("extract", "@grid.vts", "--iso", "80", "--engine", "reference", "--carry", "bump", "-o",
