@@ -175,14 +175,13 @@ static uint64_t way_out(const job *j, uint64_t edge) {
     return is_at_end ? third : end;
 }
 
-/* Joins the corners of the edge to those of the kept triangle behind it. */
+/* Joins the corner where the edge begins to that of the kept triangle behind it. The way back from there joins those
+ * where it ends. */
 static void join_over(const job *j, uint64_t edge) {
     uint64_t twin = twin_of(j, edge);
     for (uint64_t n = 0; n < j->near_count && twin != NONE && j->is_dropped[twin / 3]; n++)
         twin = twin_of(j, way_out(j, twin));
-    if (twin == NONE || j->is_dropped[twin / 3]) return;
-    join(j, edge, next_corner(twin));
-    join(j, next_corner(edge), twin);
+    if (twin != NONE && !j->is_dropped[twin / 3]) join(j, edge, next_corner(twin));
 }
 
 static void join_corners(job *j) {

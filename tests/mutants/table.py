@@ -88,6 +88,8 @@ TESTS = {
 
     "test_cli_grids, carry": test("test_cli_grids.py", "*test_carry*", ("reference",)),
     "test_cli": test("test_cli.py", "", ("reference",)),
+    "test_results": test("test_results.py", "", ("reference",)),
+    "test_nodata": test("test_nodata"),
 }
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]

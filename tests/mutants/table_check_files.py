@@ -2,6 +2,7 @@
 from mutant import group
 
 LIMITS = {"tests": ("test_limits",)}
+RESULTS = {"tests": ("test_results",)}
 
 MUTANTS = [
     *group("host/check/mesh_check.c",
@@ -43,6 +44,15 @@ MUTANTS = [
            ("count / SUMMARY_BLOCK + (count % SUMMARY_BLOCK > 0)", "count / SUMMARY_BLOCK", "the last block is dropped"),
            ("XXH64_reset(&state, 0)", "XXH64_reset(&state, 1)", "hash: another seed"),
            ("vertex_count * 3 * sizeof(float)", "vertex_count * 2 * sizeof(float)", "hash: not of all positions")),
+    *group("host/check/mesh_collapse.c",
+           ("return a == b || b == c || c == a;", "return a == b || b == c;", "an edge of triangles is not looked at",
+            RESULTS),
+           ("return is_at_end ? third : end;", "return is_at_end ? end : third;",
+            "the way through dropped triangles leads astray", RESULTS),
+           ("return !j->is_dropped[corner / 3] && j->joined[corner] == corner;", "return j->joined[corner] == corner;",
+            "dropped triangles keep vertices", RESULTS),
+           ("crowded += edges[n] == edges[n - 1]", "crowded += edges[n] != edges[n - 1]",
+            "crowded edges: those that are not", RESULTS)),
     *group("host/check/complex_check.c",
            ("end - first == 2 && faces[first].next == faces[first + 1].next", "end - first == 2 && faces[first].next != faces[first + 1].next",
             "folded faces: those that are not"),
@@ -169,6 +179,9 @@ MUTANTS = [
            ("f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));",
             "f->appended_bytes += LENGTH_BYTES + array_bytes(array);", "offsets of arrays: no padding"),
            ('*s == \'<\' ? "&lt;"', '*s == \'<\' ? "<"', "names: < is not escaped"),
+           ("if (strcmp(name, *own) == 0) return 1;", "", "names: the writer's own are not taken", RESULTS),
+           ("if (strcmp(name, f->field_names[n]) == 0) return 1;", "if (0) return 1;",
+            "names: those of other fields are not taken", RESULTS),
            ("uint64_t bytes = array_bytes(a);\n    output_bytes(o, &bytes, sizeof bytes);",
             "uint64_t bytes = array_bytes(a);\n    output_bytes(o, &(uint64_t){bytes + 1}, sizeof bytes);",
             "an array's length: one too many")),
