@@ -17,7 +17,9 @@ enum {
     ANY_COORDINATES = 4,
     HAS_BLANKED = 8,
     HAS_BLANKED_CELLS = 16,
-    RAW_TETRAHEDRA = 32
+    RAW_TETRAHEDRA = 32,
+    HAS_FACES = 64,
+    SKIP_UNSUPPORTED = 128
 };
 
 /* Rising by small steps, or of any value but the last, which tells how large the connectivity is. */
@@ -93,6 +95,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     cells.blanked_points = flags & HAS_BLANKED ? blanked : NULL;
     cells.blanked_cells = flags & HAS_BLANKED_CELLS ? blanked_cells : NULL;
 
+    int64_t *starts = NULL, *face_offsets = NULL, *face_links = NULL;
+    if (flags & HAS_FACES) {
+        starts = take_offsets(&in, cell_count, flags & WIDE_OFFSETS);
+        uint64_t face_count = starts[cell_count] > 0 ? (uint64_t)starts[cell_count] : 0;
+        face_offsets = take_offsets(&in, face_count, flags & WIDE_OFFSETS);
+        face_links = take_links(&in, face_offsets[face_count], point_count, flags & WIDE_LINKS);
+    }
+    cells.cell_faces = starts;
+    cells.face_offsets = face_offsets;
+    cells.face_connectivity = face_links;
+    cells.skip_unsupported = flags & SKIP_UNSUPPORTED;
+
     tc_complex complex = {.struct_size = sizeof complex};
     tc_status status = tc_tetrahedralize(&cells, &complex);
     surface_check_status(status);
@@ -106,6 +120,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         extract(&in, point_count, points, complex.tetrahedron_count, complex.tetrahedra);
     }
     tc_complex_release(&complex);
+    free(face_links);
+    free(face_offsets);
+    free(starts);
     free(points);
     free(links);
     free(offsets);

@@ -75,10 +75,22 @@ static void check_cells(const dataset_block *b) {
     }
 }
 
+static void check_faces(const dataset_block *b) {
+    if (!b->cell_faces) return;
+    CHECK(b->cell_faces[0] == 0 && b->face_offsets && b->face_offsets[0] == 0);
+    for (int64_t c = 0; c < b->cell_count; c++) CHECK(b->cell_faces[c + 1] >= b->cell_faces[c]);
+    for (int64_t f = 0; f < b->cell_faces[b->cell_count]; f++) {
+        CHECK(b->face_offsets[f + 1] >= b->face_offsets[f]);
+        for (int64_t n = b->face_offsets[f]; n < b->face_offsets[f + 1]; n++)
+            CHECK(b->face_points[n] >= 0 && b->face_points[n] < b->point_count);
+    }
+}
+
 static void check_geometry(const dataset_block *b) {
     CHECK(b->point_count >= 0 && b->cell_count >= 0);
     if (b->kind == GRID_UNSTRUCTURED) {
         check_cells(b);
+        check_faces(b);
     } else {
         int64_t points = 1, cubes = 1, cells = 1; /* of a flat grid, VTK's files count the cells of fewer dimensions */
         for (int a = 0; a < 3; a++) {

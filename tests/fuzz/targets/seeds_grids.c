@@ -25,19 +25,42 @@ static void add_grid(int flags) {
     bytes_free(&b);
 }
 
+/* Two polyhedra, of a tetrahedron's faces and of a cube's, behind the others. */
+static void add_faces(bytes *b, int flags, int cells, int points) {
+    static const unsigned char faces[] = {0, 1, 2, 0, 1, 3, 3, 1, 2, 0, 2, 3, 0, 1, 3, 2, 4, 5,
+                                          7, 6, 0, 1, 5, 4, 1, 3, 7, 5, 3, 2, 6, 7, 2, 0, 4, 6};
+    uint64_t at = 0;
+    for (int n = 0; n < cells; n++) {
+        uint64_t count = n == cells - 2 ? 4 : n == cells - 1 ? 6 : 0;
+        at += count;
+        bytes_put(b, flags & 1 ? at : count, flags & 1 ? 8 : 1, 0);
+    }
+    if (flags & 1) bytes_put(b, 0, 8, 0);
+    at = 0;
+    for (int n = 0; n < 10; n++) {
+        uint64_t count = n < 4 ? 3 : 4;
+        at += count;
+        bytes_put(b, flags & 1 ? at : count, flags & 1 ? 8 : 1, 0);
+    }
+    if (flags & 1) bytes_put(b, 0, 8, 0);
+    for (size_t n = 0; n < sizeof faces; n++) bytes_put(b, (uint64_t)(faces[n] * 5 % points), flags & 2 ? 8 : 1, 0);
+}
+
 static void add_cells(int flags) {
-    static const unsigned char types[] = {10, 12, 11, 13, 14, 24, 25, 5}, counts[] = {4, 8, 8, 6, 5, 10, 20, 3};
-    enum { CELLS = 8, POINTS = 40 };
+    static const unsigned char types[] = {10, 12, 11, 13, 14, 24, 25, 5, 15, 16, 12, 42, 42},
+                               counts[] = {4, 8, 8, 6, 5, 10, 20, 3, 10, 12, 20, 0, 0};
+    enum { ALL_CELLS = sizeof types, POINTS = 40 };
+    const int cells = flags & 64 ? ALL_CELLS : 8;
     bytes b = {0};
     char name[32];
     uint64_t links = 0;
     bytes_put(&b, (uint64_t)flags, 1, 0);
     bytes_put(&b, POINTS, 1, 0);
-    bytes_put(&b, CELLS, 1, 0);
-    bytes_add(&b, types, CELLS);
+    bytes_put(&b, (uint64_t)cells, 1, 0);
+    bytes_add(&b, types, (size_t)cells);
     for (int n = 0; n < POINTS && flags & 8; n++) bytes_put(&b, n == 33, 1, 0);
-    for (int n = 0; n < CELLS && flags & 16; n++) bytes_put(&b, n == 3, 1, 0);
-    for (int n = 0; n < CELLS; n++) {
+    for (int n = 0; n < cells && flags & 16; n++) bytes_put(&b, n == 3, 1, 0);
+    for (int n = 0; n < cells; n++) {
         links += counts[n];
         bytes_put(&b, flags & 1 ? links : counts[n], flags & 1 ? 8 : 1, 0);
     }
@@ -49,7 +72,8 @@ static void add_cells(int flags) {
         else
             bytes_put(&b, (uint64_t)(n * 29 % 97), 1, 0);
     }
-    for (uint64_t n = 0; n < 4 * CELLS && flags & 32; n++) bytes_put(&b, n * 11 % POINTS, 4, 0);
+    if (flags & 64) add_faces(&b, flags, cells, POINTS);
+    for (int n = 0; n < 4 * cells && flags & 32; n++) bytes_put(&b, (uint64_t)(n * 11 % POINTS), 4, 0);
     bytes_put(&b, TC_U8, 1, 0);
     bytes_put(&b, 0, 2, 0);
     bytes_value(&b, TC_F64, 50, 0);
@@ -60,8 +84,8 @@ static void add_cells(int flags) {
 }
 
 void seeds_grids(void) {
-    for (int flags = 0; flags < 64; flags++) {
-        add_grid(flags);
-        add_cells(flags);
+    for (int flags = 0; flags < 256; flags++) {
+        if (flags < 64) add_grid(flags);
+        if (flags < 128 || flags % 64 == 0) add_cells(flags);
     }
 }

@@ -144,9 +144,57 @@ static void add_legacy(enum grid_kind kind, int binary, int version) {
     bytes_free(&file);
 }
 
+/* A tetrahedron as a polyhedron beside one that is none, in both layouts of each format; columns without blanks. */
+static void add_polyhedra(void) {
+    static const double links[] = {0, 1, 2, 3, 0, 1, 2, 3}, cell_ends[] = {4, 8}, kinds[] = {10, 42},
+                        stream[] = {4, 3, 0, 1, 2, 3, 0, 1, 3, 3, 3, 1, 2, 3, 0, 2, 3}, stream_ends[] = {-1, 17},
+                        face_ends[] = {3, 6, 9, 12}, faces[] = {0, 1, 2, 3}, first_faces[] = {0, 4},
+                        face_links[] = {0, 1, 2, 0, 1, 3, 3, 1, 2, 0, 2, 3},
+                        points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int n = 0; n < 4; n++) {
+        const vtk_shape shape = {.encoding = n & 1 ? AS_INLINE : AS_TEXT, .header_bytes = 4};
+        char name[32];
+        vtk_writer w;
+        vtk_xml_begin(&w, &shape, "UnstructuredGrid");
+        bytes_text(&w.text, "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"2\"><Points>");
+        array_add(&w, TC_F32, "Points", 3, points, 12);
+        bytes_text(&w.text, "</Points><Cells>");
+        array_add(&w, STORED_I64, "connectivity", 1, links, 8);
+        array_add(&w, STORED_I64, "offsets", 1, cell_ends, 2);
+        array_add(&w, TC_U8, "types", 1, kinds, 2);
+        if (n & 2) {
+            array_add(&w, STORED_I64, "faces", 1, stream, 17);
+            array_add(&w, STORED_I64, "faceoffsets", 1, stream_ends, 2);
+        } else {
+            array_add(&w, TC_I32, "face_connectivity", 1, face_links, 12);
+            array_add(&w, TC_I32, "face_offsets", 1, face_ends, 4);
+            array_add(&w, TC_I32, "polyhedron_to_faces", 1, faces, 4);
+            array_add(&w, TC_I32, "polyhedron_offsets", 1, first_faces, 2);
+        }
+        bytes_text(&w.text, "</Cells></Piece></UnstructuredGrid>");
+        bytes file = vtk_xml_finish(&w);
+        snprintf(name, sizeof name, "polyhedra-%d", n);
+        seed_file("vtk_xml", name, file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+    }
+    for (int n = 0; n < 2; n++) {
+        bytes file = {0};
+        bytes_text(&file,
+                   "# vtk DataFile Version %s\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+                   "0-0 0 1.E+00-0.D+00-.0E+00 0 1+0 0 0 1\n",
+                   n ? "5.1" : "3.0");
+        bytes_text(&file,
+                   n ? "CELLS 3 21\nOFFSETS int\n0 4 21\nCONNECTIVITY int\n0 1 2 3\n" : "CELLS 2 23\n4 0 1 2 3\n17 ");
+        bytes_text(&file, "4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 3\nCELL_TYPES 2\n10 42\nCELL_DATA 2\nSCALARS a int1\n1-2\n");
+        seed_file("vtk_legacy", n ? "polyhedra-5" : "polyhedra-3", file.data, file.size, NULL, 0, plain);
+        bytes_free(&file);
+    }
+}
+
 void seeds_vtk(void) {
+    add_polyhedra();
     for (int kind = GRID_UNIFORM; kind <= GRID_UNSTRUCTURED; kind++) {
-        for (int n = 0; n < 32; n++) {
+        for (int n = 0; n < 64; n++) {
             const vtk_shape shape = {.encoding = n & 3,
                                      .header_bytes = n & 4 ? 8 : 4,
                                      .big = n >> 3 & 1,
