@@ -20,10 +20,11 @@ DATA = os.environ.get("TETRACUBES_DATA")
 BLOCK_KEYS = {"kind", "points", "cells", "dims", "first", "cell_types", "bounds", "blanked_points", "blanked_cells",
               "fields"}
 CONVERTED_KEYS = {"notices", "input", "output", "blocks", "points", "cells", "tetrahedra", "flat_cells", "curved_cells",
-                  "blanked_cells", "inverted_cells", "folded_cells", "folded_faces", "fields", "total_ms"}
+                  "blanked_cells", "inverted_cells", "folded_cells", "folded_faces", "unsupported_cells",
+                  "surplus_cells", "fields", "total_ms"}
 VTK_TYPES = {"u8": "UInt8", "i16": "Int16", "i32": "Int32", "f32": "Float32", "f64": "Float64"}
 HEXAHEDRON_ORDER = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-HEXAHEDRON, TETRAHEDRON, TRIANGLE, WEDGE = 12, 10, 5, 13
+HEXAHEDRON, TETRAHEDRON, TRIANGLE, WEDGE, POLYHEDRON = 12, 10, 5, 13, 42
 
 
 def lattice(dims, first=(0, 0, 0)):
@@ -62,12 +63,20 @@ def vtk_file(kind, body):
             f"<{kind}{body}</{kind}>\n</VTKFile>\n")
 
 
-def vtu_text(points, cells, types, point_fields=(), cell_fields=()):
+def vtu_text(points, cells, types, point_fields=(), cell_fields=(), faces=()):
+    """faces: of each cell that is a polyhedron its faces, else None."""
     ends = list(itertools.accumulate(map(len, cells)))
     flat = list(itertools.chain(*points))
     joined = list(itertools.chain(*cells))
     cell_arrays = (data_array("connectivity", "i32", joined) + data_array("offsets", "i32", ends)
                    + data_array("types", "u8", types))
+    if faces:
+        streams = [[len(all_of)] + [n for face in all_of for n in [len(face), *face]] if all_of else []
+                   for all_of in faces]
+        stream_ends = itertools.accumulate(map(len, streams))
+        cell_arrays += data_array("faces", "i32", list(itertools.chain(*streams)))
+        cell_arrays += data_array("faceoffsets", "i32", [end if all_of else -1
+                                                         for all_of, end in zip(faces, stream_ends)])
     return vtk_file("UnstructuredGrid", f'><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
                     f'{attributes("PointData", point_fields)}{attributes("CellData", cell_fields)}'
                     f'<Points>{data_array("Points", "f32", flat, 3)}</Points><Cells>{cell_arrays}</Cells></Piece>')
@@ -611,6 +620,62 @@ class Unstructured(GridCase):
                                             [("f", "f64", [1.0, 0.0, 0.0, 0.0, math.nan])]))
         _, surface = self.surface(grid, "--iso", "0.5")
         self.assertEqual((surface["triangles"], surface["misoriented_edges"]), (1, 0))
+
+    def test_prisms_and_polyhedra(self):
+        """Columns of a pentagonal and a hexagonal prism and a polyhedron, side by side, cut in the middle."""
+        base = [(0, 0), (2, 0), (3, 1), (2, 2), (0, 2), (5, 1), (6, 0), (6, 3), (3, 3), (8, 0), (8, 2)]
+        polygons = [[0, 1, 2, 3, 4], [2, 5, 6, 1], [3, 2, 5, 7, 8], [6, 9, 10, 7, 5]]
+        polygons[1] = [1, 6, 5, 2]
+        area = sum(base[a][0] * base[b][1] - base[a][1] * base[b][0]
+                   for polygon in polygons for a, b in zip(polygon, polygon[1:] + polygon[:1])) / 2
+        points = [(x, y, z) for z in (0, 1) for x, y in base]
+        up = len(base)
+        cells = [polygon + [n + up for n in polygon] for polygon in polygons]
+        faces = [None] * 4
+        for n, flip in ((2, 1), (3, -1)):
+            sides = [[a, b, b + up, a + up] for a, b in zip(polygons[n], polygons[n][1:] + polygons[n][:1])]
+            faces[n] = [polygons[n][::flip], [m + up for m in polygons[n]]] + sides
+        grid = self.write("a.vtu", vtu_text(points, cells, [15, HEXAHEDRON, POLYHEDRON, POLYHEDRON],
+                                            [("z", "f64", [float(p[2]) for p in points])],
+                                            [("c", "f32", [5.0] * 4)], faces))
+        _, surface = self.surface(grid, "--field", "z", "--iso", "0.5")
+        self.assertAlmostEqual(surface["area"], area, places=5)
+        self.assertEqual((surface["components"], surface["euler_characteristic"], surface["nonmanifold_edges"],
+                          surface["misoriented_edges"]), (1, 1, 0, 0))
+        self.assertEqual(self.report("info", grid, "--field", "c")["range"], [5, 5])
+        self.assertEqual(self.report("info", grid)["blocks"][0]["cell_types"],
+                         {"pentagonal prism": 1, "hexahedron": 1, "polyhedron": 2})
+        report = self.report("tetrahedralize", grid, "--field", "z", "-o", self.path("t.vtu"))
+        self.assertEqual((report["folded_cells"], report["folded_faces"], report["inverted_cells"]), (0, 0, 0))
+
+    def test_cells_that_cannot_be_cut(self):
+        points = lattice((2, 2, 2)) + [(5, 5, 5)]
+        fields = [("x", "f32", [float(p[0]) for p in points])]
+        closed = [[0, 1, 3], [0, 1, 4], [1, 3, 4], [0, 3, 4]]
+        cells = hexahedra((2, 2, 2)) + [list(range(8)), [0, 1, 3, 4], [0, 1, 3, 4]]
+        faces = [None, None, closed[:3], closed]
+        grid = self.write("a.vtu", vtu_text(points, cells, [HEXAHEDRON, 41, POLYHEDRON, POLYHEDRON], fields, (), faces))
+        how = [grid, "--field", "x", "--iso", "0.5", "--engine", "reference"]
+        self.refuses(4, "extract", *how, says="cell 1 is of type 41.*--skip-unsupported leaves out the 2 cells")
+        result = self.expect(0, "extract", *how, "--skip-unsupported", "--check", "--json")
+        self.assertRegex(result.stderr, "2 cells are left out: of a type that is not cut, or polyhedra")
+        self.assertRegex(result.stderr, "1 points are used by no cell")
+        self.assertEqual(json.loads(result.stdout)["cells"], 4)
+        report = self.report("tetrahedralize", grid, "--skip-unsupported", "--field", "x", "-o", self.path("t.vtu"))
+        self.assertEqual((report["unsupported_cells"], report["surplus_cells"]), (2, 0))
+        broken = self.write("b.vtu", vtu_text(points, [[0, 1, 3]], [TETRAHEDRON], fields))
+        said = self.expect(4, "extract", broken, "--iso", "0.5", "--engine", "reference").stderr
+        self.assertNotIn("--skip-unsupported", said)
+
+    def test_more_points_than_the_type_has(self):
+        points = lattice((2, 2, 2)) + [(9, 9, 9)] * 12
+        cells = [hexahedra((2, 2, 2))[0] + list(range(8, 20))]
+        grid = self.write("a.vtu", vtu_text(points, cells, [HEXAHEDRON],
+                                            [("x", "f32", [float(p[0]) for p in points])], [("c", "f32", [3.0])]))
+        result = self.expect(0, "extract", grid, "--field", "x", "--iso", "0.5", "--engine", "reference", "--check",
+                             "--json", says="1 cells have more points than their type: the first ones are taken")
+        self.assertEqual(json.loads(result.stdout)["surfaces"][0]["area"], 1)
+        self.assertEqual(sum(self.report("info", grid, "--field", "c")["histogram"]["counts"]), 8)
 
     def test_nothing_to_contour(self):
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
