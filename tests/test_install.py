@@ -62,6 +62,25 @@ find_package(tetracubes {version} REQUIRED)
 {executables}
 """
 
+# A project that has the sources within itself: by add_subdirectory, and as FetchContent has it when it has fetched them.
+PARENT = """
+cmake_minimum_required(VERSION 3.25)
+project(parent LANGUAGES C)
+set(CMAKE_C_STANDARD 99)
+enable_testing()
+{include}
+add_executable(consumer {source})
+target_link_libraries(consumer PRIVATE tetracubes::tetracubes)
+install(FILES {source} DESTINATION share)
+set(settings "type=${{CMAKE_BUILD_TYPE}} shared=${{BUILD_SHARED_LIBS}} c=${{CMAKE_C_STANDARD}}")
+file(GENERATE OUTPUT here.txt CONTENT "${{settings}} flags=$<TARGET_PROPERTY:consumer,COMPILE_OPTIONS>")
+"""
+INCLUDES = {
+    "add_subdirectory": "add_subdirectory({source} tetracubes)",
+    "FetchContent": "include(FetchContent)\nFetchContent_Declare(tetracubes SOURCE_DIR {source})\n"
+                    "FetchContent_MakeAvailable(tetracubes)",
+}
+
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 
@@ -205,6 +224,34 @@ def build_other_kind(arguments, folder):
     return build
 
 
+def test_within(arguments, folder, source, how, *options, shared=False):
+    """The library within another project: it is there by its name, and leaves the other's settings, tests and installed
+    files alone. Flags that change values do not reach it."""
+    parent = folder / f"parent {how} {shared}"
+    build = parent / "build"
+    parent.mkdir()
+    include = INCLUDES[how].format(source=f'"{arguments.source}"')
+    text = PARENT.format(include=include, source=f'"{source}"')
+    (parent / "CMakeLists.txt").write_text(text, encoding="utf-8")
+    run(arguments.cmake, "-S", parent, "-B", build, "-G", arguments.generator, f"-DCMAKE_C_COMPILER={arguments.cc}",
+        "-DCMAKE_C_FLAGS=-O1 -ffast-math", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", *options)
+    run(arguments.cmake, "--build", build)
+    output = run(build / "consumer")
+    expect(output == f"{arguments.version} 6 4\n", f"{how}: printed {output!r}")
+    here = (build / "here.txt").read_text(encoding="utf-8")
+    expect(here == f"type= shared={'ON' if shared else ''} c=99 flags=", f"{how}: the parent has {here!r}")
+    cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+    expect("CMAKE_INSTALL_RPATH" not in cache, f"{how}: the parent's run paths are set")
+    expect(("BUILD_SHARED_LIBS" in cache) == shared, f"{how}: BUILD_SHARED_LIBS is decided for the parent")
+    tests = run("ctest", "--test-dir", build, "-N")
+    expect("Total Tests: 0" in tests, f"{how}: tests among the parent's\n{tests}")
+    commands = (build / "compile_commands.json").read_text(encoding="utf-8")
+    expect(commands.count("-fno-fast-math") > 10 and "-Wall" not in commands, f"{how}: other flags")
+    run(arguments.cmake, "--install", build, "--prefix", parent / "installed")
+    installed = [path.name for path in (parent / "installed").rglob("*") if path.is_file()]
+    expect(installed == [source.name], f"{how}: installed are {installed}")
+
+
 def write_sources(arguments, folder):
     """[(compiler, source)]: C, and C++ where there is a compiler."""
     sources = [(arguments.cc, folder / "consumer.c")]
@@ -220,6 +267,8 @@ def write_sources(arguments, folder):
 
 def test(arguments, folder):
     sources = write_sources(arguments, folder)
+    test_within(arguments, folder, sources[0][1], "add_subdirectory")
+    test_within(arguments, folder, sources[0][1], "FetchContent", "-DBUILD_SHARED_LIBS=ON", shared=True)
     here = Installation(arguments, arguments.build, folder, "here")
     other = Installation(arguments, build_other_kind(arguments, folder), folder, "other")
     expect(here.is_shared != other.is_shared, "the two builds are of one kind")
