@@ -3,10 +3,15 @@
 #include "exit_status.h"
 #include "failure.h"
 
+#include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t seen;
@@ -34,11 +39,73 @@ void truncation_watch(void) {
     sigaction(SIGBUS, &action, NULL);
 }
 
-int truncation_seen(void) { return seen; }
+/* ---------------------------------------------------------------------------------------------------- watched files */
+
+typedef struct watched {
+    int file; /* a descriptor of our own: another file may get the name */
+    const void *mapping;
+    struct stat before;
+    struct watched *next;
+} watched;
+
+static pthread_mutex_t watched_lock = PTHREAD_MUTEX_INITIALIZER;
+static watched *watched_files;
+static int changed;
+
+void truncation_watch_file(int file, const void *mapping) {
+    watched *w = calloc(1, sizeof *w);
+    if (!w) return;
+    w->file = fcntl(file, F_DUPFD_CLOEXEC, 3);
+    w->mapping = mapping;
+    if (w->file < 0 || fstat(w->file, &w->before)) {
+        if (w->file >= 0) close(w->file);
+        free(w);
+        return;
+    }
+    pthread_mutex_lock(&watched_lock);
+    w->next = watched_files;
+    watched_files = w;
+    pthread_mutex_unlock(&watched_lock);
+}
+
+static bool has_changed(const watched *w) {
+    struct stat now;
+    if (!fstat(w->file, &now) && now.st_size < w->before.st_size) seen = 1;
+    return !fstat(w->file, &now) &&
+           (now.st_size != w->before.st_size || now.st_mtim.tv_sec != w->before.st_mtim.tv_sec ||
+            now.st_mtim.tv_nsec != w->before.st_mtim.tv_nsec);
+}
+
+void truncation_unwatch_file(const void *mapping) {
+    pthread_mutex_lock(&watched_lock);
+    watched **at = &watched_files;
+    while (*at && (*at)->mapping != mapping) at = &(*at)->next;
+    watched *found = *at;
+    if (found) *at = found->next;
+    if (found && has_changed(found)) changed = 1; /* what was read of it may be in use */
+    pthread_mutex_unlock(&watched_lock);
+    if (found) close(found->file);
+    free(found);
+}
+
+static int change_seen(void) {
+    pthread_mutex_lock(&watched_lock);
+    for (const watched *w = watched_files; w && !changed; w = w->next) changed = has_changed(w);
+    const int found = changed;
+    pthread_mutex_unlock(&watched_lock);
+    return found;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- answers */
+
+int truncation_seen(void) { return seen || change_seen(); }
 
 void truncation_note(void) { seen = 1; }
 
 int truncation_status(void) {
-    return seen ? fail(STATUS_INPUT, "an input file became shorter while it was read: try again when it is complete")
-                : 0;
+    if (seen)
+        return fail(STATUS_INPUT, "an input file became shorter while it was read: try again when it is complete");
+    if (change_seen())
+        return fail(STATUS_INPUT, "an input file was written to while it was read: try again when it is complete");
+    return 0;
 }

@@ -3,12 +3,12 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "mapping.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 enum { NOTICES_MOST = 64 };
 
@@ -88,7 +88,7 @@ void dataset_release(dataset *d) {
     }
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);
     free(d->blocks);
-    if (d->mapping) munmap(d->mapping, d->mapping_bytes);
+    mapping_close(&(mapping){d->mapping, d->mapping_bytes});
     volume_release(&d->image);
     for (int n = 0; n < d->notice_count; n++) free(d->notices[n]);
     free(d->notices);

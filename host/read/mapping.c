@@ -66,12 +66,14 @@ int mapping_open(const char *path, mapping *m) {
                           strerror(errno));
         else
             *m = (mapping){bytes, (size_t)about.st_size};
+        if (m->bytes) truncation_watch_file(file, m->bytes);
     }
     close(file);
     return status;
 }
 
 void mapping_close(mapping *m) {
+    if (m->bytes) truncation_unwatch_file(m->bytes);
     if (m->bytes) munmap((void *)(uintptr_t)m->bytes, m->size);
     *m = (mapping){0};
 }

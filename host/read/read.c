@@ -5,13 +5,13 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "mapping.h"
 #include "readers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/mman.h>
 
 void read_request_init(read_request *request, const char *path) {
     *request = (read_request){.path = path, .type = -1, .spacing = {1, 1, 1}, .component = -1, .frame = -1};
@@ -244,7 +244,7 @@ int dataset_read(const read_request *request, dataset *out) {
 }
 
 void volume_release(volume *v) {
-    if (v->mapping) munmap(v->mapping, v->mapping_bytes);
+    mapping_close(&(mapping){v->mapping, v->mapping_bytes});
     free(v->allocation);
     *v = (volume){0};
 }

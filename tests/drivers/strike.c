@@ -10,6 +10,7 @@
  * and to the input, when PATH has been opened and mapped and is closed for the Nth time:
  *     STRIKE_TRUNCATE="N BYTES PATH"    it is cut to BYTES
  *     STRIKE_UNLINK="N 0 PATH"          it is removed
+ *     STRIKE_ALTER="N AT PATH"          a byte of it, AT that place, becomes another
  */
 #undef _FILE_OFFSET_BITS /* else open is another name of open64 */
 #include <dlfcn.h>
@@ -93,15 +94,26 @@ static int is_struck(const char *variable, const char *path, int closing, long *
     return strike && sscanf(strike, "%d %ld %4095s", &at, bytes, name) == 3 && at == closing && !strcmp(name, path);
 }
 
+static void byte_alter(const char *path, long at) {
+    unsigned char byte = 0;
+    int file = open(path, O_RDWR | O_CLOEXEC);
+    if (file < 0 || pread(file, &byte, 1, at) != 1) return;
+    byte ^= 0x40;
+    if (pwrite(file, &byte, 1, at) != 1) perror("strike: pwrite");
+    NEXT(close)(file);
+}
+
 static void strike_input(const char *path) {
     static int closing;
     const char *strike = getenv("STRIKE_TRUNCATE");
     long bytes;
     if (!strike) strike = getenv("STRIKE_UNLINK");
+    if (!strike) strike = getenv("STRIKE_ALTER");
     if (!strike || !strstr(strike, path)) return;
     closing++;
     if (is_struck("STRIKE_TRUNCATE", path, closing, &bytes) && truncate(path, bytes)) perror("strike: truncate");
     if (is_struck("STRIKE_UNLINK", path, closing, &bytes)) unlink(path);
+    if (is_struck("STRIKE_ALTER", path, closing, &bytes)) byte_alter(path, bytes);
 }
 
 EXPORT int close(int file) {

@@ -310,6 +310,18 @@ class Inputs(EndCase):
                 with open(self.volume, "wb") as file:
                     file.write(whole)
 
+    def test_input_changes(self):
+        """Written to when it has been mapped: no surface of samples that were never there together passes for one."""
+        whole = self.content(self.volume)
+        for at in (2000, len(whole) - 1):
+            for arguments, name in self.commands(self.volume):
+                result = self.struck(4, [*arguments, *([self.path(name)] if name else [])], "was written to while",
+                                     STRIKE_ALTER=f"2 {at} {self.volume}")
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(self.files(), ["a.nrrd"])
+                with open(self.volume, "wb") as file:
+                    file.write(whole)
+
     def test_input_vanishes(self):
         """What is mapped stays."""
         whole = self.content(self.volume)
