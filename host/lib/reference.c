@@ -209,7 +209,7 @@ static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t 
             if (!edge_exists(r, owner, type)) continue;
             edge_ends(r, owner, type, a, b);
             if (sample_inside(r, a) == sample_inside(r, b)) continue;
-            if (r->mesh) {
+            if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
                 *edge_id(r, owner, type) = (uint32_t)r->vertex_count;
                 vertex_emit(r, a, b);
             }
@@ -222,14 +222,19 @@ static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t 
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
+/* The next triangle; NULL where none is made, or the mesh has no room for it (mesh_complete). */
+static uint32_t *triangle_next(const reference *r) {
+    if (!r->mesh || r->triangle_count >= r->mesh->triangle_count) return NULL;
+    return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
+}
+
 static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], unsigned pattern) {
     unsigned index = 0;
     for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
     const tetrahedron_case *c = &tetrahedron_cases[index];
     for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
-        if (!r->mesh) continue;
-        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
-        for (unsigned m = 0; m < 3; m++) {
+        uint32_t *triangle = triangle_next(r);
+        for (unsigned m = 0; m < 3 && triangle; m++) {
             const uint8_t *ends = tetrahedron_edges[c->triangles[n][r->grid->mirrored ? (3 - m) % 3 : m]];
             owned_edge e = edge_between(corners[ends[0]], corners[ends[1]]);
             triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
@@ -239,9 +244,8 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
 
 static void cube_emit(reference *r, const int64_t cube[3], const cube_case *c) {
     for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
-        if (!r->mesh) continue;
-        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
-        for (unsigned m = 0; m < 3; m++) {
+        uint32_t *triangle = triangle_next(r);
+        for (unsigned m = 0; m < 3 && triangle; m++) {
             const owned_edge e = cube_edges[c->edges[n][m]];
             triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
         }
@@ -304,11 +308,20 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     return TC_OK;
 }
 
+/* Zeros: an edge without a vertex is never asked for, unless samples change meanwhile. */
 static tc_status ids_allocate(reference *r) {
-    size_t bytes = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * EDGES_PER_SAMPLE * sizeof(uint32_t);
+    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * EDGES_PER_SAMPLE;
     for (int n = 0; n < 2; n++)
-        if (!(r->ids[n] = malloc(bytes))) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for vertex numbers");
+        if (!(r->ids[n] = calloc(count, sizeof *r->ids[n])))
+            return (tc_status)fail(TC_ERROR_MEMORY, "no memory for vertex numbers");
     return TC_OK;
+}
+
+/* What has been emitted is what was counted, unless what the caller has lent has changed in between. */
+static tc_status mesh_complete(const reference *r, bool triangles) {
+    if (r->vertex_count == r->mesh->vertex_count && (!triangles || r->triangle_count == r->mesh->triangle_count))
+        return TC_OK;
+    return (tc_status)fail(TC_ERROR_DATA, "samples, or what is blanked, have changed while a surface was made of them");
 }
 
 static void reference_end(reference *r) {
@@ -342,6 +355,7 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
     if (status) goto cleanup;
     r.mesh = mesh;
     status = layers_run(&r, "emit", 0.5, 0.5);
+    if (!status) status = mesh_complete(&r, true);
     mesh->active_cell_count = r.active_cell_count;
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;
@@ -358,6 +372,7 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
     if (!status) {
         r.mesh = mesh;
         for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
+        status = mesh_complete(&r, false);
     }
     reference_end(&r);
     return status;

@@ -75,6 +75,10 @@ static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
 }
 
+static tc_status change_fail(void) {
+    return (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a surface was made of them");
+}
+
 /* The vertex on the edge of two points, made when it is met first. */
 static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
@@ -82,6 +86,7 @@ static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *num
     if (status) return status;
     edge_entry *e = edge_find(r, low, high);
     if (!e->taken) {
+        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
         *e = (edge_entry){low, high, (uint32_t)r->vertex_count, 1};
         if (r->mesh) vertex_emit(r, low, high);
         if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
@@ -104,7 +109,10 @@ static unsigned pattern_of(const reference *r, const uint32_t points[4]) {
     return pattern;
 }
 
-static tc_status tetrahedron_run(reference *r, const uint32_t points[4]) {
+static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
+    const uint32_t points[4] = {tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3]};
+    for (int v = 0; v < 4; v++)
+        if (points[v] >= r->grid->complex->point_count) return complex_point_fail(r->grid->complex);
     const unsigned pattern = pattern_of(r, points);
     const tetrahedron_case *c = &tetrahedron_cases[pattern];
     uint32_t numbers[6] = {0};
@@ -118,6 +126,7 @@ static tc_status tetrahedron_run(reference *r, const uint32_t points[4]) {
     }
     for (unsigned n = 0; n < c->triangle_count && !status; n++, r->triangle_count++) {
         if (!r->mesh) continue;
+        if (r->triangle_count >= r->mesh->triangle_count) return change_fail();
         uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
         for (int m = 0; m < 3; m++) triangle[m] = numbers[c->triangles[n][m]];
     }
@@ -141,10 +150,7 @@ static tc_status tetrahedra_run(reference *r, const char *stage, double before, 
 }
 
 static tc_status reference_begin(reference *r, const tc_grid *grid, double isovalue) {
-    const complex_grid *c = grid->complex;
     *r = (reference){.grid = grid, .isovalue = isovalue};
-    for (uint64_t n = 0; n < 4ull * c->tetrahedron_count; n++)
-        if (c->tetrahedra[n] >= c->point_count) return complex_point_fail(c);
     return table_allocate(r, 1024) ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
 }
 
@@ -180,6 +186,8 @@ tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mes
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
     r.mesh = mesh;
     if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);
+    if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))
+        status = change_fail();
     mesh->active_cell_count = r.active_count;
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;

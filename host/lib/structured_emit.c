@@ -353,7 +353,8 @@ static tc_status step_emit(run *r, uint32_t n) {
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
-    tc_status status = step->opens_slab ? slab_mark_cells(r, step->place, &s) : TC_OK;
+    const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has been since */
+    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->place, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;
     return bricks_emit(r, step->place, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);

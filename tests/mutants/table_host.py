@@ -152,7 +152,7 @@ MUTANTS = [
             "winding: turned over"),
            ("r->table[n].low != low || r->table[n].high != high", "r->table[n].low != low",
             "edges with the same first point are one"),
-           ("if (c->tetrahedra[n] >= c->point_count)", "if (c->tetrahedra[n] > c->point_count)",
+           ("if (points[v] >= r->grid->complex->point_count)", "if (points[v] > r->grid->complex->point_count)",
             "a point just past the end is taken"),
            ("if (pattern == 0 || pattern == 15) return TC_OK;\n    r->active_count++;",
             "r->active_count++;\n    if (pattern == 0 || pattern == 15) return TC_OK;", "all tetrahedra are active")),
