@@ -130,17 +130,71 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
     return layers_fit(context, grid, plan, most, budget);
 }
 
+static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
+    const uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES;
+    return (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
+}
+
+static slab_plan plan_begin(const tc_grid *grid) {
+    return (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
+                       .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
+                       .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
+}
+
+/* Bytes of everything but the mesh, at the least and where all is whole; false: buffers are too large for that. */
+static bool plan_least(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid);
+    plan.samples_whole = grid->cl_samples != NULL;
+    return plan_fits(context, grid, &plan, 1, UINT64_MAX, bytes);
+}
+
+static bool plan_whole(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid);
+    plan.samples_whole = plan.words_whole = true;
+    plan.overlaps = !context->in_place;
+    return plan_fits(context, grid, &plan, layers_most(grid, &plan), UINT64_MAX, bytes);
+}
+
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid) {
+    uint64_t bytes;
+    plan_whole(context, grid, &bytes);
+    return (bytes + 2) / 3 * 4;
+}
+
+/* The mesh has half of the budget where the grid is not whole, a quarter or more where it is; emission goes on with a
+ * row of bricks in it at a time: six vertices per sample, with normals, and ten triangles per cube at most. */
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid) {
+    const uint64_t sample_bytes = 2 * EDGES_PER_SAMPLE * 12 + CUBE_TRIANGLES_MAX * 12;
+    const uint64_t row = plan_begin(grid).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
+    uint64_t least, whole, budget;
+    plan_least(context, grid, &least);
+    budget = 2 * (least > row ? least : row);
+    if (!plan_whole(context, grid, &whole)) return budget;
+    const uint64_t from = plan_budget_whole(context, grid);
+    return whole + row > (from > budget ? from : budget) ? whole + row : budget;
+}
+
+static tc_status plan_refuse(const tc_context *context, const tc_grid *grid) {
+    uint64_t bytes;
+    if (!plan_least(context, grid, &bytes))
+        return (tc_status)fail(TC_ERROR_MEMORY,
+                               "a layer of this grid needs larger buffers than %s has, %llu bytes each: use the "
+                               "reference engine, or parts of the grid",
+                               context->info.name, (unsigned long long)context->info.max_buffer_bytes);
+    return (tc_status)fail(TC_ERROR_MEMORY,
+                           "a layer of this grid needs %llu bytes of device memory beside its mesh; allow %llu or more",
+                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid));
+}
+
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     uint64_t budget = context->options.max_memory_bytes;
     if (!budget) budget = context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
-    *plan = (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
-                        .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
-                        .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
+    *plan = plan_begin(grid);
     if (layer_samples > scan_samples)
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
                                (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
-    uint32_t most = (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
+    const uint32_t most = layers_most(grid, plan);
     plan->samples_whole = plan->words_whole = true;
     plan->overlaps = !context->in_place;
     if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
@@ -150,13 +204,7 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_pl
             plan->overlaps = false;
             layers = windows_fit(context, grid, plan, most, budget / 2);
         }
-        if (layers == 0) {
-            plan_fits(context, grid, plan, 1, budget, &bytes);
-            return (tc_status)fail(TC_ERROR_MEMORY,
-                                   "a layer of this grid needs %llu bytes of device memory beside its "
-                                   "mesh; allow %llu or more",
-                                   (unsigned long long)bytes, (unsigned long long)bytes * 2);
-        }
+        if (layers == 0) return plan_refuse(context, grid);
         plan_fits(context, grid, plan, layers, budget, &bytes);
     }
     plan->mesh_bytes = budget - bytes;

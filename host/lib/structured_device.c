@@ -20,8 +20,10 @@ static tc_status counted_check(const tc_grid *grid, const tc_extract_options *op
                                "with these options, and make no other call in between");
     if (!device->plan.samples_whole || !device->plan.words_whole)
         return (tc_status)fail(TC_ERROR_MEMORY,
-                               "the device cannot hold this grid whole, as tc_emit needs it: allow more "
-                               "memory, or use tc_extract");
+                               "the device cannot hold this grid whole, as tc_emit needs it, in buffers of %llu bytes "
+                               "and the memory allowed: allow %llu or more, or use tc_extract",
+                               (unsigned long long)grid->context->info.max_buffer_bytes,
+                               (unsigned long long)plan_budget_whole(grid->context, grid));
     if (!device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: vertices of %s samples cannot be made there",
                                grid->context->info.name, tc_type_name(grid->type));

@@ -1,9 +1,10 @@
 /*
  * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
- * after the other, each a run of whole layers. On devices that share the host's memory a window lies in the mesh
- * itself; else what a step has emitted is read back while the next step runs.
+ * after the other, each a run of whole layers, or of rows of bricks where a layer is too large. On devices that share
+ * the host's memory a window lies in the mesh itself; else what a step has emitted is read back while the next step
+ * runs.
  */
-#include "structured_run.h"
+#include "structured_emission.h"
 
 #include "failure.h"
 #include "tables.h"
@@ -12,31 +13,6 @@
 #include <string.h>
 
 static const uint64_t page_bytes = 4096;
-
-/* Vertices [vertex0, vertex1) and triangles [triangle0, triangle1) of the mesh. */
-typedef struct mesh_window {
-    uint64_t vertex0, vertex1, triangle0, triangle1;
-    uint32_t position_offset, triangle_offset; /* 32-bit items before them in the buffers */
-    mesh_buffers *buffers;
-} mesh_window;
-
-/* Layers of a slab that are emitted by one launch. */
-typedef struct emit_step {
-    slab_place place;
-    bool opens_slab; /* the first of its slab */
-    uint32_t layer0, layer1;
-    uint64_t slab_vertex, slab_triangle; /* before the slab */
-    mesh_window part;                    /* of the mesh: what the step makes */
-} emit_step;
-
-typedef struct emission {
-    tc_mesh *mesh;
-    mesh_window whole;     /* where one window holds the mesh */
-    uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
-    emit_step *steps;
-    uint32_t step_count;
-    double kernels_end_ms;
-} emission;
 
 /* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
 static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
@@ -98,17 +74,6 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
         status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * MESH_BYTES_PER_TRIANGLE,
                            part->triangle0 * MESH_BYTES_PER_TRIANGLE, part->triangle1 * MESH_BYTES_PER_TRIANGLE);
     return status;
-}
-
-static uint64_t window_bytes(const run *r, uint64_t vertices, uint64_t triangles) {
-    return vertices * MESH_BYTES_PER_VERTEX * (r->normals ? 2 : 1) + triangles * MESH_BYTES_PER_TRIANGLE;
-}
-
-/* One of so many windows of the mesh. */
-static bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows) {
-    uint64_t most = r->context->info.max_buffer_bytes - page_bytes;
-    return vertices * MESH_BYTES_PER_VERTEX <= most && triangles * MESH_BYTES_PER_TRIANGLE <= most &&
-           triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes / windows;
 }
 
 /* How kernel 2 finds the vertex on an edge of a cube: by its place in cube_edges, or, where a work-item has a brick to
@@ -184,117 +149,6 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- steps */
-
-/* The first brick of every layer: what is before it in its slab. */
-static tc_status layers_read(run *r, brick_state *layers) {
-    const uint64_t bricks = plan_bricks_per_layer(r->plan);
-    const device_buffer *buffer = &r->context->work.words[0].bricks;
-    cl_int error = CL_SUCCESS;
-    for (uint32_t n = 0; n < r->plan->layer_count && !error; n++)
-        if (!r->plan->words_whole)
-            memcpy(&layers[n], r->store.bricks + n * bricks * sizeof *layers, sizeof *layers);
-        else
-            error = cl->EnqueueReadBuffer(r->context->queue, buffer->memory, CL_FALSE, n * bricks * sizeof *layers,
-                                          sizeof *layers, &layers[n], 0, NULL, NULL);
-    cl_int finish_error = cl->Finish(r->context->queue);
-    if (!error) error = finish_error;
-    return error ? context_fail(r->context, "reading sums of layers", error) : TC_OK;
-}
-
-static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
-    uint32_t layers = r->plan->layer_count - slab_index * r->plan->slab_layers;
-    return layers < r->plan->slab_layers ? layers : r->plan->slab_layers;
-}
-
-/* Vertices and triangles before a layer of the slab, or before the next slab. */
-static void layer_begin(const run *r, const brick_state *layers, uint32_t slab_index, uint32_t layer, uint64_t at[2]) {
-    const uint32_t *head = r->heads + slab_index * STATE_WORDS;
-    const brick_state *brick = &layers[slab_index * r->plan->slab_layers + layer];
-    bool end = layer == slab_layer_count(r, slab_index);
-    at[0] = layer == 0 ? 0 : end ? head[STATE_VERTICES] : brick->vertices;
-    at[1] = layer == 0 ? 0 : end ? head[STATE_TRIANGLES] : brick->triangles;
-}
-
-/* The part of the mesh that layers [step->layer0, layer1) of the slab make. */
-static void step_end(const run *r, const brick_state *layers, emit_step *step, uint32_t layer1) {
-    uint64_t from[2], to[2];
-    layer_begin(r, layers, step->place.slab_index, step->layer0, from);
-    layer_begin(r, layers, step->place.slab_index, layer1, to);
-    step->layer1 = layer1;
-    step->part.vertex0 = step->slab_vertex + from[0];
-    step->part.vertex1 = step->slab_vertex + to[0];
-    step->part.triangle0 = step->slab_triangle + from[1];
-    step->part.triangle1 = step->slab_triangle + to[1];
-}
-
-static bool step_fits(const run *r, const emission *e, const emit_step *step) {
-    const mesh_window *part = &step->part;
-    return e->window_count == 0 ||
-           window_fits(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0, e->window_count);
-}
-
-static tc_status layer_refuse(const run *r, const mesh_window *part) {
-    return (tc_status)fail(
-        TC_ERROR_MEMORY,
-        "a layer of this surface has %llu bytes, more than the memory budget leaves (%llu) or a buffer may have (%llu)",
-        (unsigned long long)window_bytes(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0),
-        (unsigned long long)r->plan->mesh_bytes, (unsigned long long)r->context->info.max_buffer_bytes);
-}
-
-/* Cuts a slab into as few steps as windows allow; false, with the last step that of the layer that is too large, where
- * they do not. */
-static bool slab_cut(const run *r, emission *e, const brick_state *layers, emit_step first) {
-    const uint32_t layer_count = slab_layer_count(r, first.place.slab_index);
-    for (uint32_t from = 0; from < layer_count; from = e->steps[e->step_count - 1].layer1) {
-        emit_step *step = &e->steps[e->step_count++], longer;
-        *step = first;
-        step->opens_slab = from == 0;
-        step->layer0 = from;
-        step_end(r, layers, step, e->window_count ? from + 1 : layer_count);
-        if (!step_fits(r, e, step)) return false;
-        for (longer = *step; step->layer1 < layer_count; *step = longer) {
-            step_end(r, layers, &longer, step->layer1 + 1);
-            if (!step_fits(r, e, &longer)) break;
-        }
-    }
-    return true;
-}
-
-static bool slabs_cut(const run *r, emission *e, const brick_state *layers) {
-    uint32_t active = 0;
-    emit_step first = {0};
-    bool fits = true;
-    e->step_count = 0;
-    for (uint32_t n = 0; n < r->plan->slab_count && fits; n++) {
-        const uint32_t *head = r->heads + n * STATE_WORDS;
-        first.place = (slab_place){n, active % plan_window_count(r->plan)};
-        if (head[STATE_ACTIVE_BRICKS]) {
-            fits = slab_cut(r, e, layers, first);
-            active++;
-        }
-        first.slab_vertex += head[STATE_VERTICES];
-        first.slab_triangle += head[STATE_TRIANGLES];
-    }
-    return fits;
-}
-
-/* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one. */
-static tc_status steps_plan(run *r, emission *e, bool whole) {
-    brick_state *layers = calloc(r->plan->layer_count, sizeof *layers);
-    e->steps = calloc(r->plan->layer_count, sizeof *e->steps);
-    tc_status status = TC_OK;
-    if (!layers || !e->steps) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of layers");
-    e->window_count = whole ? 0 : r->plan->overlaps ? 2 : 1;
-    if (!status && !whole) status = layers_read(r, layers);
-    if (!status && !slabs_cut(r, e, layers)) {
-        e->window_count = 1;
-        if (!r->plan->overlaps || !slabs_cut(r, e, layers)) status = layer_refuse(r, &e->steps[e->step_count - 1].part);
-    }
-    free(layers);
-    return status;
-}
-
 /* -------------------------------------------------------------------------------------------------------- emission */
 
 static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
@@ -307,12 +161,7 @@ static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
 static tc_status windows_reserve(run *r, emission *e) {
     mesh_window largest = {0};
     tc_status status = TC_OK;
-    for (uint32_t n = 0; n < e->step_count; n++) {
-        const mesh_window *part = &e->steps[n].part;
-        const uint64_t vertices = part->vertex1 - part->vertex0, triangles = part->triangle1 - part->triangle0;
-        if (vertices > largest.vertex1) largest.vertex1 = vertices;
-        if (triangles > largest.triangle1) largest.triangle1 = triangles;
-    }
+    steps_largest(e, &largest.vertex1, &largest.triangle1);
     for (uint32_t n = 0; n < e->window_count && !status; n++) {
         largest.buffers = &r->context->work.mesh[n];
         status = window_open(r, e->mesh, &largest);
@@ -344,8 +193,8 @@ static void step_describe(const run *r, const emit_step *step, slab *s) {
     slab_describe(r, step->place, s);
     s->vertex_base = (uint32_t)step->slab_vertex;
     s->vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->head_offset + STATE_VERTICES]);
-    s->brick_first = ((s->z0 - s->word_z) / BRICK_PLANES + step->layer0) * bricks;
-    s->brick_last = s->brick_first + (step->layer1 - step->layer0) * bricks;
+    s->brick_first = (s->z0 - s->word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
+    s->brick_last = s->brick_first + (step->row1 - step->row0) * r->plan->words_x;
 }
 
 static tc_status step_emit(run *r, uint32_t n) {
