@@ -283,7 +283,8 @@ static void damaged_faces(void) {
     pair_make(&p), memset(p.face_offsets, 0, sizeof p.face_offsets);
     p.cells.face_connectivity = NULL;
     refused(&p.cells, TC_ERROR_DATA, "has no faces");
-    static const int64_t odd_starts[][3] = {{1, 0, 4}, {-1, 4, 4}, {0, 5, 4}, {INT64_MIN, INT64_MAX, 4}};
+    static const int64_t odd_starts[][3] = {
+        {1, 0, 4}, {-1, 4, 4}, {0, 5, 4}, {INT64_MIN, INT64_MAX, 4}, {-1000000000, 4, 4}};
     for (size_t n = 0; n < sizeof odd_starts / sizeof *odd_starts; n++) {
         pair_make(&p), memcpy(p.starts, odd_starts[n], sizeof p.starts);
         refused(&p.cells, TC_ERROR_DATA, "do not rise");

@@ -542,6 +542,7 @@ static void test_polyhedra(void) {
     expect_no_polyhedron("4 3 0 1 2 3 0 1 3 3 3 1 2 3 0 2 -1", 17);
     expect_no_polyhedron("-1 3 0 1 2", 5);
     expect_no_polyhedron("1 -1 0 1 2", 5);
+    expect_no_polyhedron("2 -2 0", 3);
     expect_no_polyhedron("2147483647 3 0 1 2", 5);
     expect_no_polyhedron("1 2147483647 0 1 2", 5);
     if (!READ(&d, UNSTRUCTURED("4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n") "POINT_DATA 4\n" LAST "1 2 3 4")) {

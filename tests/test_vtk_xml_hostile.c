@@ -144,12 +144,30 @@ static void expect_blocks_refused(const char *words, const uint32_t *header, siz
     expect_packed_refused("LZMA", can_pack(BY_LZMA) ? words : "", header, count);
 }
 
-/* A block of zeros, packed by LZMA, that asks for a dictionary of 4 GiB; else a good one. */
+/* Reads eight values of a byte, in one block that is packed so. */
+static int read_packed(const char *compressor, const bytes *block, dataset *d) {
+    const uint32_t sizes[] = {1, 8, 0, (uint32_t)block->size};
+    bytes raw = {0}, file = {0};
+    for (int n = 0; n < 4; n++) bytes_put(&raw, sizes[n], 4, 0);
+    bytes_add(&raw, block->data, block->size);
+    bytes_text(&file,
+               "<VTKFile type=\"ImageData\" compressor=\"vtk%sDataCompressor\"><ImageData><Piece Extent=\"" CUBE "\">"
+               "<PointData><DataArray Name=\"a\" type=\"UInt8\" format=\"binary\">",
+               compressor);
+    add_base64(&file, &raw, 0);
+    bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
+    int status = read_bytes("packed.vtk", &file, d);
+    bytes_free(&raw);
+    bytes_free(&file);
+    return status;
+}
+
+/* A block of LZMA that asks for a dictionary of 4 GiB; else a good one. */
 static void test_dictionary(void) {
 #ifdef HAVE_LZMA
     for (int huge = 0; huge < 2; huge++) {
-        unsigned char zeros[8] = {0};
-        bytes block = packed_block(BY_LZMA, zeros, sizeof zeros), raw = {0}, file = {0};
+        const unsigned char zeros[8] = {0};
+        bytes block = packed_block(BY_LZMA, zeros, sizeof zeros);
         dataset d;
         unsigned char *header = block.data + 12, *at = header + 2; /* behind the header of the stream; the flags */
         size_t checked = 4 * (size_t)header[0];
@@ -161,26 +179,36 @@ static void test_dictionary(void) {
         if (huge) at[2] = 40;
         uint32_t sum = lzma_crc32(header, checked, 0);
         memcpy(header + checked, &sum, sizeof sum);
-        const uint32_t sizes[] = {1, 8, 0, (uint32_t)block.size};
-        for (int n = 0; n < 4; n++) bytes_put(&raw, sizes[n], 4, 0);
-        bytes_add(&raw, block.data, block.size);
-        bytes_text(&file, "<VTKFile type=\"ImageData\" compressor=\"vtkLZMADataCompressor\"><ImageData><Piece "
-                          "Extent=\"" CUBE "\"><PointData><DataArray Name=\"a\" type=\"UInt8\" format=\"binary\">");
-        add_base64(&file, &raw, 0);
-        bytes_text(&file, "</DataArray></PointData></Piece></ImageData></VTKFile>");
-        int status = read_bytes("dictionary.vtk", &file, &d);
+        int status = read_packed("LZMA", &block, &d);
         EXPECT(huge ? status == STATUS_INPUT && strstr(failure_text(), "dictionary of more") : status == 0,
                "dictionary, huge %d: status %d: %s", huge, status, failure_text());
         dataset_release(&d);
         bytes_free(&block);
-        bytes_free(&raw);
-        bytes_free(&file);
     }
 #endif
 }
 
+/* Blocks that hold fewer bytes than their array needs, as many, and more. */
+static void test_short_blocks(void) {
+    static const char *const compressors[] = {"", "ZLib", "LZ4", "LZMA"};
+    const unsigned char values[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    for (int by = BY_ZLIB; by <= BY_LZMA; by++)
+        for (size_t size = 7; size <= 9 && can_pack(by); size++) {
+            bytes block = packed_block(by, values, size);
+            dataset d;
+            int status = read_packed(compressors[by], &block, &d);
+            EXPECT(status == (size < 8 ? STATUS_INPUT : 0), "%s, %zu of 8 bytes: status %d: %s", compressors[by], size,
+                   status, failure_text());
+            EXPECT(status || !memcmp(d.blocks[0].fields[0].values, values, 8), "%s, %zu of 8 bytes: others",
+                   compressors[by], size);
+            dataset_release(&d);
+            bytes_free(&block);
+        }
+}
+
 static void test_blocks(void) {
     test_dictionary();
+    test_short_blocks();
     expect_blocks_refused("ends", (uint32_t[]){0xffffffff, 1000000, 0, 10}, 4);
     expect_blocks_refused("ends", (uint32_t[]){1, 1000000, 0, 0xffffffff}, 4);
     expect_blocks_refused("ends", (uint32_t[]){2, 500000, 0, 40, 40}, 5);

@@ -35,7 +35,6 @@ polyhedron_verdict polyhedron_look(const tc_cells *cells, uint64_t c) {
     const int64_t face_count = starts[cells->cell_count];
     if (!rise(starts, (int64_t)c, face_count)) return POLYHEDRON_OFFSETS;
     const int64_t first = starts[c], end = starts[c + 1];
-    if (first == end) return POLYHEDRON_NO_FACES;
     int64_t corners = 0;
     for (int64_t f = first; f < end; f++) {
         if (!rise(offsets, f, offsets[face_count])) return POLYHEDRON_OFFSETS;

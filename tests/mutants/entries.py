@@ -9,7 +9,9 @@ from mutant import Mutant
 
 EDGE_TYPES = ["EDGE_X", "EDGE_Y", "EDGE_Z", "EDGE_XY", "EDGE_XZ", "EDGE_YZ"]
 CORNER_COUNT = 2  # of a cell_type, its third member
-SHAPES = ["CELL_FLAT", "CELL_OTHER", "CELL_TETRAHEDRON", "CELL_HEXAHEDRON", "CELL_WEDGE", "CELL_PYRAMID"]
+SHAPES = ["CELL_FLAT", "CELL_OTHER", "CELL_TETRAHEDRON", "CELL_HEXAHEDRON", "CELL_WEDGE", "CELL_PYRAMID",
+          "CELL_PENTAGONAL_PRISM", "CELL_HEXAGONAL_PRISM", "CELL_POLYHEDRON"]
+UNREAD = ("CELL_FLAT", "CELL_OTHER", "CELL_POLYHEDRON")  # of which a row has nothing else that is read
 
 
 def counting(limit):
@@ -47,6 +49,7 @@ TABLES = {
     "host/lib/reference.c": [("edge_axes[EDGES_PER_SAMPLE] = ", counting(8))],
     "host/lib/cell_split.c": [("#define HEXAHEDRON ", counting(8)), ("#define VOXEL      ", counting(8)),
                               ("#define WEDGE      ", counting(6)), ("#define WEDGE_UP   ", counting(6)),
+                              ("#define PRISM_5    ", counting(10)), ("#define PRISM_6    ", counting(12)),
                               ("hexahedron_faces[6][4] = ", counting(8)), ("wedge_faces[3][4] = ", counting(6)),
                               ("wedge_ends[2][3] = ", counting(6)), ("hexahedron_opposite[8] = ", counting(8)),
                               ("pyramid_base[4] = ", counting(4)), ("cell_type types[] = ", cell_type_entry)],
@@ -90,10 +93,10 @@ def mutants(file, text, tables):
         if start < 0 or text.count(beginning) != 1:
             raise ValueError(f"{file}: no table begins with {beginning!r}")
         name = re.sub(r"#define |cell_type |\[.*| *= *$", "", beginning).strip()
-        shape = None  # of the row of types[]; of cells that are not cut nothing else is read
+        shape = None  # of the row of types[]
         for at, path, entry in entries_of(text, start + len(beginning)):
             shape = entry if entry in SHAPES else shape
-            if entry.startswith(("HEXAHEDRON", "VOXEL", "WEDGE")) or (entry != shape and shape in SHAPES[:2]):
+            if entry.startswith(("HEXAHEDRON", "VOXEL", "WEDGE", "PRISM")) or (entry != shape and shape in UNREAD):
                 continue
             what = name + "".join(f"[{n}]" for n in path)
             yield Mutant(file, entry, change(path, entry), what, at=at, same=SAME.get(what), sample=what in SAMPLE)
