@@ -170,6 +170,25 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
     cell_list_free(&list);
 }
 
+/* Cells with faces of many corners: truncated octahedra, or hexagonal columns of prisms, polyhedra, hexahedra. */
+static void faceted_block_compare(tc_type type, uint32_t size, bool columns) {
+    char what[80];
+    snprintf(what, sizeof what, "%s of %u, %s", columns ? "honeycomb" : "truncated octahedra", size,
+             tc_type_name(type));
+    cell_list list = columns ? honeycomb_make(size, random_u64()) : kelvin_block_make(size, random_u64());
+    tc_cells cells = cell_list_view(&list);
+    tc_complex complex = {.struct_size = sizeof complex};
+    EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
+    void *values = malloc(8 * list.point_count);
+    for (uint64_t n = 0; n < list.point_count; n++) sample_set(values, type, (int64_t)n, random_value(type, true));
+    const double isovalues[2] = {1, 2};
+    tc_complex_options o = options_of(&complex, &list, type, values);
+    engines_compare(&o, isovalues, 2, true, what);
+    free(values);
+    tc_complex_release(&complex);
+    cell_list_free(&list);
+}
+
 /* A vertex on the second end of an edge is where that is, to the bit, however far away the first one is. */
 static void ends_compare(void) {
     static const float points[12] = {1e8f, -3e7f, 5e8f, -1e8f, 2e8f, 1e7f, 7e7f, 1e8f, -2e8f, 0.1f, 0.2f, 0.3f};
@@ -430,6 +449,10 @@ int main(int argc, char **argv) {
         if (type_is_floating(type)) mixed_block_compare(type, 7, true, true);
     }
     mixed_block_compare(TC_F32, 21, true, false);
+    for (int columns = 0; columns < 2; columns++) {
+        faceted_block_compare(TC_U8, 4, columns);
+        faceted_block_compare(TC_F64, 3, columns);
+    }
     ends_compare();
     scattered_compare();
     grid_compare(TC_U8, false, false);

@@ -223,7 +223,7 @@ MUTANTS = [
            ("tally->unsupported++;", "", "cells left out are not counted"),
            ("if (polyhedron_unusable_point(cells, c)) return CELL_BAD;", "",
             "coordinates of polyhedra that are no numbers are taken"),
-           ("fmin(v.positive, v.negative) > 1e-5", "fmin(v.positive, v.negative) > 0 *",
+           ("fmin(v.positive, v.negative) > 1e-5", "fmin(v.positive, v.negative) > 0",
             "polyhedra that rounding folds are folded"),
            ("if (!offsets || offsets[0] < 0)", "if (offsets && offsets[0] < 0)", "faces without offsets are taken"),
            ("sum += volume;", "sum -= volume;", "cells of positive volume are turned over"),
