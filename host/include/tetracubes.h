@@ -135,8 +135,9 @@ typedef struct tc_context_options {
     uint64_t max_memory_bytes; /* bound on device buffers for one grid and its extraction, mesh and samples included;
                                   0: what the device allows. Less memory means smaller slabs, never other results */
     uint32_t work_items;  /* per work-group: 1, or a multiple of 32 up to 1024; 0: default. 1 has kernels of its own,
-                             for CPUs, which compilers known to fail on them are not given: TC_ERROR_ARGUMENT. Never
-                             changes results */
+                             for CPUs, which compilers known to fail on them are not given: TC_ERROR_ARGUMENT. A
+                             kernel that the device runs with fewer is built again for as many as it allows.
+                             Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These
                              three all 0: what tc_context_tuning_keep kept for the device, if it did */

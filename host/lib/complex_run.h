@@ -74,7 +74,7 @@ typedef struct complex_run {
     complex_part *part;
     tc_context *context;
     complex_buffers *work;
-    cl_kernel const *kernels;
+    const program *program; /* of the kernels */
     slab s; /* the isovalue's part */
     complex_job job;
     uint32_t head[HEAD_WORDS];

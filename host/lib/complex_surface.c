@@ -74,13 +74,12 @@ typedef struct kernel_argument {
 
 static tc_status kernel_run(const complex_run *r, int kernel, const char *name, const kernel_argument *arguments,
                             cl_uint count) {
-    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
+    const size_t local = r->program->work_items, global = local * r->context->options.work_groups;
+    cl_kernel launched = r->program->complex[kernel];
     cl_int error = CL_SUCCESS;
     for (cl_uint n = 0; n < count && !error; n++)
-        error = cl->SetKernelArg(r->kernels[kernel], n, arguments[n].bytes, arguments[n].value);
-    if (!error)
-        error =
-            cl->EnqueueNDRangeKernel(r->context->queue, r->kernels[kernel], 1, NULL, &global, &local, 0, NULL, NULL);
+        error = cl->SetKernelArg(launched, n, arguments[n].bytes, arguments[n].value);
+    if (!error) error = cl->EnqueueNDRangeKernel(r->context->queue, launched, 1, NULL, &global, &local, 0, NULL, NULL);
     return error ? context_fail(r->context, name, error) : TC_OK;
 }
 
@@ -131,7 +130,7 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     r->work = &context->work.complex;
     isovalue_describe(r, isovalue);
     context->counted = NULL;
-    tc_status status = complex_kernels_get(context, grid, &r->kernels);
+    tc_status status = complex_kernels_get(context, grid, &r->program);
     r->start_ms = clock_ms();
     if (status) return status;
     if (context->served != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {

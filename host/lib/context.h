@@ -21,7 +21,9 @@ typedef struct device_buffer {
 
 /* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
 typedef struct program {
-    char options[512];
+    char asked[512];     /* its options but for the work-items, which a kernel may allow fewer of */
+    char options[512];   /* those that it was built with */
+    uint32_t work_items; /* per group: what its kernels are launched with */
     const char *const *sources;
     bool cached; /* it came from the cache of built programs */
     cl_program program;
@@ -30,8 +32,14 @@ typedef struct program {
     struct program *next;
 } program;
 
+/* A kernel, and the work-items per group that it was built for. */
+typedef struct sized_kernel {
+    cl_kernel kernel;
+    uint32_t work_items;
+} sized_kernel;
+
 typedef struct kernels {
-    cl_kernel classify, cells, emit;
+    sized_kernel classify, cells, emit;
 } kernels;
 
 /* What kernel 1 leaves for kernel 2, per word or brick of the window of sign words. */
@@ -104,7 +112,7 @@ tc_status context_progress(const tc_context *context, const char *stage, double 
 tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out);
 tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, tc_method method, bool missing, bool normals,
                           kernels *out);
-tc_status complex_kernels_get(tc_context *context, const struct tc_grid *grid, cl_kernel const **out);
+tc_status complex_kernels_get(tc_context *context, const struct tc_grid *grid, const program **out);
 void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */

@@ -133,45 +133,113 @@ static tc_status program_build(const tc_context *context, program *p) {
     return p->cached ? TC_OK : source_build(context, p);
 }
 
-static tc_status kernel_create(const tc_context *context, const program *p, const char *name, cl_kernel *kernel) {
+static const uint32_t items_step = 32; /* kernels of groups take whole parts of a brick's 32 words */
+
+/* What a kernel allows per group, and the multiple of work-items that suits the device. */
+typedef struct group_limit {
+    const char *kernel; /* that allows the fewest */
+    size_t most, multiple;
+} group_limit;
+
+static tc_status kernel_create(const tc_context *context, const program *p, const char *name, cl_kernel *kernel,
+                               group_limit *limit) {
     cl_int error;
-    size_t most = 0;
+    size_t most = 0, multiple = 0;
     *kernel = cl->CreateKernel(p->program, name, &error);
     if (!error)
         error =
             cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
+    if (!error)
+        error = cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE,
+                                           sizeof multiple, &multiple, NULL);
     if (error) return context_fail(context, name, error);
-    if (context->options.work_items > most)
-        return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
-                               context->info.name, name, most, context->options.work_items);
+    if (most < limit->most) *limit = (group_limit){name, most, multiple};
     return TC_OK;
 }
 
-static void program_release(program *p) {
+static tc_status kernels_create(const tc_context *context, program *p, const char *name, bool cells,
+                                group_limit *limit) {
+    static const char *const of_complexes[COMPLEX_KERNELS] = {"complex_classify", "complex_list", "complex_join",
+                                                              "complex_number", "complex_emit"};
+    tc_status status = TC_OK;
+    *limit = (group_limit){NULL, SIZE_MAX, 0};
+    if (name) status = kernel_create(context, p, name, &p->kernel, limit);
+    if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells, limit);
+    for (int n = 0; n < COMPLEX_KERNELS && !name && !status; n++)
+        status = kernel_create(context, p, of_complexes[n], &p->complex[n], limit);
+    return status;
+}
+
+/* Gives back what was built, not the program's place. */
+static void program_clear(program *p) {
     if (p->kernel) cl->ReleaseKernel(p->kernel);
     if (p->cells) cl->ReleaseKernel(p->cells);
     for (int n = 0; n < COMPLEX_KERNELS; n++)
         if (p->complex[n]) cl->ReleaseKernel(p->complex[n]);
     if (p->program) cl->ReleaseProgram(p->program);
+    p->kernel = p->cells = NULL;
+    memset(p->complex, 0, sizeof p->complex);
+    p->program = NULL;
+}
+
+static void program_release(program *p) {
+    program_clear(p);
     free(p);
 }
 
-/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: none
- * is made. */
+/* Keeps what was built here in the cache. */
+static void program_keep(const tc_context *context, const program *p) {
+    program_recipe recipe = recipe_of(p);
+    if (!p->cached) program_cache_store(context, &recipe, p->program);
+}
+
+/* The most work-items up to the limit that kernels of groups can have: a multiple of 32, and of what suits the device
+ * where there is one; 0: none. */
+static uint32_t work_items_below(const group_limit *limit) {
+    const size_t step = limit->multiple % items_step == 0 && limit->multiple <= limit->most && limit->multiple
+                            ? limit->multiple
+                            : items_step;
+    return (uint32_t)(limit->most / step * step);
+}
+
+/* The options asked for, with the program's own number of work-items. */
+static void program_options_write(program *p) {
+    static const char define[] = "-DWORK_ITEMS=";
+    const char *at = strstr(p->asked, define) + sizeof define - 1;
+    snprintf(p->options, sizeof p->options, "%.*s%u%s", (int)(at - p->asked), p->asked, p->work_items,
+             at + strspn(at, "0123456789"));
+}
+
+/* Builds the program, and again, smaller, where one of its kernels allows fewer work-items. */
+static tc_status program_make(const tc_context *context, program *p, const char *name, bool cells) {
+    group_limit limit;
+    for (p->work_items = context->options.work_items;; p->work_items = work_items_below(&limit)) {
+        program_options_write(p);
+        tc_status status = program_build(context, p);
+        if (!status) status = kernels_create(context, p, name, cells, &limit);
+        if (status || p->work_items <= limit.most) return status;
+        if (!work_items_below(&limit))
+            return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
+                                   context->info.name, limit.kernel, limit.most, items_step);
+        program_keep(context, p); /* later contexts then learn its limits without a compiler */
+        program_clear(p);
+    }
+}
+
+/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: those
+ * of complexes. */
 static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCES_MOST],
                              const char *name, bool cells, program **out) {
     for (program *p = context->programs; p; p = p->next)
-        if (!strcmp(p->options, options)) {
+        if (!strcmp(p->asked, options)) {
             *out = p;
             return TC_OK;
         }
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
-    snprintf(p->options, sizeof p->options, "%s", options);
+    snprintf(p->asked, sizeof p->asked, "%s", options);
     p->sources = sources;
-    tc_status status = program_build(context, p);
-    if (!status && name) status = kernel_create(context, p, name, &p->kernel);
-    if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells);
+    tc_status status = program_make(context, p, name, cells);
     if (status) {
         program_release(p);
         return status;
@@ -186,7 +254,8 @@ tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method meth
     program *p;
     classify_options_write(context, type, method, missing, options, sizeof options);
     tc_status status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
-    if (!status) out->classify = p->kernel, out->cells = p->cells;
+    if (!status) out->classify = (sized_kernel){p->kernel, p->work_items};
+    if (!status) out->cells = (sized_kernel){p->cells, p->work_items};
     return status;
 }
 
@@ -196,36 +265,25 @@ tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method me
     program *p;
     emit_options_write(context, grid, method, missing, normals, options, sizeof options);
     tc_status status = program_get(context, options, emit_sources[text_of(context)], "emit", false, &p);
-    if (!status) out->emit = p->kernel;
+    if (!status) out->emit = (sized_kernel){p->kernel, p->work_items};
     return status;
 }
 
-static tc_status complex_kernels_create(const tc_context *context, program *p) {
-    static const char *const names[COMPLEX_KERNELS] = {"complex_classify", "complex_list", "complex_join",
-                                                       "complex_number", "complex_emit"};
-    tc_status status = TC_OK;
-    for (int n = 0; n < COMPLEX_KERNELS && !status; n++)
-        if (!p->complex[n]) status = kernel_create(context, p, names[n], &p->complex[n]);
-    return status;
-}
-
-tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, cl_kernel const **out) {
+tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, const program **out) {
     char options[sizeof context->programs->options];
     program *p = NULL;
     emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
     strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
     tc_status status = program_get(context, options, complex_sources[text_of(context)], NULL, false, &p);
-    if (!status) status = complex_kernels_create(context, p);
-    if (!status) *out = p->complex;
+    if (!status) *out = p;
     return status;
 }
 
 void programs_release(tc_context *context) {
     while (context->programs) {
         program *p = context->programs, *next = p->next;
-        program_recipe recipe = recipe_of(p);
         const bool inherited = context_is_inherited(context);
-        if (!p->cached && !inherited) program_cache_store(context, &recipe, p->program);
+        if (!inherited) program_keep(context, p);
         if (inherited)
             free(p);
         else

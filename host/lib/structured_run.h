@@ -95,13 +95,13 @@ tc_status slabs_emit_whole(run *r, mesh_buffers *buffers);
 /* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
 tc_status slabs_emit(run *r, tc_mesh *mesh);
 
-/* Sets one argument after the other, then launches work_groups groups of work_items. */
+/* Sets one argument after the other, then launches work_groups groups of the kernel's work-items. */
 typedef struct kernel_argument {
     size_t bytes;
     const void *value;
 } kernel_argument;
 
-tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const kernel_argument *arguments,
+tc_status kernel_launch(const run *r, sized_kernel kernel, const char *name, const kernel_argument *arguments,
                         cl_uint argument_count);
 
 #define ARGUMENT(x)                                                                                                    \

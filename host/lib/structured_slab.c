@@ -12,13 +12,14 @@
 
 static const uintptr_t page_bytes = 4096;
 
-tc_status kernel_launch(const run *r, cl_kernel kernel, const char *name, const kernel_argument *arguments,
+tc_status kernel_launch(const run *r, sized_kernel kernel, const char *name, const kernel_argument *arguments,
                         cl_uint argument_count) {
-    const size_t local = r->context->options.work_items, global = local * r->context->options.work_groups;
+    const size_t local = kernel.work_items, global = local * r->context->options.work_groups;
     cl_int error = CL_SUCCESS;
     for (cl_uint n = 0; n < argument_count && !error; n++)
-        error = cl->SetKernelArg(kernel, n, arguments[n].bytes, arguments[n].value);
-    if (!error) error = cl->EnqueueNDRangeKernel(r->context->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
+        error = cl->SetKernelArg(kernel.kernel, n, arguments[n].bytes, arguments[n].value);
+    if (!error)
+        error = cl->EnqueueNDRangeKernel(r->context->queue, kernel.kernel, 1, NULL, &global, &local, 0, NULL, NULL);
     return error ? context_fail(r->context, name, error) : TC_OK;
 }
 

@@ -1,6 +1,7 @@
 /*
  * test_lacks.c - a device without double precision: 32-bit integers and doubles have their vertices made on the host,
- * of triangles that the device has numbered; what cannot be so is refused
+ * of triangles that the device has numbered; what cannot be so is refused. And kernels that a device runs with fewer
+ * work-items than were asked for: they are built again for as many as it allows
  */
 #define CL_TARGET_OPENCL_VERSION 120
 
@@ -74,6 +75,66 @@ static void test_refusals(tc_context *context) {
     tc_grid_destroy(grid);
 }
 
+/* The structured grid's own tetrahedra. */
+static void test_complex(tc_context *context) {
+    static float points[3 * SAMPLES];
+    tc_grid_options grid;
+    tc_complex cut = {.struct_size = sizeof cut};
+    tc_complex_options complex;
+    tc_extract_options options;
+    tc_context *contexts[2] = {reference, context};
+    tc_grid *grids[2] = {NULL, NULL};
+    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_mesh_data data[2] = {{.struct_size = sizeof *data}, {.struct_size = sizeof *data}};
+    for (int n = 0; n < SAMPLES; n++)
+        points[3 * n] = (float)(n % NX), points[3 * n + 1] = (float)(n / NX % NY),
+                   points[3 * n + 2] = (float)(n / NX / NY);
+    grid_describe(&grid, TC_F32);
+    grid.points = points;
+    EXPECT(tc_tetrahedralize_grid(&grid, &cut) == TC_OK, "%s", tc_message());
+    tc_complex_options_init(&complex);
+    complex.points = points, complex.point_count = SAMPLES;
+    complex.tetrahedra = cut.tetrahedra, complex.tetrahedron_count = cut.tetrahedron_count;
+    complex.type = TC_F32, complex.samples = samples.f32;
+    tc_extract_options_init(&options);
+    options.isovalue = 500.25;
+    for (int n = 0; n < 2; n++)
+        EXPECT(!tc_complex_create(contexts[n], &complex, &grids[n]) && !tc_extract(grids[n], &options, &meshes[n]) &&
+                   !tc_mesh_get(meshes[n], &data[n]),
+               "a complex with few work-items: %s", tc_message());
+    const char *differs = mesh_difference(&data[0], &data[1]);
+    EXPECT(!differs && data[0].triangle_count > 1000, "a complex with few work-items: %s", differs);
+    for (int n = 0; n < 2; n++) {
+        tc_mesh_destroy(meshes[n]);
+        tc_grid_destroy(grids[n]);
+    }
+    tc_complex_release(&cut);
+}
+
+static void test_limits(const layer_functions *layer) {
+    static const struct {
+        const char *command;
+        bool complex;
+    } limits[] = {
+        {"lacks items classify 32 32", false},    {"lacks items emit 96 64", false},
+        {"lacks items * 64 32", false},           {"lacks items cells_mark 63 32", false},
+        {"lacks items complex_join 32 32", true},
+    };
+    for (size_t n = 0; n < sizeof limits / sizeof *limits; n++) {
+        tc_context_options options;
+        tc_context_options_init(&options);
+        options.work_items = 128;
+        EXPECT(layer->command(limits[n].command), "%s is not understood", limits[n].command);
+        tc_context *context = context_open(&options);
+        if (limits[n].complex)
+            test_complex(context);
+        else
+            test_extract(context, 128, n == 3 ? TC_F64 : TC_F32, TC_METHOD_TETRA, false);
+        tc_context_destroy(context);
+    }
+    EXPECT(layer->command("lacks off"), "the layer goes on");
+}
+
 int main(void) {
     random_state = 1996;
     if (!device_exists()) return SKIPPED;
@@ -95,6 +156,7 @@ int main(void) {
         test_refusals(context);
         tc_context_destroy(context);
     }
+    test_limits(layer);
     tc_context_destroy(reference);
     return EXPECT_DONE();
 }
