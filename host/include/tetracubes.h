@@ -119,6 +119,23 @@ typedef enum tc_engine {
  * used again. */
 typedef int (*tc_progress)(void *user, const char *stage, double fraction);
 
+/* How a trial of kernels in a process of its own has ended. */
+typedef enum tc_verdict {
+    TC_VERDICT_NONE = 0,  /* there was none, as no process could be started: the kernels are used untried */
+    TC_VERDICT_GOOD,      /* tc_trial_run returned TC_OK, and the process ended well */
+    TC_VERDICT_WRONG,     /* it returned TC_ERROR_WRONG */
+    TC_VERDICT_REFUSED,   /* it returned another status: the driver does not build the kernels, or does not run them */
+    TC_VERDICT_CRASHED,   /* the driver ended the process */
+    TC_VERDICT_HUNG,      /* it did not end in time */
+    TC_VERDICT_STOPPED,   /* somebody else ended the process, or memory ran out: the call fails, nothing is kept */
+    TC_VERDICT_CANCELLED, /* the caller does not want to wait: the library's call returns TC_ERROR_CANCELLED */
+} tc_verdict;
+
+/* Runs tc_trial_run(job) in another process, with a limit of time, and tells how that ended; reason: room for a line,
+ * which was set empty: tc_message() of that process, or its last words. job is a line of text. Called on the thread that
+ * calls the library. */
+typedef tc_verdict (*tc_trial)(void *user, const char *job, char *reason, size_t reason_bytes);
+
 struct _cl_context;
 struct _cl_command_queue;
 struct _cl_event;
@@ -153,6 +170,9 @@ typedef struct tc_context_options {
                          small volume goes through them and every byte is compared with the reference engine's. Where
                          one differs, the call returns TC_ERROR_WRONG. Takes milliseconds for each kind of kernels.
                          tc_emit tries nothing itself */
+    tc_trial trial;   /* called before a driver that is not known to be good first builds kernels of a kind: see below;
+                         NULL: it builds them in this process at once */
+    void *trial_user;
 } tc_context_options;
 
 typedef struct tc_context tc_context;
@@ -168,6 +188,23 @@ TC_API void tc_context_options_init(tc_context_options *options);
  * meshes before it. */
 TC_API tc_status tc_context_create(const tc_context_options *options, tc_context **context);
 TC_API void tc_context_destroy(tc_context *context);
+
+/* Drivers that crash or hang take the process with them. So the library can have them tried before: with options.trial
+ * set, opening a device and each kind of kernels (of grid, type, method, missing samples, normals) is tried once in a
+ * process that the callback starts, unless driver and version are among those known to be good. The verdict is kept in
+ * the cache, for device, driver, versions and kernels, beside the programs that the trial has built; later contexts,
+ * of other processes too, find both. A verdict that is not good makes the library take its other text of the kernels (one
+ * work-item per group, or groups of them), where work_items is 0 and that one passes; else the call fails with
+ * TC_ERROR_DEVICE or TC_ERROR_WRONG and says what was found. Kept verdicts count in contexts without a callback too. The
+ * library itself starts no process. A caller's cl_context is tried on the device of tc_device_get that it has; where it
+ * has another, a part of one, it is used untried. tc_emit that meets kernels which are not good fails; after that count
+ * again.
+ *
+ * tc_trial_run does what the job says: it opens the device, builds the kernels, runs them on a small volume and compares
+ * every byte with the reference engine. progress, which may be NULL, is told "run" when they are built. The driver may
+ * crash or hang in it, so it belongs into a process without other work, with the same environment. The tool does so by
+ * running itself. */
+TC_API tc_status tc_trial_run(const char *job, tc_progress progress, void *progress_user);
 
 /* The device of an OpenCL context; TC_ERROR_ARGUMENT for the reference engine, which has none. */
 TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *info);

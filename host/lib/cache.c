@@ -47,6 +47,11 @@ static int folder_open(const char *path) {
     return -1;
 }
 
+bool cache_path(const char *name, char *path, size_t bytes) {
+    char folder[PATH_BYTES];
+    return folder_name(folder) && snprintf(path, bytes, "%s/%s", folder, name) < (int)bytes;
+}
+
 /* The folder at the path, with those above it: its own user's alone, as the XDG base directories are. */
 static void folders_make(char *path) {
     for (char *at = strchr(path + 1, '/'); at; at = strchr(at + 1, '/')) {

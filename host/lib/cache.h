@@ -25,6 +25,9 @@ bool cache_read(const char *name, cache_text *out);
 /* Replaces the file; makes the folder where it is missing. False where it cannot be written. */
 bool cache_write(const char *name, const void *bytes, size_t count);
 
+/* The name of the file with its folder; false where there is no folder. */
+bool cache_path(const char *name, char *path, size_t bytes);
+
 /* True where there is a folder to be used, whether it exists yet or not. */
 bool cache_is_on(void);
 

@@ -4,6 +4,7 @@
 #include "failure.h"
 #include "float_environment.h"
 #include "tuning.h"
+#include "vetting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -217,6 +218,7 @@ static tc_status device_open(tc_context *context, const char *specification) {
     status = device_describe(choice.device, &context->info);
     context->info.platform_index = choice.platform_index;
     context->info.device_index = choice.device_index;
+    if (!status) status = device_vet(context);
     if (status) return status;
     cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)choice.platform, 0};
     context->context = cl->CreateContext(properties, 1, &choice.device, NULL, NULL, &error);
@@ -242,8 +244,7 @@ tc_status copies_queue_provide(tc_context *context) {
     return error ? context_fail(context, "making a command queue for copies", error) : TC_OK;
 }
 
-tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
-    FLOAT_ENVIRONMENT_DEFAULT;
+static tc_status context_make(const tc_context_options *options, bool is_trial, tc_context **out) {
     tc_context_options o;
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
     *out = NULL;
@@ -256,6 +257,7 @@ tc_status tc_context_create(const tc_context_options *options, tc_context **out)
     if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
     context->process = getpid();
     context->options = o;
+    context->is_trial = is_trial;
     context->options.device = NULL;
     context->options.cl_context = NULL;
     context->options.cl_queue = NULL;
@@ -266,6 +268,15 @@ tc_status tc_context_create(const tc_context_options *options, tc_context **out)
     }
     *out = context;
     return TC_OK;
+}
+
+tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
+    return context_make(options, false, out);
+}
+
+tc_status context_create_for_trial(const tc_context_options *options, tc_context **out) {
+    return context_make(options, true, out);
 }
 
 static void objects_release(tc_context *context) {

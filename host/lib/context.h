@@ -86,6 +86,10 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
+    uint32_t other_items;          /* work-items of the other text of kernels; 0: there is none to take (vetting.c) */
+    bool is_trial;                 /* kernels are built without asking what is known of them */
+    bool text_changed;             /* the other text was taken within a call, which starts again */
+    bool vetted[TRIAL_KINDS + 1];  /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *served;  /* the grid that the workspace was last used for */
     bool passed[TRIAL_KINDS];      /* kernels that were tried (trial.c) */
     const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
@@ -135,6 +139,12 @@ void buffer_release(tc_context *context, device_buffer *buffer);
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
+
+/* As tc_context_create; its kernels are built without asking what is known of them. */
+tc_status context_create_for_trial(const tc_context_options *options, tc_context **context);
+
+/* All sources of kernels, for a key: the same text, the same number. */
+uint64_t kernel_sources_hash(void);
 
 /* Gives the buffers back that are kept between extractions. */
 void workspace_release(tc_context *context);

@@ -228,6 +228,20 @@ tc_status device_choose(const char *specification, device_choice *choice) {
     return TC_OK;
 }
 
+bool device_find(cl_device_id device, int *platform_index, int *device_index) {
+    device_list list;
+    tc_status status = opencl_lock();
+    if (status) return false;
+    status = device_list_make(&list);
+    opencl_unlock();
+    for (int n = 0; n < list.count && !status; n++) {
+        *platform_index = list.devices[n].platform_index;
+        *device_index = list.devices[n].device_index;
+        if (list.devices[n].device == device) return true;
+    }
+    return false;
+}
+
 tc_status tc_device_count(int *count) {
     FLOAT_ENVIRONMENT_DEFAULT;
     device_list list;

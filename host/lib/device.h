@@ -6,6 +6,8 @@
 
 #include "opencl.h"
 
+#include <stdbool.h>
+
 typedef struct device_choice {
     cl_platform_id platform;
     cl_device_id device;
@@ -14,6 +16,9 @@ typedef struct device_choice {
 
 /* specification: as tc_context_options.device, NULL for the default. */
 tc_status device_choose(const char *specification, device_choice *choice);
+
+/* The place of a device among all of this machine; false where it is none of them. */
+bool device_find(cl_device_id device, int *platform_index, int *device_index);
 
 /* Fills all but the indices, which stay -1 where the device is not one of a choice. */
 tc_status device_describe(cl_device_id device, tc_device_info *info);

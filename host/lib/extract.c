@@ -8,6 +8,7 @@
 #include "reference.h"
 #include "structured.h"
 #include "trial.h"
+#include "vetting.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -81,11 +82,12 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
     if (status) return status;
-    do { /* again where missing samples were met, and other kernels took over */
+    do { /* again where missing samples were met, and other kernels took over, or kernels were exchanged */
         found = (tc_counts){.struct_size = sizeof found};
-        status = trial_run(grid, &o, false);
+        status = grid_vet(grid, &o, false);
+        if (!status) status = trial_run(grid, &o, false);
         if (!status) status = grid_count(grid, &o, &found);
-    } while (!status && trial_pending(grid, &o, false));
+    } while (vetting_restarts(grid->context) || (!status && trial_pending(grid, &o, false)));
     if (status) return status;
     found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                        found.triangle_count * MESH_BYTES_PER_TRIANGLE;
@@ -106,7 +108,17 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
     if (status) return status;
     if (grid->complex) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take complexes: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
-    return structured_emit(grid, &o, &m, done);
+    status = structured_emit(grid, &o, &m, done);
+    vetting_restarts(grid->context); /* what was counted is gone: the caller counts again */
+    return status;
+}
+
+static tc_status vetted_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    tc_status status = grid_vet(grid, options, true);
+    if (!status) status = trial_run(grid, options, true);
+    if (!status) status = grid_extract(grid, options, mesh);
+    if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);
+    return status ? status : trial_run(grid, options, true); /* of other kernels, where missing samples were met */
 }
 
 tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **out) {
@@ -119,10 +131,11 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
-    if (!status) status = trial_run(grid, &o, true);
-    if (!status) status = grid_extract(grid, &o, mesh);
-    if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);
-    if (!status) status = trial_run(grid, &o, true); /* of other kernels, where missing samples were met */
+    if (!status) status = vetted_extract(grid, &o, mesh);
+    while (vetting_restarts(grid->context)) { /* kernels were exchanged on the way */
+        mesh_clear(mesh);
+        status = vetted_extract(grid, &o, mesh);
+    }
     if (status) mesh_clear(mesh);
     if (status && !*out) {
         tc_mesh_destroy(mesh);

@@ -11,6 +11,7 @@
 #include "kernel_sources.h"
 #include "program_cache.h"
 #include "text.h"
+#include "vetting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,6 +116,17 @@ static program_recipe recipe_of(const program *p) {
     program_recipe recipe = {p->sources, 0, p->options};
     while (recipe.source_count < SOURCES_MOST && p->sources[recipe.source_count]) recipe.source_count++;
     return recipe;
+}
+
+uint64_t kernel_sources_hash(void) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++) {
+        const char *const *const lists[] = {classify_sources[text], emit_sources[text], complex_sources[text]};
+        for (int n = 0; n < 3; n++)
+            for (int s = 0; s < SOURCES_MOST && lists[n][s]; s++)
+                for (const char *c = lists[n][s]; *c; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+    }
+    return hash;
 }
 
 static tc_status source_build(const tc_context *context, program *p) {
@@ -252,8 +264,11 @@ static tc_status program_get(tc_context *context, const char *options, const cha
 tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out) {
     char options[sizeof context->programs->options];
     program *p;
+    const kernel_kind kind = {.type = type, .hybrid = method == TC_METHOD_HYBRID, .missing = missing};
+    tc_status status = kernels_vet(context, kind);
+    if (status) return status;
     classify_options_write(context, type, method, missing, options, sizeof options);
-    tc_status status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
+    status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
     if (!status) out->classify = (sized_kernel){p->kernel, p->work_items};
     if (!status) out->cells = (sized_kernel){p->cells, p->work_items};
     return status;
@@ -263,8 +278,11 @@ tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method me
                           kernels *out) {
     char options[sizeof context->programs->options];
     program *p;
+    const kernel_kind kind = {grid->kind, grid->type, method == TC_METHOD_HYBRID, missing, normals, true};
+    tc_status status = kernels_vet(context, kind);
+    if (status) return status;
     emit_options_write(context, grid, method, missing, normals, options, sizeof options);
-    tc_status status = program_get(context, options, emit_sources[text_of(context)], "emit", false, &p);
+    status = program_get(context, options, emit_sources[text_of(context)], "emit", false, &p);
     if (!status) out->emit = (sized_kernel){p->kernel, p->work_items};
     return status;
 }
@@ -272,9 +290,11 @@ tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method me
 tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, const program **out) {
     char options[sizeof context->programs->options];
     program *p = NULL;
+    tc_status status = kernels_vet(context, (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type});
+    if (status) return status;
     emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
     strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
-    tc_status status = program_get(context, options, complex_sources[text_of(context)], NULL, false, &p);
+    status = program_get(context, options, complex_sources[text_of(context)], NULL, false, &p);
     if (!status) *out = p;
     return status;
 }

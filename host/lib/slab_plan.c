@@ -99,11 +99,17 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
                       uint64_t budget, uint64_t *bytes) {
     uint64_t largest;
     plan->slab_layers = slab_layers;
+    plan->work_items = context->options.work_items;
     plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
     tiles_shape(context, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
     uint64_t words = BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
     return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
+}
+
+void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t bytes;
+    if (plan->work_items != context->options.work_items) plan_fits(context, grid, plan, plan->slab_layers, 0, &bytes);
 }
 
 /* Most layers per slab that fit, by bisection; 0 where not even one does. */

@@ -20,6 +20,7 @@ typedef struct slab_plan {
     bool overlaps;                               /* copies and kernels run at once: windows are double */
     uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
     uint32_t scratch_words;                      /* per group */
+    uint32_t work_items;                         /* that tiles are shaped for */
     uint64_t mesh_bytes;                         /* bound on the mesh, or all windows of it */
 } slab_plan;
 
@@ -29,6 +30,9 @@ uint64_t plan_budget(const tc_context *context, const tc_grid *grid);
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid);
 
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+
+/* Shapes the tiles anew where the context's text of the kernels is another than when the plan was made. */
+void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
 /* Planes z0 <= z < z1 of a slab. */
 uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index);

@@ -12,20 +12,31 @@
 
 /* ------------------------------------------------------------------------------------------------------------ kinds */
 
-/* What decides on the kernels; a number below TRIAL_KINDS. */
-static unsigned kind_of(const tc_grid *grid, const tc_extract_options *options, bool emits) {
-    unsigned kind = grid->complex ? 3 : (unsigned)grid->kind;
-    bool missing = grid->device && grid->device->missing, hybrid = options->method == TC_METHOD_HYBRID;
-    if (!emits && !grid->complex) kind = 0; /* kernel 1 knows nothing of coordinates */
-    bool normals = emits && options->normals;
-    return ((((kind * 8 + (unsigned)grid->type) * 2 + hybrid) * 2 + missing) * 2 + normals) * 2 + emits;
+kernel_kind kind_of(const tc_grid *grid, const tc_extract_options *options, bool emits) {
+    kernel_kind kind = {.grid = grid->complex ? KIND_COMPLEX : (unsigned)grid->kind,
+                        .type = grid->type,
+                        .hybrid = options->method == TC_METHOD_HYBRID,
+                        .missing = grid->device && grid->device->missing,
+                        .normals = emits && options->normals,
+                        .emits = emits};
+    if (!emits && !grid->complex) kind.grid = 0; /* kernel 1 knows nothing of coordinates */
+    return kind;
+}
+
+unsigned kind_number(kernel_kind k) {
+    return ((((k.grid * 8 + (unsigned)k.type) * 2 + k.hybrid) * 2 + k.missing) * 2 + k.normals) * 2 + k.emits;
+}
+
+kernel_kind kind_of_number(unsigned n) {
+    return (kernel_kind){.grid = n >> 7, .type = (tc_type)(n >> 4 & 7), n >> 3 & 1, n >> 2 & 1, n >> 1 & 1, n & 1};
 }
 
 bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const tc_context *context = grid->context;
     if (!context->options.check_device || context->options.engine != TC_ENGINE_OPENCL) return false;
     if (grid->complex && !grid->complex->tetrahedron_count) return false;
-    return !inside_range_of(grid->type, options->isovalue).uniform && !context->passed[kind_of(grid, options, emits)];
+    return !inside_range_of(grid->type, options->isovalue).uniform &&
+           !context->passed[kind_number(kind_of(grid, options, emits))];
 }
 
 /* ------------------------------------------------------------------------------------------------------- comparison */
@@ -124,19 +135,39 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
     return status;
 }
 
-static tc_status kinds_try(tc_context *context, trial_volume *v, const tc_extract_options *options, bool emits) {
-    tc_extract_options how[SURFACES] = {*options, *options};
+/* So that it is known which of the two failed, building or running. */
+static tc_status kernels_build(tc_context *context, const trial_volume *v, kernel_kind kind) {
+    const tc_method method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
+    const program *of_complexes;
+    kernels k;
+    tc_grid *grid = NULL;
+    tc_status status = trial_grid_create(v, context, &grid);
+    if (!status && grid->complex) status = complex_kernels_get(context, grid, &of_complexes);
+    if (!status && !grid->complex) status = classify_kernels_get(context, kind.type, method, kind.missing, &k);
+    if (!status && !grid->complex && kind.emits)
+        status = emit_kernel_get(context, grid, method, kind.missing, kind.normals, &k);
+    tc_grid_destroy(grid);
+    return status ? status : context_progress(context, "run", 0);
+}
+
+static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind kind) {
+    tc_extract_options how[SURFACES];
     tc_context *reference = NULL;
     tc_grid *grid = NULL;
     tc_mesh *meshes[SURFACES] = {NULL, NULL};
     const tc_context_options kept = context->options;
     tc_status status = trial_volume_make(v);
-    how[0].isovalue = v->isovalue;
-    how[1].isovalue = v->isovalue + 0.3;
+    for (int n = 0; n < SURFACES; n++) {
+        tc_extract_options_init(&how[n]);
+        how[n].isovalue = v->isovalue + (n ? 0.3 : 0);
+        how[n].method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
+        how[n].normals = kind.normals;
+    }
+    if (!status && context->is_trial) status = kernels_build(context, v, kind);
     if (!status) status = reference_make(v, how, &reference, &grid, meshes);
     context->options.check_device = 0;
     context->options.progress = NULL;
-    if (!status) status = device_try(context, v, how, emits, meshes);
+    if (!status) status = device_try(context, v, how, kind.emits, meshes);
     context->options = kept;
     for (int n = 0; n < SURFACES; n++) tc_mesh_destroy(meshes[n]);
     tc_grid_destroy(grid);
@@ -144,16 +175,22 @@ static tc_status kinds_try(tc_context *context, trial_volume *v, const tc_extrac
     return status;
 }
 
+tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
+    trial_volume v = {.type = kind.type,
+                      .kind = kind.grid == KIND_COMPLEX ? GRID_CURVILINEAR : (grid_kind)kind.grid,
+                      .unstructured = kind.grid == KIND_COMPLEX,
+                      .missing = kind.missing,
+                      .plain = kind.normals};
+    tc_status status = volume_try(context, &v, kind);
+    trial_volume_release(&v);
+    return status;
+}
+
 tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!trial_pending(grid, options, emits)) return TC_OK;
-    trial_volume v = {.type = grid->type,
-                      .kind = grid->kind,
-                      .unstructured = grid->complex != NULL,
-                      .missing = grid->device && grid->device->missing,
-                      .plain = options->normals != 0};
-    tc_status status = kinds_try(grid->context, &v, options, emits);
-    trial_volume_release(&v);
+    const kernel_kind kind = kind_of(grid, options, emits);
+    tc_status status = trial_of_kind(grid->context, kind);
     if (status) return status;
-    grid->context->passed[kind_of(grid, options, emits)] = true;
+    grid->context->passed[kind_number(kind)] = true;
     return context_progress(grid->context, "trial", 0);
 }

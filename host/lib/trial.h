@@ -6,14 +6,31 @@
  * bricks and tiles, both parities, ties, subnormal and huge samples, missing ones where the kernels know of them.
  *
  * Counts first: wrong ones could make kernel 2 write where nothing is. Then every byte of the mesh is compared with the
- * scalar reference's; then both once more for another isovalue, by the fallback of the scan and from the ranges that the
- * visit before has left. That takes milliseconds; so the verdict is kept in the context alone, where it cannot outlive a change of
- * driver or device.
+ * scalar reference's; then both once more for another isovalue, by the fallback of the scan and from the ranges that
+ * the visit before has left. That takes milliseconds; so the verdict is kept in the context alone, where it cannot
+ * outlive a change of driver or device.
  */
 #ifndef TRIAL_H
 #define TRIAL_H
 
 #include "grid.h"
+
+/* What decides on the kernels: grid as grid_kind, or KIND_COMPLEX. */
+typedef struct kernel_kind {
+    unsigned grid;
+    tc_type type;
+    bool hybrid, missing, normals, emits; /* emits: kernel 2 too */
+} kernel_kind;
+
+enum { KIND_COMPLEX = 3 };
+
+/* A number below TRIAL_KINDS, and back. */
+unsigned kind_number(kernel_kind kind);
+kernel_kind kind_of_number(unsigned number);
+kernel_kind kind_of(const tc_grid *grid, const tc_extract_options *options, bool emits);
+
+/* Tries the kernels of a kind, whether they have passed or not; progress is told "run" when they are built. */
+tc_status trial_of_kind(tc_context *context, kernel_kind kind);
 
 /* TC_OK where the kernels for the grid and the options have passed, or need not be tried; TC_ERROR_WRONG, saying what
  * differs, where the device computes wrongly. Uses the workspace; emits: kernel 2 is tried too. */

@@ -142,8 +142,11 @@ static void defaults_take(tc_context *context) {
 
 tc_status tuning_choose(tc_context *context) {
     const tc_context_options *o = &context->options;
+    const bool may_choose = !o->work_items;
     kept_take(context);
     defaults_take(context);
+    context->other_items = may_choose ? o->work_items > 1 ? 1 : 32 : 0;
+    if (context->other_items && !work_items_fit(context, context->other_items)) context->other_items = 0;
     if (o->work_items == 1 && !work_items_fit(context, 1))
         return (tc_status)fail(
             TC_ERROR_ARGUMENT,

@@ -12,8 +12,8 @@
 #define EXPORT __attribute__((visibility("default")))
 
 /* From the driver up: what a mode does to a call is seen by those above it. */
-static const layer_mode *const modes[] = {&lacks_mode,  &corrupt_mode, &late_mode, &memory_mode,
-                                          &ledger_mode, &fail_mode,    &count_mode};
+static const layer_mode *const modes[] = {&lacks_mode,  &corrupt_mode, &crash_mode, &late_mode,
+                                          &memory_mode, &ledger_mode,  &fail_mode,  &count_mode};
 enum { MODES = sizeof modes / sizeof *modes, COMMAND_BYTES = 1024, WORDS_MOST = 16 };
 
 static bool one_command(char *text) {

@@ -15,6 +15,7 @@
  *     corrupt flip KERNEL ARGUMENT BYTE BIT    that bit of what the argument points to is wrong after each launch
  *     corrupt read BYTE BIT          that bit is wrong in whatever is read from a buffer
  *     corrupt build MISTAKE          programs are built wrongly: the table of corrupt.c; "corrupt off" ends either
+ *     crash WHERE HOW [OPTION]       the process ends or hangs in a call: crash.c
  *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
  *     lacks fp64 | off               devices say that they have no double precision
  *     lacks fame                     devices say another version of their driver, one that nobody knows
@@ -78,7 +79,8 @@ typedef struct layer_mode {
     bool (*command)(char *const *words, int count);
 } layer_mode;
 
-extern const layer_mode corrupt_mode, fail_mode, count_mode, lacks_mode, ledger_mode, late_mode, memory_mode;
+extern const layer_mode corrupt_mode, crash_mode, fail_mode, count_mode, lacks_mode, ledger_mode, late_mode,
+    memory_mode;
 
 unsigned long fail_calls(const char *entry_name);
 unsigned long fail_count(void);
