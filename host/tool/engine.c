@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "progress.h"
+#include "trial.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -19,6 +20,7 @@ int engine_open(const options *o, tc_engine kind, engine *e) {
     device.max_memory_bytes = kind == TC_ENGINE_OPENCL ? o->max_memory : 0;
     device.progress = progress_update;
     device.check_device = !o->verify; /* which compares more */
+    device.trial = trial_in_child;
     return library_status(tc_context_create(&device, &e->context));
 }
 

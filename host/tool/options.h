@@ -57,7 +57,10 @@ typedef struct options {
     double spacing[3], origin[3];
     double origin_at[3]; /* where given: coordinates of the output are relative to it */
 
-    uint64_t given; /* bit n: row n of the table stood on the command line */
+    uint64_t given;    /* bit n: row n of the table stood on the command line */
+    uint64_t timeout;  /* seconds; 0 where not given */
+    const char *junit; /* NULL where not given */
+    int quick, vectors;
     int verify, check, json, count, soup, normals, drop_degenerate, quiet, help;
 } options;
 

@@ -1,193 +1,236 @@
-/* selftest.c - runs the groups of trials on a device; says PASS or FAIL */
+/* selftest.c - runs the groups of trials on a device, each in a child of this process; says PASS or FAIL */
+#include "child.h"
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "progress.h"
 #include "report.h"
 #include "selftest.h"
-#include "verify.h"
+#include "trial.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* A child ends with its driver's first fault, and another goes on behind the trial: this often in a group. */
+enum { FAULTS_MOST = 8 };
+
+/* A group while it runs. */
+typedef struct group_progress {
+    int group, number; /* of the trial at hand; -1: none yet */
+    char name[400];    /* of the trial at hand; "": none is */
+    double begin_ms;
+    selftest_results *all;
+    int has_ended, status;
+    char text[700]; /* with a status */
+} group_progress;
+
 /* What a group came to. */
 typedef struct verdict {
-    int trial_count, failed_count;
-    uint32_t most_slabs;
-    char text[512]; /* the first failure */
+    int trial_count, failed_count, skipped_count, crashed_count;
+    const char *text; /* the first failure */
 } verdict;
 
-/* ---------------------------------------------------------------------------------------------------------- trials */
+/* --------------------------------------------------------------------------------------------------------- children */
 
-static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, tc_grid **grid,
-                               tc_mesh **mesh, tc_mesh_data *data) {
-    tc_extract_options how;
-    tc_extract_options_init(&how);
-    how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, selftest_exponent(t)) : t->isovalue;
-    how.normals = t->normals;
-    how.method = t->method;
-    data->struct_size = sizeof *data;
-    tc_status status = selftest_grid_create(v, context, grid);
-    if (!status) status = tc_extract(*grid, &how, mesh);
-    return status ? status : tc_mesh_get(*mesh, data);
+static void end_trial(group_progress *p, trial_end end, const char *text) {
+    if (*p->name) results_add(p->all, p->group, p->name, end, text, now_ms() - p->begin_ms);
+    p->name[0] = '\0';
 }
 
-static void compare_trial(const trial *t, const tc_mesh_data *device, const tc_mesh_data *reference, char *text,
-                          size_t bytes) {
-    if (!verify_same(device, reference, text, bytes)) return;
-    if (t->is_known && (device->vertex_count != t->vertices || device->triangle_count != t->triangles))
-        snprintf(text, bytes, "%" PRIu64 " vertices and %" PRIu64 " triangles, should be %" PRIu64 " and %" PRIu64,
-                 device->vertex_count, device->triangle_count, t->vertices, t->triangles);
-}
-
-/* Runs a trial; counts it, and its failure, in *v. Returns 0, or an exit status where it could not be run. */
-static int run_trial(const trial *t, const launch *l, tc_context *device, tc_context *reference, verdict *v) {
-    tc_grid *grids[2] = {NULL, NULL};
-    tc_mesh *meshes[2] = {NULL, NULL};
-    tc_mesh_data data[2] = {{0}, {0}};
-    char text[256] = "";
-    selftest_volume volume;
-    int status = selftest_volume_make(t, &volume);
-    if (status) goto cleanup;
-    tc_status expected = extract_trial(t, reference, &volume, &grids[0], &meshes[0], &data[0]);
-    if (expected) {
-        status = library_status(expected);
-        goto cleanup;
+static void take_line(void *user, const char *line) {
+    group_progress *p = user;
+    int number = 0, at = 0;
+    if (sscanf(line, "trial %d %n", &number, &at) == 1 && at) {
+        p->number = number;
+        p->begin_ms = now_ms();
+        snprintf(p->name, sizeof p->name, "%s", line + at);
+    } else if (strcmp(line, "ok") == 0) {
+        end_trial(p, TRIAL_OK, "");
+    } else if (strncmp(line, "failed ", 7) == 0) {
+        end_trial(p, TRIAL_FAILED, line + 7);
+    } else if (strncmp(line, "skipped ", 8) == 0) {
+        end_trial(p, TRIAL_SKIPPED, line + 8);
+    } else if (sscanf(line, "end %d %n", &number, &at) == 1 && at) {
+        p->has_ended = 1;
+        p->status = number;
+        snprintf(p->text, sizeof p->text, "%s", line + at);
     }
-    tc_status extracted = extract_trial(t, device, &volume, &grids[1], &meshes[1], &data[1]);
-    if (extracted == TC_ERROR_CANCELLED) {
-        status = library_status(extracted);
-        goto cleanup;
-    }
-    if (extracted)
-        snprintf(text, sizeof text, "%s", tc_message());
-    else
-        compare_trial(t, &data[1], &data[0], text, sizeof text);
-    if (data[1].slab_count > v->most_slabs) v->most_slabs = data[1].slab_count;
-    v->trial_count++;
-    if (text[0] && v->failed_count++ == 0)
-        snprintf(v->text, sizeof v->text,
-                 "%s %" PRId64 "x%" PRId64 "x%" PRId64
-                 " %s, isovalue %g, work items %u, groups %u, tile bricks %u, division %d: %s",
-                 t->field ? t->field : "quotients", t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type),
-                 t->isovalue, l->work_items, l->work_groups, l->tile_bricks, l->division, text);
-cleanup:
-    for (int e = 0; e < 2; e++) {
-        tc_mesh_destroy(meshes[e]);
-        tc_grid_destroy(grids[e]);
-    }
-    selftest_volume_release(&volume);
-    return status;
 }
 
-static int open_device(const char *spec, const launch *l, tc_context **context) {
-    tc_context_options how;
-    tc_context_options_init(&how);
-    how.device = spec;
-    how.work_items = l->work_items;
-    how.work_groups = l->work_groups;
-    how.tile_bricks = l->tile_bricks;
-    how.spin_limit = l->spin_limit;
-    how.division = l->division;
-    how.max_memory_bytes = l->max_memory_bytes;
-    how.progress = progress_update;
-    return library_status(tc_context_create(&how, context));
+static void start_child(const options *o, group_progress *p, double most_ms, child_end *end) {
+    char command[] = SELFTEST_COMMAND, group[16], quick[4], first[16], device[300], vectors[4096];
+    snprintf(group, sizeof group, "%d", p->group);
+    snprintf(quick, sizeof quick, "%d", o->quick);
+    snprintf(first, sizeof first, "%d", p->number + 1);
+    snprintf(device, sizeof device, "%s", o->device ? o->device : "");
+    snprintf(vectors, sizeof vectors, "%s", o->operand_count ? o->operands[0] : "");
+    child_run((char *[]){command, group, device, quick, first, vectors, NULL}, most_ms, trial_limit_ms(), take_line, p,
+              end);
 }
 
-static int launch_fits(const launch *l, const tc_device_info *device) {
-    return l->work_items <= device->max_work_group_size && (l->division != 1 || device->rounds_division) &&
-           (l->division != 2 || device->has_fp64);
-}
-
-static int run_group(const char *spec, const tc_device_info *info, const trial_group *g, tc_context *reference,
-                     verdict *v) {
-    int status = 0;
-    for (int n = 0; n < g->launch_count && !status; n++) {
-        tc_context *device = NULL;
-        if (!launch_fits(&g->launches[n], info)) continue;
-        status = open_device(spec, &g->launches[n], &device);
-        for (int t = 0; t < g->trial_count && !status; t++)
-            status = run_trial(&g->trials[t], &g->launches[n], device, reference, v);
-        tc_context_destroy(device);
-        if (!status) status = progress_status();
+/* The driver has ended the child, or kept it from going on: a failure of the trial at hand. */
+static void note_fault(group_progress *p, const child_end *end) {
+    char how[100], text[600];
+    const int hung = end->kind == CHILD_TIMED_OUT;
+    child_end_text(end, how, sizeof how);
+    snprintf(text, sizeof text, "the driver %s: %s%s%s%s", hung ? "hangs" : "crashes", how,
+             *end->said ? ", last words \"" : "", end->said, *end->said ? "\"" : "");
+    if (!*p->name) { /* between trials: when the device was opened or given back */
+        snprintf(p->name, sizeof p->name, "beginning or end");
+        p->begin_ms = now_ms();
+        p->number++;
     }
-    if (!status && g->wants_slabs && v->most_slabs < 2 && v->failed_count++ == 0)
-        snprintf(v->text, sizeof v->text, "the bound on memory did not make slabs");
-    return status;
+    end_trial(p, hung ? TRIAL_HUNG : TRIAL_CRASHED, text);
+}
+
+/* Runs a group, or the vectors, to its end or until end_ms. Returns 0 or a status with its text. */
+static int run_group(const options *o, int group, double end_ms, selftest_results *all) {
+    group_progress p = {.group = group, .number = -1, .all = all};
+    for (int faults = 0; faults < FAULTS_MOST; faults++) {
+        child_end end;
+        const double left = end_ms - now_ms();
+        p.has_ended = 0;
+        if (left <= 0) break;
+        start_child(o, &p, left, &end);
+        if (end.kind == CHILD_CANCELLED) return progress_status();
+        if (end.kind == CHILD_NOT_STARTED)
+            return fail(STATUS_FAILED, "no process can be started for the trials: is /proc there, and memory left?");
+        if (p.has_ended && p.status) return fail(p.status, "%s", p.text);
+        if (p.has_ended && end.kind == CHILD_EXITED && end.number == 0) return 0;
+        if (child_was_ended(&end)) return fail(STATUS_FAILED, "the self-test's process was ended from outside");
+        if (end.kind == CHILD_TIMED_OUT && now_ms() >= end_ms) break;
+        note_fault(&p, &end);
+        if (p.has_ended) return 0; /* after its last trial */
+    }
+    if (now_ms() < end_ms) return 0;
+    end_trial(&p, TRIAL_LATE, "not finished when the time of --timeout was over");
+    snprintf(p.name, sizeof p.name, "the rest of the group");
+    p.begin_ms = now_ms();
+    end_trial(&p, TRIAL_LATE, "not begun when the time of --timeout was over");
+    return 0;
 }
 
 /* --------------------------------------------------------------------------------------------------------- results */
 
-static void print_group(const trial_group *g, const verdict *v) {
+static verdict judge(const selftest_results *all, int group) {
+    verdict v = {.text = ""};
+    for (size_t n = 0; n < all->count; n++) {
+        const trial_result *r = &all->results[n];
+        if (r->group != group) continue;
+        v.trial_count += r->end != TRIAL_SKIPPED;
+        v.skipped_count += r->end == TRIAL_SKIPPED;
+        v.crashed_count += r->end == TRIAL_CRASHED || r->end == TRIAL_HUNG;
+        if (r->end == TRIAL_OK || r->end == TRIAL_SKIPPED) continue;
+        if (v.failed_count++ == 0) v.text = r->text;
+    }
+    return v;
+}
+
+static const char *first_failed(const selftest_results *all, int group) {
+    for (size_t n = 0; n < all->count; n++)
+        if (all->results[n].group == group && all->results[n].end != TRIAL_OK && all->results[n].end != TRIAL_SKIPPED)
+            return all->results[n].name;
+    return "";
+}
+
+static void print_group(const selftest_results *all, int group) {
+    const verdict v = judge(all, group);
     progress_clear();
-    printf("%-30s %3d trials  %s\n", g->title, v->trial_count, v->failed_count ? "FAILED" : "ok");
-    if (v->failed_count) printf("  %d failed; the first: %s\n", v->failed_count, v->text);
+    printf("%-30s %3d trials  %s\n", group == VECTORS ? "vectors" : trial_groups[group].title, v.trial_count,
+           v.failed_count ? "FAILED" : "ok");
+    if (v.failed_count) printf("  %d failed; the first: %s: %s\n", v.failed_count, first_failed(all, group), v.text);
     fflush(stdout);
 }
 
-static json_t *group_json(const trial_group *g, const verdict *v) {
-    return json_pack("{s:s, s:i, s:i, s:s}", "name", g->name, "trials", v->trial_count, "failed", v->failed_count,
-                     "message", v->text);
+static json_t *group_json(const selftest_results *all, int group) {
+    const verdict v = judge(all, group);
+    char text[1200] = "";
+    double ms = 0;
+    if (v.failed_count) snprintf(text, sizeof text, "%s: %s", first_failed(all, group), v.text);
+    for (size_t n = 0; n < all->count; n++) ms += all->results[n].group == group ? all->results[n].ms : 0;
+    return json_pack("{s:s, s:i, s:i, s:s, s:i, s:i, s:o}", "name", group_name(group), "trials", v.trial_count,
+                     "failed", v.failed_count, "message", text, "crashed", v.crashed_count, "skipped", v.skipped_count,
+                     "seconds", report_real(1e-3 * round(ms)));
 }
 
+/* With the trial of its opening, as the driver may end this process too. */
 static int describe_device(const char *spec, tc_device_info *info) {
+    tc_context_options how;
     tc_context *context = NULL;
     *info = (tc_device_info){.struct_size = sizeof *info};
-    int status = open_device(spec, &(launch){0}, &context);
+    tc_context_options_init(&how);
+    how.device = spec;
+    how.trial = trial_in_child;
+    int status = library_status(tc_context_create(&how, &context));
     if (!status) status = library_status(tc_context_device(context, info));
     tc_context_destroy(context);
     return status;
 }
 
-static int open_reference(tc_context **context) {
-    tc_context_options how;
-    tc_context_options_init(&how);
-    how.engine = TC_ENGINE_REFERENCE;
-    return library_status(tc_context_create(&how, context));
+/* Runs all groups, or the vectors; prints them, or collects them in *groups. */
+static int run_groups(const options *o, selftest_results *all, json_t *groups) {
+    const double end_ms = now_ms() + (o->timeout ? 1e3 * (double)o->timeout : 1e12);
+    const int first = o->vectors ? VECTORS : 0, end = o->vectors ? VECTORS + 1 : trial_group_count;
+    for (int n = first; n < end; n++) {
+        int status = run_group(o, n, end_ms, all);
+        if (status) return status;
+        if (o->json)
+            json_array_append_new(groups, group_json(all, n));
+        else
+            print_group(all, n);
+    }
+    return all->out_of_memory ? fail(STATUS_FAILED, "out of memory for the results of the self-test") : 0;
 }
 
-/* Runs all groups; prints them, or collects them in *groups. Sets *failed_count. */
-static int run_groups(const options *o, const tc_device_info *info, tc_context *reference, json_t *groups,
-                      int *failed_count) {
-    for (int n = 0; n < trial_group_count; n++) {
-        verdict v = {0};
-        int status = run_group(o->device, info, &trial_groups[n], reference, &v);
-        if (status) return status;
-        *failed_count += v.failed_count;
-        if (o->json)
-            json_array_append_new(groups, group_json(&trial_groups[n], &v));
-        else
-            print_group(&trial_groups[n], &v);
-    }
+static int print_json(const tc_device_info *info, json_t *groups, int failed_count) {
+    return report_print(json_pack("{s:o, s:O, s:b, s:o, s:o, s:o, s:s}", "device", report_string(info->name), "groups",
+                                  groups, "pass", !failed_count, "platform", report_string(info->platform), "driver",
+                                  report_string(info->driver), "version", report_string(info->version), "tetracubes",
+                                  tc_version()),
+                        15);
+}
+
+static int check_usage(const options *o) {
+    if (o->operand_count > (o->vectors ? 1 : 0))
+        return fail(STATUS_USAGE, "selftest takes no '%s'; name a device with --device%s",
+                    o->operands[o->vectors ? 1 : 0], o->vectors ? "" : ", a file of vectors behind --vectors");
     return 0;
+}
+
+/* A file of vectors is looked at here, before any device is. */
+static int check_vectors(const options *o) {
+    vector_list list = {0};
+    int status = o->vectors ? vectors_read(o->operand_count ? o->operands[0] : NULL, &list) : 0;
+    vectors_release(&list);
+    return status;
 }
 
 int selftest_run(const options *o) {
     tc_device_info info;
-    tc_context *reference = NULL;
+    selftest_results all = {0};
     json_t *groups = NULL;
     int failed_count = 0;
-    if (o->operand_count)
-        return fail(STATUS_USAGE, "selftest takes no '%s'; name a device with --device", o->operands[0]);
-    int status = describe_device(o->device, &info);
+    int status = check_usage(o);
+    if (!status) status = check_vectors(o);
+    if (!status) status = describe_device(o->device, &info);
     if (status) goto cleanup;
-    if ((status = open_reference(&reference))) goto cleanup;
     if (o->json)
         groups = json_array();
     else
         printf("%s\n", info.name);
-    if ((status = run_groups(o, &info, reference, groups, &failed_count))) goto cleanup;
+    if ((status = run_groups(o, &all, groups))) goto cleanup;
+    for (size_t n = 0; n < all.count; n++)
+        failed_count += all.results[n].end != TRIAL_OK && all.results[n].end != TRIAL_SKIPPED;
     if (o->json)
-        status = report_print(
-            json_pack("{s:s, s:O, s:b}", "device", info.name, "groups", groups, "pass", !failed_count), 15);
+        status = print_json(&info, groups, failed_count);
     else
         printf("%s\n", failed_count ? "FAIL" : "PASS");
+    if (!status && o->junit) status = junit_write(o->junit, &all, &info);
     if (!status && failed_count)
         status = fail(STATUS_CHECK, "%d trials failed: do not trust results of %s", failed_count, info.name);
 cleanup:
     json_decref(groups);
-    tc_context_destroy(reference);
+    results_release(&all);
     return status;
 }

@@ -129,7 +129,8 @@ static const trial launched[] = {
 
 static const trial slabbed[] = {
     {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_F32, .isovalue = 127.5},
-    {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_U8, .isovalue = 127.5, .normals = 1},    {.field = "gyroid", .dims = {80, 50, 40}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX},
+    {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_U8, .isovalue = 127.5, .normals = 1},
+    {.field = "gyroid", .dims = {80, 50, 40}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX},
 };
 /* clang-format on */
 
@@ -161,25 +162,25 @@ static const launch tight[] = {
     {.max_memory_bytes = 4u << 20},
 };
 
-#define GROUP(name, title, trials, launches, wants_slabs)                                                              \
-    { name, title, trials, COUNT_OF(trials), launches, COUNT_OF(launches), wants_slabs }
+#define GROUP(name, title, trials, launches, wants_slabs, quick_trials, quick_launches)                                \
+    { name, title, trials, COUNT_OF(trials), launches, COUNT_OF(launches), wants_slabs, quick_trials, quick_launches }
 
 const trial_group trial_groups[] = {
-    GROUP("known", "known answers", known, standard, 0),
-    GROUP("types", "sample types", types, standard, 0),
-    GROUP("sizes", "odd sizes", sizes, standard, 0),
-    GROUP("ties", "samples equal to the isovalue", ties, standard, 0),
-    GROUP("missing", "missing data", missing, standard, 0),
-    GROUP("extremes", "subnormal and huge samples", extremes, standard, 0),
-    GROUP("normals", "normals", normals, standard, 0),
-    GROUP("matrices", "mirrored and sheared grids", matrices, standard, 0),
-    GROUP("hybrid", "the hybrid method", hybrids, standard, 0),
-    GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0),
-    GROUP("complexes", "unstructured grids", complexes, standard, 0),
-    GROUP("scan", "the scan and its fallback", scanned, chained, 0),
-    GROUP("launches", "work-group and tile sizes", launched, varied, 0),
-    GROUP("divisions", "ways to divide", quotients, divided, 0),
-    GROUP("slabs", "little memory", slabbed, tight, 1),
+    GROUP("known", "known answers", known, standard, 0, 2, 1),
+    GROUP("types", "sample types", types, standard, 0, 2, 1),
+    GROUP("sizes", "odd sizes", sizes, standard, 0, 12, 1),
+    GROUP("ties", "samples equal to the isovalue", ties, standard, 0, 2, 1),
+    GROUP("missing", "missing data", missing, standard, 0, 1, 1),
+    GROUP("extremes", "subnormal and huge samples", extremes, standard, 0, 5, 1),
+    GROUP("normals", "normals", normals, standard, 0, 1, 1),
+    GROUP("matrices", "mirrored and sheared grids", matrices, standard, 0, 1, 1),
+    GROUP("hybrid", "the hybrid method", hybrids, standard, 0, 1, 1),
+    GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0, 2, 1),
+    GROUP("complexes", "unstructured grids", complexes, standard, 0, 1, 1),
+    GROUP("scan", "the scan and its fallback", scanned, chained, 0, 1, 3),
+    GROUP("launches", "work-group and tile sizes", launched, varied, 0, 1, 2),
+    GROUP("divisions", "ways to divide", quotients, divided, 0, 1, 1),
+    GROUP("slabs", "little memory", slabbed, tight, 1, 1, 1),
 };
 
 const int trial_group_count = COUNT_OF(trial_groups);

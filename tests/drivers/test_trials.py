@@ -1,0 +1,249 @@
+#!/usr/bin/env python3
+"""test_trials.py TOOL LAYER - drivers that crash, hang, refuse or compute wrongly, found out in a process of their own
+
+The layer (tests/layer) gives PoCL the version of a driver that nobody knows, and makes it abort, hang, end the process,
+fail or compute wrongly, when it opens the device, builds kernels, runs them, or when the process ends. Whatever it
+does: extract ends with a sentence that names driver and reason, no file and no chatter; --engine auto makes the
+reference's bytes; the verdict is kept, and later runs start no process: they are given no time for one. Standard
+library only.
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import test_cli  # noqa: E402
+
+LAYER = None
+COMMAND = "--trial-of-a-driver"
+NO_TIME = {"TETRACUBES_TRIAL_SECONDS": "0.001"}
+ALONE, GROUPS = "-DWORK_ITEMS=1", "-DWORK_ITEMS=32"
+CRASHES = {"open abort": "before kernels were built", "open exit": "before kernels were built",
+           "build abort": "before kernels were built", "build exit": "exit status 0 before kernels were built",
+           "launch abort": "where kernels first ran", "read abort": "where kernels first ran", "end abort": "at its end"}
+HANGS = {"open hang": "before kernels were built", "launch hang": "where kernels first ran"}
+REFUSALS = {"build refuse": "does not build the kernels", "launch refuse": "CL_INVALID_PROGRAM_EXECUTABLE"}
+
+
+def trials_running():
+    found = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/cmdline", "rb") as file:
+                arguments = file.read().split(b"\0")
+            with open(f"/proc/{process}/environ", "rb") as file:
+                ours = f"TRIALS_OF={os.getpid()}".encode() in file.read().split(b"\0")
+        except OSError:
+            continue
+        if ours and COMMAND.encode() in arguments:
+            found.append(int(process))
+    return found
+
+
+class TrialCase(test_cli.Case):
+    def setUp(self):
+        super().setUp()
+        self.volume = self.generate("sphere", "a.nrrd", "30,20,10", "f32")
+        self.arguments = ["extract", self.volume, "--iso", "127.5", "--normals"]
+        self.cache = self.path("cache")
+        os.mkdir(self.cache)
+
+    def layer(self, command, cache=None, **more):
+        return {"OPENCL_LAYERS": LAYER, "TETRACUBES_LAYER": "lacks fame;" + command, "TRIALS_OF": str(os.getpid()),
+                "TETRACUBES_CACHE_DIR": self.cache if cache is None else cache, **more}
+
+    def verdicts(self):
+        """{path: (verdict with its reason, inode)}"""
+        found = {}
+        for name in sorted(os.listdir(self.cache)):
+            path = os.path.join(self.cache, name)
+            if name.endswith(".verdict"):
+                with open(path, encoding="utf-8") as file:
+                    found[path] = (file.read().splitlines()[3], os.stat(path).st_ino)
+        return found
+
+    def mesh(self, *more, env=None):
+        path = self.path("mesh.ply")
+        self.expect(0, *self.arguments, "--quiet", "-o", path, *more, env=env)
+        with open(path, "rb") as file:
+            content = file.read()
+        os.unlink(path)
+        return content
+
+    def fails(self, env, says):
+        result = self.refuses(1, *self.arguments, "-o", self.path("a.ply"), env=env, says=says)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertNotIn("chatter", result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        return result.stderr
+
+    def falls_back(self, env):
+        self.assertEqual(self.mesh("--engine", "auto", env=env), self.mesh("--engine", "reference"))
+        report = json.loads(self.expect(0, *self.arguments, "--engine", "auto", "--json", env=env,
+                                        says="the reference engine takes over").stdout)
+        self.assertEqual(report["engine"], "reference")
+
+    def found_out(self, command, says, **more):
+        """First run, second run without time for a trial, --engine auto."""
+        env = self.layer(command, **more)
+        self.fails(env, says)
+        kept = self.verdicts()
+        self.fails({**env, **NO_TIME}, says)
+        self.falls_back({**env, **NO_TIME})
+        self.assertEqual(self.verdicts(), kept)
+        for path in kept:
+            os.unlink(path)
+
+
+class Planted(TrialCase):
+    def test_crashes(self):
+        for command, where in CRASHES.items():
+            with self.subTest(command=command):
+                self.found_out("crash " + command, f"driver 9.1.* crashes: .*{where}.*update the driver.*remove /")
+
+    def test_hangs(self):
+        for command, where in HANGS.items():
+            with self.subTest(command=command):
+                self.found_out("crash " + command, f"driver 9.1.* hangs: time ran out {where}.*update the driver",
+                               TETRACUBES_TRIAL_SECONDS="5")
+
+    def test_refusals(self):
+        for command, told in REFUSALS.items():
+            with self.subTest(command=command):
+                self.found_out("crash " + command, told + ".*remove /")
+
+    def test_wrong(self):
+        self.found_out("corrupt flip emit 10 4000 0", "gives wrong results.*remove /.*--engine reference")
+
+    def test_fallback_on_the_first_run(self):
+        self.falls_back(self.layer("crash build abort"))
+
+    def test_stopped_from_outside(self):
+        self.fails(self.layer("crash build kill"), "stopped.*signal 9.*try again")
+        self.assertEqual([verdict for verdict, _ in self.verdicts().values()], ["good: "])  # of the device
+
+    def test_no_linker(self):
+        pocl = self.path("pocl")
+        os.mkdir(pocl)
+        environment = {"PATH": self.path("nothing"), "POCL_CACHE_DIR": pocl, "TETRACUBES_CACHE_DIR": self.cache}
+        self.fails(environment, 'crashes: signal 6.*last words ".*link.*set PATH')
+        self.assertNotIn("crashed", str(self.verdicts()))
+
+
+class Texts(TrialCase):
+    def test_other_text(self):
+        """A driver that fails with the kernels for one work-item gets those for groups."""
+        expected = self.mesh("--engine", "reference")
+        for fault in (f"crash build abort {ALONE}", f"crash launch exit {ALONE}", f"crash build refuse {ALONE}"):
+            with self.subTest(fault=fault):
+                env = self.layer(fault)
+                self.assertEqual(self.mesh(env=env), expected)
+                kept = self.verdicts()
+                self.assertEqual(len(kept), 3)
+                self.assertEqual(self.mesh(env={**env, **NO_TIME}), expected)
+                self.assertEqual(self.verdicts(), kept)
+                for path in kept:
+                    os.unlink(path)
+
+    def test_missing_samples_met_on_the_way(self):
+        """The kernels for these are tried when the first is met, and may be the first that fail."""
+        volume = self.generate("sphere", "b.nrrd", "30,20,10", "f32")
+        with open(volume, "r+b") as file:
+            file.seek(-400, os.SEEK_END)
+            file.write(b"\0\0\xc0\x7f")
+        self.arguments[1] = volume
+        expected = self.mesh("--engine", "reference")
+        env = self.layer("crash build abort -DMISSING=1")
+        self.fails(env, "driver 9.1.* crashes")
+        self.falls_back(env)
+        self.assertEqual(self.mesh(env=self.layer("lacks fame", cache="")), expected)
+
+
+class Sound(TrialCase):
+    def test_unknown_driver_passes(self):
+        expected = self.mesh("--engine", "reference")
+        env = self.layer("lacks fame")
+        self.assertEqual(self.mesh(env=env), expected)
+        kept = self.verdicts()
+        self.assertEqual([verdict for verdict, _ in kept.values()], ["good: ", "good: "])
+        programs = {name: os.stat(os.path.join(self.cache, name)).st_ino for name in os.listdir(self.cache)}
+        self.assertEqual(self.mesh(env={**env, **NO_TIME}), expected)
+        self.assertEqual({name: os.stat(os.path.join(self.cache, name)).st_ino for name in os.listdir(self.cache)},
+                         programs)
+
+    def test_known_driver_has_no_trial(self):
+        env = {"TETRACUBES_CACHE_DIR": self.cache, **NO_TIME}
+        self.assertEqual(self.mesh(env=env), self.mesh("--engine", "reference"))
+        self.assertEqual(self.verdicts(), {})
+
+    def test_without_a_cache(self):
+        expected = self.mesh("--engine", "reference")
+        for cache in ("", "/proc/none"):
+            self.assertEqual(self.mesh(env=self.layer("lacks fame", cache=cache)), expected)
+            self.fails(self.layer("crash build abort", cache=cache), "crashes: .*reference engine$")
+
+    def test_damaged_verdicts(self):
+        env = self.layer("lacks fame")
+        expected = self.mesh(env=env)
+        for damage in (lambda text: text[:-1], lambda text: text + "x", lambda text: text.replace("good", "fine"),
+                       lambda text: text.replace("driver 9.1", "driver 9.2"), lambda text: ""):
+            before = self.verdicts()
+            for path in before:
+                with open(path, encoding="utf-8") as file:
+                    text = file.read()
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(damage(text))
+            self.assertEqual(self.mesh(env=env), expected)
+            self.assertEqual({path: verdict for path, (verdict, _) in before.items()},
+                             {path: verdict for path, (verdict, _) in self.verdicts().items()})
+
+    def test_children_ignored(self):
+        """A shell may have set SIGCHLD to be ignored: then nobody learns how a child ends."""
+        result = subprocess.run([test_cli.TOOL, *self.arguments], env={**os.environ, **self.layer("lacks fame")},
+                                preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN), timeout=300,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+
+
+class Interrupted(TrialCase):
+    def start(self, **how):
+        process = subprocess.Popen([test_cli.TOOL, *self.arguments, "-o", self.path("a.ply")], stderr=subprocess.PIPE,
+                                   env={**os.environ, **self.layer("crash launch hang")}, text=True, **how)
+        self.addCleanup(process.stderr.close)
+        for _ in range(3000):
+            if trials_running() and any(name.endswith(".verdict") for name in os.listdir(self.cache)):
+                return process
+            time.sleep(0.01)
+        process.kill()
+        self.fail("no trial was started")
+
+    def gone(self):
+        for _ in range(500):
+            if not trials_running():
+                return True
+            time.sleep(0.01)
+        return False
+
+    def test_cancelled(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.start()
+            process.send_signal(number)
+            self.assertIn("cancelled", process.communicate(timeout=60)[1])
+            self.assertEqual(process.returncode, 1)
+            self.assertTrue(self.gone(), "the trial goes on")
+            self.assertFalse(os.path.exists(self.path("a.ply")))
+
+    def test_killed(self):
+        process = self.start()
+        process.kill()
+        process.wait(60)
+        self.assertTrue(self.gone(), "the trial outlives what started it")
+
+
+if __name__ == "__main__":
+    test_cli.TOOL, LAYER = (os.path.abspath(path) for path in sys.argv[1:3])
+    unittest.main(argv=sys.argv[:1] + test_cli.chosen())
