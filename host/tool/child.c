@@ -72,7 +72,8 @@ static int set_attributes(posix_spawnattr_t *attributes) {
 
 /* Standard input is empty; output and errors go to the chatter, the report to REPORT_FILE. */
 static int set_files(posix_spawn_file_actions_t *files, int report, int chatter) {
-    return posix_spawn_file_actions_addopen(files, STDIN_FILENO, "/dev/null", O_RDONLY, 0) ||
+    const int has_null = access("/dev/null", R_OK) == 0;
+    return (has_null && posix_spawn_file_actions_addopen(files, STDIN_FILENO, "/dev/null", O_RDONLY, 0)) ||
            posix_spawn_file_actions_adddup2(files, chatter, STDOUT_FILENO) ||
            posix_spawn_file_actions_adddup2(files, chatter, STDERR_FILENO) ||
            posix_spawn_file_actions_adddup2(files, report, REPORT_FILE);

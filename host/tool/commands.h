@@ -23,6 +23,9 @@ void generate_help(FILE *out);
 /* The library's failure as the tool's: records tc_message() and returns the exit status that it means. */
 int library_status(tc_status status);
 
+/* A driver has failed: this process then ends without giving it occasion to tidy up. */
+void driver_distrust(void);
+
 /* One line on standard error, "tetracubes: ..."; not for failures, which main prints. */
 void message(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -149,6 +149,8 @@ void message(const char *format, ...) {
 
 static volatile sig_atomic_t driver_failed; /* set by either thread of extract */
 
+void driver_distrust(void) { driver_failed = 1; }
+
 int library_status(tc_status status) {
     switch (status) {
     case TC_OK:
@@ -162,7 +164,7 @@ int library_status(tc_status status) {
     case TC_ERROR_CANCELLED:
         return progress_cancelled() ? progress_status() : fail(STATUS_FAILED, "%s", tc_message());
     case TC_ERROR_DEVICE:
-        driver_failed = 1;
+        driver_distrust();
         return fail(STATUS_FAILED, "%s", tc_message());
     default:
         return fail(STATUS_FAILED, "%s", tc_message());

@@ -82,6 +82,7 @@ static void note_fault(group_progress *p, const child_end *end) {
         p->number++;
     }
     end_trial(p, hung ? TRIAL_HUNG : TRIAL_CRASHED, text);
+    driver_distrust();
 }
 
 /* Runs a group, or the vectors, to its end or until end_ms. Returns 0 or a status with its text. */

@@ -80,7 +80,7 @@ def line(tool, folder, case):
     if "nodata" in given:
         how += ["--nodata", given["nodata"]]
     surface = json.loads(run(tool, "extract", source, *how, "--iso", iso, "--method", method, "--engine", "reference",
-                             "--json"))["surfaces"][0]
+                             "--json", "--quiet"))["surfaces"][0]
     words = [field, *dims, kind, iso, method, options, surface["vertices"], surface["triangles"], surface["hash"]]
     return " ".join(map(str, words)) + "\n"
 
