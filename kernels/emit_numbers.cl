@@ -172,11 +172,12 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
     const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
     if (y >= s->ny) return;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
-        const bool has_z = n < BRICK_PLANES && c.z + n + 1 < s->nz;
-        const ulong even = even_cubes(s, y, c.z + n), a0 = signs->rows[1][n].at.s0, a1 = signs->rows[1][n].next.s0;
-        const ulong c0 = has_z ? signs->rows[1][n + 1].at.s0 : a0, c1 = has_z ? signs->rows[1][n + 1].next.s0 : 0;
-        ulong x = (a0 ^ a1) & has_x, z = a0 ^ c0;
-        ulong xz = has_z && !HYBRID ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x : 0;
+        const bool last = n == BRICK_PLANES;
+        const ulong even = even_cubes(s, y, c.z + n), has_z = last || c.z + n + 1 >= s->nz ? 0 : ~0ul;
+        const sample_rows *here = &signs->rows[1][n], *behind = last ? here : here + 1;
+        const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = behind->at.s0, c1 = behind->next.s0;
+        ulong x = (a0 ^ a1) & has_x, z = (a0 ^ c0) & has_z;
+        ulong xz = HYBRID ? 0 : ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z;
 #if MISSING
         crossings k = {{x, 0, z, 0, xz, 0}};
         crossings_keep(s, k1.cells, y, c.z + n, w, &k);

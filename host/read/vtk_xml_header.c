@@ -18,6 +18,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Expat has had functions for files of any size since 2.8, which deprecate the older ones; on Linux both do. */
+#ifdef HAVE_EXPAT_64
+#define byte_index(parser)  XML_GetCurrentByteIndex64(parser)
+#define byte_count(parser)  XML_GetCurrentByteCount64(parser)
+#define line_number(parser) XML_GetCurrentLineNumber64(parser)
+#else
+#define byte_index(parser)  XML_GetCurrentByteIndex(parser)
+#define byte_count(parser)  XML_GetCurrentByteCount(parser)
+#define line_number(parser) XML_GetCurrentLineNumber(parser)
+#endif
+
 enum { DEEPEST = 64, ARRAYS_MOST = 4096, FIRST_CHUNK = 64 << 10, LARGEST_CHUNK = 1 << 30 };
 
 /* Levels of elements: VTKFile, grid, Piece, section, DataArray. */
@@ -231,7 +242,7 @@ static int begin_array(header_parser *p, const char **attributes) {
 
 /* The address in the file behind the tag that expat is at. */
 static const unsigned char *behind_tag(const header_parser *p) {
-    return p->doc->bytes + XML_GetCurrentByteIndex(p->expat) + XML_GetCurrentByteCount(p->expat);
+    return p->doc->bytes + byte_index(p->expat) + byte_count(p->expat);
 }
 
 static int is_space(unsigned char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
@@ -256,7 +267,7 @@ static int begin_appended(header_parser *p, const char **attributes) {
 
 /* Text of an array ends where expat is at: at its end tag or at the tag of an element within. */
 static int end_text(header_parser *p) {
-    const unsigned char *at = p->text, *end = p->doc->bytes + XML_GetCurrentByteIndex(p->expat);
+    const unsigned char *at = p->text, *end = p->doc->bytes + byte_index(p->expat);
     xml_array *array = &p->doc->arrays[p->doc->array_count - 1];
     while (at < end && is_space(*at)) at++;
     while (end > at && is_space(end[-1])) end--;
@@ -349,7 +360,7 @@ int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc) {
         p.status = no_memory(doc);
     else if (!p.status && !p.has_ended && code != XML_STATUS_OK)
         p.status = fail(STATUS_INPUT, "%s: line %" PRIu64 " is not XML: %s; the file is damaged or cut", path,
-                        (uint64_t)XML_GetCurrentLineNumber(p.expat), XML_ErrorString(XML_GetErrorCode(p.expat)));
+                        (uint64_t)line_number(p.expat), XML_ErrorString(XML_GetErrorCode(p.expat)));
     XML_ParserFree(p.expat);
     return p.status;
 }
