@@ -15,8 +15,8 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
-/* Vectors longer than the processor's registers would be passed in another way to functions compiled elsewhere, of
- * which there are none. */
+/* Where the processor's registers are shorter than a vector, compilers warn that others, for longer ones, would pass it to
+ * functions in another way: but all functions are inlined. */
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
 #endif

@@ -52,7 +52,9 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
                                mesh_buffers mesh, brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
+#if GRID || NORMALS
         uint left = min(count - first, (uint)BATCH_STEP);
+#endif
         for (uint n = 0; n < BATCH_STEP; n++) {
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
 #if GRID == 0

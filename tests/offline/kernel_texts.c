@@ -19,13 +19,16 @@
 typedef struct device_kind {
     const char *kind, *platform, *name;
     cl_device_fp_config single, twice; /* what it can do in float and in double */
+    cl_device_type type;               /* 0: GPU */
 } device_kind;
 
 static const device_kind device_kinds[] = {
-    {"nvidia", "NVIDIA CUDA", "NVIDIA H100", CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, CL_FP_FMA},
-    {"amd", "AMD Accelerated Parallel Processing", "gfx90a", CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT,
-     CL_FP_FMA},
-    {"plain", "rusticl", "llvmpipe", CL_FP_ROUND_TO_NEAREST, 0}, /* no double, divides not quite */
+    {"nvidia", "NVIDIA CUDA", "NVIDIA H100", CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, CL_FP_FMA, 0},
+    {"amd", "AMD Accelerated Parallel Processing", "gfx90a", CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, CL_FP_FMA,
+     0},
+    {"plain", "rusticl", "llvmpipe", CL_FP_ROUND_TO_NEAREST, 0, 0}, /* no double, divides not quite */
+    {"pocl", "Portable Computing Language", "pthread", CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, CL_FP_FMA,
+     CL_DEVICE_TYPE_CPU},
 };
 
 static const device_kind *device = device_kinds;
@@ -97,7 +100,7 @@ static cl_int device_tell(cl_device_id of, cl_device_info what, size_t room, voi
         text_give("", room, value, bytes);
         return CL_SUCCESS;
     case CL_DEVICE_TYPE:
-        return number_give(CL_DEVICE_TYPE_GPU, room, value);
+        return number_give(device->type ? device->type : CL_DEVICE_TYPE_GPU, room, value);
     case CL_DEVICE_MAX_COMPUTE_UNITS:
         return number_give(128, room, value);
     case CL_DEVICE_MAX_WORK_GROUP_SIZE:
@@ -252,7 +255,7 @@ int main(int count, char **arguments) {
     if (count == 4)
         while (device < device_kinds + kinds && strcmp(device->kind, arguments[1])) device++;
     if (count != 4 || device == device_kinds + kinds) {
-        fprintf(stderr, "usage: kernel_texts nvidia|amd|plain WORK_ITEMS FOLDER\n");
+        fprintf(stderr, "usage: kernel_texts nvidia|amd|plain|pocl WORK_ITEMS FOLDER\n");
         return 2;
     }
     folder = arguments[3];
