@@ -94,7 +94,7 @@ static void split_surface_of(unsigned parity, unsigned pattern, split_surface *s
     memset(s, 0, sizeof *s), memset(sides, 0, sizeof sides), memset(inner, 0, sizeof inner);
     for (unsigned v = 0; v < VERTICES; v++) s->component[v] = (unsigned char)v;
     for (unsigned t = 0; t < 5; t++) {
-        unsigned corners[4], side[2];
+        unsigned corners[4] = {0}, side[2] = {0};
         split_tetrahedron(parity, t, corners);
         for (unsigned n = 0; n < 4; n++) {
             const unsigned c[3] = {corners[(n + 1) % 4], corners[(n + 2) % 4], corners[(n + 3) % 4]};

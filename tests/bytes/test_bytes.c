@@ -11,6 +11,8 @@
  * only variants of many work-items per group; planted: one case, in one variant of which a sample is changed, which has
  * to fail; TEXT: only cases that have it in their names. Prints a line "case NAME: HASH" for each; a difference names
  * case and variant. Seeds are fixed.
+ * test_bytes driver [TEXT [WORK_ITEMS]]: all cases of small grids once, for the table of drivers; WORK_ITEMS: which of
+ * the two texts of the kernels, left out what the device gets. Prints what the device is, too.
  */
 #include "cases.h"
 
@@ -55,9 +57,12 @@ static const variant variants[] = {
 
 enum { VARIANTS = sizeof variants / sizeof *variants };
 
-typedef enum tier { WHOLE, SAMPLE, SMALL, GROUPS, PLANTED } tier;
+typedef enum tier { WHOLE, SAMPLE, SMALL, GROUPS, PLANTED, DRIVER } tier;
 
-static const char *const tier_names[] = {"whole", "sample", "small", "groups", "planted"};
+static const char *const tier_names[] = {"whole", "sample", "small", "groups", "planted", "driver"};
+
+static variant for_driver = {.name = "as asked for"};
+static bool takes_alone; /* the device takes kernels for one work-item per group */
 
 static struct {
     long cases, meshes, slab_meshes;
@@ -105,6 +110,7 @@ static bool case_wanted(const bytes_case *c, tier t) {
 }
 
 static bool variant_wanted(const bytes_case *c, const variant *v, tier t) {
+    if (v->work_items == 1 && !takes_alone) return false;
     if (v->memory && !(c->flags & CASE_DEEP)) return false;
     if (t >= SMALL && c->flags & CASE_DEEP && !v->memory && v != variants) return false;
     if (v->division && (c->kind == CASE_COMPLEX || c->type != TC_F32 || t != WHOLE)) return false;
@@ -137,6 +143,16 @@ static uint64_t variant_run(const variant *v, const case_data *data, uint64_t *m
     return hash;
 }
 
+static void variant_compare(const bytes_case *c, const variant *v, case_data *data, uint64_t wanted, uint64_t *memory,
+                            tier t) {
+    char what[240];
+    snprintf(what, sizeof what, "%s, %s", case_name(c), v->name);
+    if (t == PLANTED && v->spin_limit) tie_add(data, -1);
+    uint64_t hash = variant_run(v, data, memory, what);
+    if (t == PLANTED && v->spin_limit) tie_add(data, 1);
+    EXPECT(hash == wanted, "%s: hash %016" PRIx64 ", the reference's is %016" PRIx64, what, hash, wanted);
+}
+
 static void case_run(const bytes_case *c, tc_context *reference, tier t) {
     case_data data;
     char name[120];
@@ -144,15 +160,10 @@ static void case_run(const bytes_case *c, tc_context *reference, tier t) {
     snprintf(name, sizeof name, "%s", case_name(c));
     case_fill(c, t >= SMALL, &data);
     uint64_t wanted = hash_of(reference, &data, false, NULL, name);
-    for (int n = 0; n < VARIANTS; n++) {
-        char what[240];
-        const variant *v = &variants[n];
-        if (!variant_wanted(c, v, t)) continue;
-        snprintf(what, sizeof what, "%s, %s", name, v->name);
-        if (t == PLANTED && v->spin_limit) tie_add(&data, -1);
-        uint64_t hash = variant_run(v, &data, &memory, what);
-        if (t == PLANTED && v->spin_limit) tie_add(&data, 1);
-        EXPECT(hash == wanted, "%s: hash %016" PRIx64 ", the reference's is %016" PRIx64, what, hash, wanted);
+    if (t == DRIVER) variant_compare(c, &for_driver, &data, wanted, &memory, t);
+    for (int n = 0; n < VARIANTS && t != DRIVER; n++) {
+        if (!variant_wanted(c, &variants[n], t)) continue;
+        variant_compare(c, &variants[n], &data, wanted, &memory, t);
         done.used[n] = true;
     }
     printf("case %s: %016" PRIx64 "\n", name, wanted);
@@ -161,21 +172,35 @@ static void case_run(const bytes_case *c, tc_context *reference, tier t) {
     case_free(&data);
 }
 
+/* Says what the device is, and finds out what it takes. */
+static void device_tell(void) {
+    tc_device_info info = {.struct_size = sizeof info};
+    tc_tuning tuning = {.struct_size = sizeof tuning};
+    tc_context_options options;
+    tc_context *device = variant_open(&for_driver, 0), *alone = NULL;
+    EXPECT(!tc_context_device(device, &info) && !tc_context_tuning(device, &tuning), "%s", tc_message());
+    printf("device %s, %s, driver %s\n", info.platform, info.name, info.driver);
+    printf("launched with %u work-items as %s, version %s\n", tuning.work_items, info.type, info.version);
+    tc_context_destroy(device);
+    tc_context_options_init(&options);
+    options.work_items = 1;
+    takes_alone = !tc_context_create(&options, &alone);
+    tc_context_destroy(alone);
+}
+
 int main(int argc, char **argv) {
-    tier t = PLANTED;
+    tier t = DRIVER;
     while (t > WHOLE && (argc < 2 || strcmp(argv[1], tier_names[t]) != 0)) t--;
     const char *text = argc > 2 ? argv[2] : "";
-    tc_device_info info = {.struct_size = sizeof info};
+    if (t == DRIVER && argc > 3) for_driver.work_items = (uint32_t)strtoul(argv[3], NULL, 10);
     int used = 0;
     if (!device_exists()) return SKIPPED;
-    tc_context *reference = reference_open(), *device = variant_open(&variants[0], 0);
-    EXPECT(!tc_context_device(device, &info), "%s", tc_message());
-    printf("device %s, %s, driver %s\n", info.platform, info.name, info.driver);
-    tc_context_destroy(device);
+    device_tell();
+    tc_context *reference = reference_open();
     for (int n = 0; n < case_count; n++)
         if (case_wanted(&cases[n], t) && strstr(case_name(&cases[n]), text)) case_run(&cases[n], reference, t);
     for (int n = 0; n < VARIANTS; n++) used += done.used[n];
-    EXPECT(done.slab_meshes > 1 || t >= GROUPS || *text, "%ld meshes made in slabs", done.slab_meshes);
+    EXPECT(done.slab_meshes > 1 || t >= GROUPS || *text || !takes_alone, "%ld meshes made in slabs", done.slab_meshes);
     printf("figures %ld cases, %d variants, %ld meshes, %ld in slabs\n", done.cases, used, done.meshes,
            done.slab_meshes);
     tc_context_destroy(reference);
