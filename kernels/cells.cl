@@ -7,47 +7,6 @@
  */
 #if MISSING
 
-/* Bit n for byte `first` + n, which is not 0; bytes from `end` on are not read. */
-inline_always ulong bytes_word(global const uchar *bytes, ulong first, ulong end) {
-    ulong word = 0;
-    for (uint part = 0; part < 4 && first + 16 * part < end; part++) {
-        uchar16 loaded = 0;
-        ulong n = first + 16 * part;
-        if (n + 16 <= end) {
-            loaded = vload16(0, bytes + n);
-        } else {
-            uchar last[16];
-            for (uint m = 0; m < 16; m++) last[m] = n + m < end ? bytes[n + m] : (uchar)0;
-            loaded = vload16(0, last);
-        }
-        word |= (ulong)mask_pack(loaded != (uchar16)0) << (16 * part);
-    }
-    return word;
-}
-
-/* At place n of the sample buffer. */
-inline_always bool sample_missing(global const BITS *samples, global const uchar *blanked, const slab *s, ulong n) {
-    BITS bits = samples[n];
-    bool missing = s->has_nodata && (bits == (BITS)s->nodata_bits[0] || bits == (BITS)s->nodata_bits[1]);
-#if FLOATING
-    missing = missing || (bits & EXPONENT) == EXPONENT;
-#endif
-    return missing || (s->has_blanked_samples && blanked[n + s->blanked_offset]);
-}
-
-inline_always ulong word_present(global const BITS *samples, global const uchar *blanked, const slab *s, uint y, uint z,
-                                 uint w) {
-    ulong word = 0, start = row_start(s, y, z);
-    for (uint part = 4 * w; part < 4 * w + 4 && 16 * part < s->nx; part++) {
-        BITS16 bits = samples_load(samples, s, start + 16 * part);
-        word |= (ulong)(~mask_pack(missing_mask(bits, s)) & 0xffff) << (16 * (part & 3));
-    }
-    if (s->has_blanked_samples)
-        word &= ~bytes_word(blanked, start + 64 * w + s->blanked_offset,
-                            s->sample_offset + s->sample_count + s->blanked_offset);
-    return word & word_valid(s, w);
-}
-
 /* Present samples of a row, and those whose right-hand neighbour is present too. */
 inline_always ulong word_present_pair(global const BITS *samples, global const uchar *blanked, const slab *s, uint y,
                                       uint z, uint w) {
@@ -72,10 +31,10 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
         for (uint first = 0; first < s.words_x; first += WORK_ITEMS) {
             uint w = first + (uint)get_local_id(0);
             if (w >= s.words_x) continue;
-            ulong present = last ? 0 : word_present_pair(samples, blanked_samples, &s, y, z, w);
-            if (present) present &= word_present_pair(samples, blanked_samples, &s, y + 1, z, w);
-            if (present) present &= word_present_pair(samples, blanked_samples, &s, y, z + 1, w);
-            if (present) present &= word_present_pair(samples, blanked_samples, &s, y + 1, z + 1, w);
+            ulong present = last ? 0 : ~0ul;
+#pragma unroll 1
+            for (uint n = 0; n < 4 && present; n++)
+                present &= word_present_pair(samples, blanked_samples, &s, y + (n & 1), z + (n >> 1), w);
             if (present && s.has_blanked_cells) present &= ~word_blanked(blanked_cells, &s, y, z, w);
             cells[(ulong)row * s.words_x + w] = present;
         }

@@ -35,20 +35,30 @@ inline_always void tetrahedron_prefetch(const complex_job *c, uint a, global con
     }
 }
 
+/* An index that varies would put the numbers into memory. */
+inline_always uint number_at(uint4 numbers, uint n) {
+    const uint2 pair = n & 2 ? numbers.hi : numbers.lo;
+    return n & 1 ? pair.y : pair.x;
+}
+
 inline_always void tetrahedron_emit(const slab *s, const complex_job *c, uint a, global const BITS *samples,
                                     global const float *points, global const active_tetrahedron *active,
                                     global const uchar *cases, global const uint *tiles, global const uint *table,
                                     global const uint *entries, global float *positions, global uint *triangles) {
     global const uchar *row = cases + CASE_BYTES * active[a].pattern;
+    const uint edges = row[CASE_EDGES];
     uint numbers[4] = {0, 0, 0, 0};
-    for (uint n = 0; n < row[CASE_EDGES]; n++) {
+#pragma unroll
+    for (uint n = 0; n < 4; n++) {
+        if (n >= edges) break;
         uint owner = table[entries[4 * a + n]];
         numbers[n] = vertex_number(c, owner, active, tiles);
         if (owner == 4 * a + n)
             edge_vertex(s, edge_points(active, owner, cases), samples, points, positions + 3ul * numbers[n]);
     }
+    const uint4 all = (uint4)(numbers[0], numbers[1], numbers[2], numbers[3]);
     global uint *out = triangles + 3ul * active[a].triangle;
-    for (uint n = 0; n < 3u * row[CASE_TRIANGLES]; n++) out[n] = numbers[row[CASE_CORNERS + n]];
+    for (uint n = 0; n < 3u * row[CASE_TRIANGLES]; n++) out[n] = number_at(all, row[CASE_CORNERS + n]);
 }
 
 kernel void complex_emit(slab s, complex_job c, global const BITS *samples, global const float *points,

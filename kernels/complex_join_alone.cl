@@ -26,7 +26,8 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
                               edge_work *work) {
     uint2 edge[4];
     uint hash[4], edges = edges_of(a, active, cases), hashed = work->hashed;
-    loop_unrolled for (uint n = 0; n < 4; n++) edge[n] = edge_points(active, 4 * a + n, cases), hash[n] = edge_hash(edge[n]);
+    loop_unrolled for (uint n = 0; n < 4; n++) edge[n] = edge_points(active, 4 * a + n, cases),
+                                               hash[n] = edge_hash(edge[n]);
     loop_unrolled for (uint n = 0; n < 4; n++) {
         uint place = 4 * a + n, exists = n < edges, first = hash[n] & c->table_mask & ~EDGE_MET;
         uint r = exists ? hash[n] >> 21 : RECENT_EDGES, where = work->places[r];

@@ -60,22 +60,31 @@ inline_always void tile_post(tile_tools k, uint number, uint2 sums) {
     scan_post_sum(k.tiles, number, TILE_TRIANGLES, sums.y);
 }
 
+/* Looks back from a tile for what all tiles before it have; where that is not complete shared[1] is behind the tile
+ * that lacks its sum. */
+inline_always bool tile_look_back(tile_tools k, uint number, uint channel, uint *prefix) {
+    uint back = number;
+    bool done = scan_look_back(k.tiles, channel, &back, prefix, k.s->spin_limit);
+    k.shared[1] = back;
+    return done;
+}
+
 /* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else the tile
  * *missing is to be recounted first. With spin_limit 1 the tile before always is: so a test gets at that. */
 inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missing) {
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
-        uint prefix[2] = {0, 0};
+        uint vertices = 0, triangles = 0; /* or what has their places */
         k.shared[1] = number;
-        done = look || k.s->spin_limit > 1 || number == 0;
-        for (uint channel = 0; channel < 2 && done; channel++) {
-            uint back = number;
-            done = scan_look_back(k.tiles, channel, &back, &prefix[channel], k.s->spin_limit);
-            k.shared[1] = back;
+        done = (look || k.s->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
+               tile_look_back(k, number, TILE_TRIANGLES, &triangles);
+        if (done) {
+            vertices += scan_own_sum(k.tiles, number, TILE_VERTICES);
+            triangles += scan_own_sum(k.tiles, number, TILE_TRIANGLES);
+            scan_post_prefix(k.tiles, number, TILE_VERTICES, vertices);
+            scan_post_prefix(k.tiles, number, TILE_TRIANGLES, triangles);
         }
-        for (uint channel = 0; channel < 2 && done; channel++)
-            scan_post_prefix(k.tiles, number, channel, prefix[channel] + scan_own_sum(k.tiles, number, channel));
         k.shared[0] = done;
     }
     group_barrier();

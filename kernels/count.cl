@@ -103,12 +103,16 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
         uint n = first + (uint)get_local_id(0);
         if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows * LANES, z = t.z0 + n / s->words_x / rows;
-        lanes words[4][2]; /* of the cubes' four rows, at w and w + 1 */
+        lanes words[8] = {
+            0}; /* of the cubes' four rows, at w and w + 1; moved up, as an index that varies needs memory */
 #pragma unroll 1
-        for (uint m = 0; m < 8; m++) words[m / 2][m % 2] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
-        cube_rows r =
-            cube_rows_of(s, y, z, w, rows_shifted(words[0][0], words[0][1]), rows_shifted(words[1][0], words[1][1]),
-                         rows_shifted(words[2][0], words[2][1]), rows_shifted(words[3][0], words[3][1]));
+        for (uint m = 0; m < 8; m++) {
+#pragma unroll
+            for (uint k = 0; k < 7; k++) words[k] = words[k + 1];
+            words[7] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
+        }
+        cube_rows r = cube_rows_of(s, y, z, w, rows_shifted(words[0], words[1]), rows_shifted(words[2], words[3]),
+                                   rows_shifted(words[4], words[5]), rows_shifted(words[6], words[7]));
         row_counts c = rows_count(s, &r, y, z, w, cells);
         sums.vertices += (uint)lanes_sum(c.vertices), sums.triangles += (uint)lanes_sum(c.triangles);
     }

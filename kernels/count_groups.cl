@@ -36,20 +36,51 @@ inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w
     return report;
 }
 
+/* What a brick emits: sums over its rows, and which of them have any. */
+typedef struct brick_report {
+    emission e;
+    uint rows;
+} brick_report;
+
 /* What a group needs of local memory. */
 typedef struct count_room {
     row_report rows[WORK_ITEMS];
+    brick_report bricks[BRICKS_AT_ONCE];
 } count_room;
 
-/* Counts the layer that begins with plane z; *sums runs on from brick to brick. Each work-item adds up the rows before
- * its own. What comes before a brick is stored within the tile. *emitting: how many bricks of the tile emit something.
- * Nothing but the sums lives across a barrier, and work-items without a row count another one's, as compilers have gone
- * wrong on either. All work-items leave with the same sums. */
+inline_always void emission_add(emission *sum, emission e) {
+    sum->vertices += e.vertices, sum->triangles += e.triangles, sum->cells += e.cells;
+}
+
+/* Brick `number`, whose rows are rows[0] to [31]: where in it the work-item's row begins, and what it emits. */
+inline_always void brick_sum(uint number, const local row_report *rows, global ulong *offsets,
+                             global ushort *triangle_offsets, local brick_report *out) {
+    const uint place = (uint)get_local_id(0) % BRICK_WORDS;
+    const row_report own = rows[place];
+    brick_report all = {{0, 0, 0}, 0};
+    emission before = all.e;
+#pragma unroll 4
+    for (uint m = 0; m < BRICK_WORDS; m++) {
+        const emission row = rows[m].e;
+        if (m == place) before = all.e;
+        emission_add(&all.e, row);
+        all.rows |= (uint)(row.vertices + row.triangles > 0) << m;
+    }
+    if (own.e.vertices + own.e.triangles > 0) {
+        offsets[BRICK_WORDS * number + place] = own.packed + before.vertices;
+        triangle_offsets[BRICK_WORDS * number + place] = (ushort)before.triangles;
+    }
+    if (place == 0) *out = all;
+}
+
+/* Counts the layer that begins with plane z0; *sums runs on from brick to brick. What comes before a brick is stored
+ * within the tile. *emitting: how many bricks of the tile emit something. Nothing but the sums lives across a barrier,
+ * and work-items without a row count another one's, as compilers have gone wrong on either. All work-items leave with
+ * the same sums. */
 inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
                                emission *sums, global uint *emitting, local count_room *room) {
-    local row_report *rows = room->rows;
-    uint count = layer_bricks(s, t);
+    const uint count = layer_bricks(s, t);
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
         {
             uint lid = (uint)get_local_id(0), place = lid % BRICK_WORDS;
@@ -58,32 +89,29 @@ inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, glo
             bool mine = n + lid / BRICK_WORDS < count && y < t.y1 && z < t.z1;
             row_report report = row_count(s, t, mine ? y : b.y0, mine ? z : z0, b.w, k, cells);
             if (!mine) report.e.vertices = 0, report.e.triangles = 0, report.e.cells = 0;
-            rows[lid] = report;
+            room->rows[lid] = report;
         }
         group_barrier();
         {
-            uint lid = (uint)get_local_id(0), first = lid - lid % BRICK_WORDS;
-            emission total = *sums, before = {0, 0, 0}, own = rows[lid].e;
-            uint vertices = 0, triangles = 0, mask = 0;
-            for (uint m = 0; m < WORK_ITEMS; m++) {
-                emission row = rows[m].e;
-                if (m == first) vertices = total.vertices, triangles = total.triangles;
-                if (m >= first && m < lid) before.vertices += row.vertices, before.triangles += row.triangles;
-                if (m >= first && m < first + BRICK_WORDS && row.vertices + row.triangles > 0)
-                    mask |= 1u << (m - first);
-                total.vertices += row.vertices, total.triangles += row.triangles, total.cells += row.cells;
+            uint own = (uint)get_local_id(0) / BRICK_WORDS;
+            brick b = brick_locate(s, t, min(n + own, count - 1));
+            brick_sum(brick_index(s, b.y0, z0, b.w), room->rows + BRICK_WORDS * own, offsets, triangle_offsets,
+                      &room->bricks[own]);
+        }
+        group_barrier();
+        {
+            uint own = (uint)get_local_id(0);
+            emission before = *sums;
+            for (uint m = 0; m < BRICKS_AT_ONCE; m++) {
+                if (m == own) before = *sums;
+                emission_add(sums, room->bricks[m].e);
             }
-            *sums = total;
-            brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
-            uint number = brick_index(s, b.y0, z0, b.w);
-            if (lid == first && n + lid / BRICK_WORDS < count) {
-                k.bricks[number].vertices = vertices, k.bricks[number].triangles = triangles;
-                k.bricks[number].rows = mask;
-                if (mask) atomic_inc(emitting);
-            }
-            if (own.vertices + own.triangles > 0) {
-                offsets[BRICK_WORDS * number + lid - first] = rows[lid].packed + before.vertices;
-                triangle_offsets[BRICK_WORDS * number + lid - first] = (ushort)before.triangles;
+            if (own < BRICKS_AT_ONCE && n + own < count) {
+                brick b = brick_locate(s, t, n + own);
+                global brick_state *state = &k.bricks[brick_index(s, b.y0, z0, b.w)];
+                state->vertices = before.vertices, state->triangles = before.triangles;
+                state->rows = room->bricks[own].rows;
+                if (state->rows) atomic_inc(emitting);
             }
         }
         group_barrier();

@@ -20,6 +20,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
                  global float *normals, global uint *triangles, global const float *coordinates,
                  global const uchar *blanked) {
     local uint shared[1];
+    local emit_room room;
     brick_work work;
     mesh_buffers mesh = {positions + s.position_offset, normals + s.position_offset, triangles + s.triangle_offset};
     grid_arrays in = {samples, coordinates, blanked};
@@ -39,8 +40,8 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
             uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
             next_prefetch(&s, active + n, active_count - n, k1, samples);
-            if (n < end && number >= s.brick_first && number < s.brick_last)
-                brick_emit(&s, number, brick_corner(&s, number), in, k1, cases, mesh, &work);
+            bool wanted = n < end && number >= s.brick_first && number < s.brick_last;
+            brick_emit(&s, number, wanted, in, k1, cases, mesh, &room, &work);
         }
     }
 }

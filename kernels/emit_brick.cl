@@ -14,6 +14,12 @@
 #define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
+/* The signs of a cube's corners, corner n in bit n. */
+inline_always uint pattern_at(ulong8 corners, uint bit) {
+    char8 inside = convert_char8((corners & (ulong8)(1ul << bit)) != 0ul);
+    return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
+}
+
 /* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
 inline_always void lines_store(const void *words, uint count, global void *out) {
     const uint *from = (const uint *)words;
@@ -162,7 +168,8 @@ inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar
 
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
     words16 rows[4];
-    loop_unrolled for (uint n = 0; n < 4; n++) rows[n] = *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
+    loop_unrolled for (uint n = 0; n < 4; n++) rows[n] =
+        *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
     *(words16 *)out = numbers_shuffled(rows, entry + 1);
     *(words16 *)(out + 15) = numbers_shuffled(rows, entry + 16);
 }
@@ -227,9 +234,17 @@ inline_always void next_prefetch(const slab *s, global const uint *active, uint 
     if (count > 1) samples_prefetch(s, brick_corner(s, active[1]), k1.bricks[active[1]].rows, samples);
 }
 
-inline_always void brick_emit(const slab *s, uint number, corner c, grid_arrays in, row_results k1,
-                              global const uchar *cases, mesh_buffers mesh, brick_work *work) {
+/* What a group needs of local memory: nothing here. */
+typedef struct emit_room {
+    uint none;
+} emit_room;
+
+/* Emits brick `number` where it is wanted. */
+inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arrays in, row_results k1,
+                              global const uchar *cases, mesh_buffers mesh, local emit_room *room, brick_work *work) {
+    if (!wanted) return;
     brick_signs signs;
+    const corner c = brick_corner(s, number);
     const brick_state state = k1.bricks[number];
     uint first = s->vertex_base + state.vertices;
     signs_load(s, c, number, k1, &signs);

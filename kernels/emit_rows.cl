@@ -1,21 +1,101 @@
 /*
  * emit_rows.cl - kernel 2 where the work-items of a group share bricks: each takes a row of 64 cubes
  *
- * Vertices are stored one by one. The numbers of a cube's 18 vertices are population counts of the crossed edges at
- * lower x in the four rows of samples that the cubes lie between.
+ * For each brick the group makes a table in local memory: the crossed edges of its rows of samples, and of the rows
+ * after them in y and z, whose edges its cubes name too, and where the numbers of their vertices begin. The number of a
+ * vertex is that beginning plus the crossed edges of its type at lower x: a population count, made where a triangle
+ * names it. So nothing of a cube is kept, and nothing private is indexed by a variable, which would need memory.
  */
+#define TABLE_ROWS_Y (BRICK_ROWS + 1)
+#define TABLE_ROWS   (TABLE_ROWS_Y * (BRICK_PLANES + 1))
 
-#define CUBE_EDGES 18
+/* Of a brick; rows in y, then z. */
+typedef struct row_table {
+    ulong crossed[EDGE_TYPES][TABLE_ROWS];
+    ulong packed[TABLE_ROWS]; /* owner */
+    uint first[TABLE_ROWS];
+} row_table;
+
+inline_always owner table_owner(const local row_table *table, uint n) {
+    owner o = {table->first[n], table->packed[n]};
+    return o;
+}
+
+/* What a group needs of local memory. */
+typedef struct emit_room {
+    row_table tables[WORK_ITEMS / BRICK_WORDS];
+} emit_room;
+
+/* What a work-item needs of private memory: nothing here. */
+typedef struct brick_work {
+    uint none;
+} brick_work;
+
+inline_always void brick_work_begin(const slab *s, brick_work *work) { work->none = 0; }
+
+/* Others of the group work while one waits for memory. */
+inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
+                                 global const BITS *samples) {}
+
+/* The sign word of a row, and the same shifted; 0 outside the grid. */
+inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_results k1) {
+    if (y >= s->ny || z >= s->nz) return rows_shifted(0, 0);
+    uint number = brick_index(s, y, z, w), place = row_place(s, y, z);
+    ulong next = 0, at = brick_words(number, k1.bricks[number].sign, k1.words)[place] & word_valid(s, w);
+    if (w + 1 < s->words_x) next = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words)[place];
+    return rows_shifted(at, next);
+}
+
+/* The cubes of a row. up, deep: whether the rows after it in y and in z are asked for; else they count as 0. */
+inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool up, bool deep, row_results k1) {
+    sample_rows a = row_of(s, y, z, w, k1), b = rows_shifted(0, 0), c = b, d = b;
+    if (up) b = row_of(s, y + 1, z, w, k1);
+    if (deep) c = row_of(s, y, z + 1, w, k1);
+    if (up && deep) d = row_of(s, y + 1, z + 1, w, k1);
+    return cube_rows_of(s, y, z, w, a, b, c, d);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ table */
+
+/* Enters row n of a brick's table, where it is in the grid. Of rows after the brick those types of edges are right that
+ * its cubes name. */
+inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1, local row_table *table) {
+    const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
+    if (y >= s->ny || z >= s->nz) return;
+    cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
+    crossings k = crossings_owned(&r);
+#if MISSING
+    crossings_keep(s, k1.cells, y, z, w, &k);
+#endif
+    const owner o = owner_of(s, y, z, w, k1);
+#pragma unroll
+    for (uint type = 0; type < EDGE_TYPES; type++) table->crossed[type][n] = k.type[type];
+    table->first[n] = o.first, table->packed[n] = o.packed;
+}
+
+/* All rows of a brick, by the work-items that share it. */
+inline_always void table_make(const slab *s, corner brick, row_results k1, local row_table *table) {
+#pragma unroll 1
+    for (uint first = 0; first < TABLE_ROWS; first += BRICK_WORDS) {
+        uint n = first + (uint)get_local_id(0) % BRICK_WORDS;
+        if (n < TABLE_ROWS) row_enter(s, brick, n, k1, table);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- vertices */
 
 #ifdef REAL
 
-/* All vertices of a row of 64 samples, in order, from place `out` in the mesh on. */
-inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint w, const crossings *k, ulong out,
-                                grid_arrays in, mesh_buffers mesh) {
-    ulong even = even_cubes(s, y, z);
-    uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
+/* All vertices of row n of a table, in order. */
+inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in,
+                                const local row_table *table, mesh_buffers mesh) {
+    const ulong even = even_cubes(s, y, z);
+    const uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
+    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->vertex_window);
+#pragma unroll 1
     for (uint type = 0; type < EDGE_TYPES; type++) {
-        for (ulong crossed = k->type[type]; crossed; crossed &= crossed - 1, out++) {
+#pragma unroll 1
+        for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
             uint place = edge_place(type, !(even >> bit & 1)) + row + bit;
             ulong from = row_start(s, brick.y + (place >> 7 & 0xf), z) + brick.x + (place & 0x7f);
@@ -27,7 +107,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 #else
             position_make(s, brick, place, t, position);
 #endif
-            for (uint n = 0; n < 3; n++) mesh.positions[3 * out + n] = position[n];
+            for (uint m = 0; m < 3; m++) mesh.positions[3 * out + m] = position[m];
 #if NORMALS
             normal_store(in, s, brick, place, t, mesh.normals + 3 * out);
 #endif
@@ -37,129 +117,66 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 
 #endif
 
-/* A row of 64 cubes: the crossed edges of the four rows of samples and the numbers of their first vertices, in the
- * order of cube_edges (host/lib/tables.h): 13 of samples at x, 5 of samples at x + 1. */
-typedef struct cube_numbers {
-    ulong8 crossed_a, crossed_b;
-    ulong crossed_c[2];
-    uint8 base_a, base_b;
-    uint base_c[2];
-} cube_numbers;
+/* -------------------------------------------------------------------------------------------------------- triangles */
 
-inline_always cube_numbers cube_numbers_of(const crossings *a, const crossings *b, const crossings *c,
-                                           const crossings *d, const owner o[4]) {
-    cube_numbers n;
-    n.crossed_a =
-        (ulong8)(a->type[0], a->type[1], a->type[2], a->type[3], a->type[4], a->type[5], b->type[0], b->type[2]);
-    n.crossed_b =
-        (ulong8)(b->type[4], c->type[0], c->type[1], c->type[3], d->type[0], a->type[1], a->type[2], a->type[5]);
-    n.crossed_c[0] = b->type[2], n.crossed_c[1] = c->type[1];
-    n.base_a = (uint8)(number_of(o[0], 0), number_of(o[0], 1), number_of(o[0], 2), number_of(o[0], 3),
-                       number_of(o[0], 4), number_of(o[0], 5), number_of(o[1], 0), number_of(o[1], 2));
-    n.base_b = (uint8)(number_of(o[1], 4), number_of(o[2], 0), number_of(o[2], 1), number_of(o[2], 3),
-                       number_of(o[3], 0), number_of(o[0], 1), number_of(o[0], 2), number_of(o[0], 5));
-    n.base_c[0] = number_of(o[1], 2), n.base_c[1] = number_of(o[2], 1);
-    return n;
+/* The number of the vertex on an edge of the cube at a bit of row n, which is row y, z of word w. Edges at x + 1 of the
+ * last cube of a row are the first of the next word. */
+inline_always uint vertex_number(const slab *s, uint y, uint z, uint w, uint n, uint bit, uint item, row_results k1,
+                                 const local row_table *table) {
+    const uint type = item & 7, x = bit + (item >> 3 & 1), up = item >> 4 & 1, deep = item >> 5;
+    if (x == 64) return number_of(owner_of(s, y + up, z + deep, w + 1, k1), type);
+    n += up + TABLE_ROWS_Y * deep;
+    return number_of(table_owner(table, n), type) + (uint)popcount(table->crossed[type][n] & ((1ul << x) - 1));
 }
 
-/* Numbers of the 18 vertices of the cube at a bit; those on edges that are not crossed are meaningless. */
-inline_always void cube_vertices(const cube_numbers *n, uint bit, uint number[CUBE_EDGES]) {
-    ulong at_x = (1ul << bit) - 1, at_x1 = at_x << 1 | 1;
-    ulong8 below = (ulong8)(at_x, at_x, at_x, at_x, at_x, at_x1, at_x1, at_x1);
-    vstore8(n->base_a + convert_uint8(popcount(n->crossed_a & at_x)), 0, number);
-    vstore8(n->base_b + convert_uint8(popcount(n->crossed_b & below)), 1, number);
-    number[16] = n->base_c[0] + (uint)popcount(n->crossed_c[0] & at_x1);
-    number[17] = n->base_c[1] + (uint)popcount(n->crossed_c[1] & at_x1);
+/* The signs of a cube's corners, corner n in bit n. */
+inline_always uint pattern_at(const cube_rows *r, uint bit) {
+    return (uint)(r->a0 >> bit & 1) | (uint)(r->a1 >> bit & 1) << 1 | (uint)(r->b0 >> bit & 1) << 2 |
+           (uint)(r->b1 >> bit & 1) << 3 | (uint)(r->c0 >> bit & 1) << 4 | (uint)(r->c1 >> bit & 1) << 5 |
+           (uint)(r->d0 >> bit & 1) << 6 | (uint)(r->d1 >> bit & 1) << 7;
 }
 
-/* Edges at x + 1 of the last cube of a row are the first of the next word. */
-inline_always void cube_vertices_next(const slab *s, uint y, uint z, uint w, uint number[CUBE_EDGES], row_results k1) {
-    owner a = owner_of(s, y, z, w, k1);
-    number[13] = number_of(a, 1), number[14] = number_of(a, 2), number[15] = number_of(a, 5);
-    number[16] = number_of(owner_of(s, y + 1, z, w, k1), 2);
-    number[17] = number_of(owner_of(s, y, z + 1, w, k1), 1);
-}
-
-inline_always void row_triangles(const slab *s, uint y, uint z, uint w, const cube_rows *r, ulong active,
-                                 const cube_numbers *numbers, uint out, row_results k1, global const uchar *cases,
-                                 mesh_buffers mesh) {
-    ulong8 corners = (ulong8)(r->a0, r->a1, r->b0, r->b1, r->c0, r->c1, r->d0, r->d1);
+/* All triangles of row n of a table, in order, from place `out` in the mesh on. */
+inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, uint out, row_results k1,
+                                 const local row_table *table, global const uchar *cases, mesh_buffers mesh) {
+    const cube_rows r = row_cubes(s, y, z, w, true, true, k1);
+    ulong active = cubes_active(&r);
+#if MISSING
+    active &= cells_at(s, k1.cells, y, z, w);
+#endif
     for (; active; active &= active - 1) {
-        uint bit = lowest_bit(active), number[CUBE_EDGES];
-        cube_vertices(numbers, bit, number);
-        if (bit == 63) cube_vertices_next(s, y, z, w + 1, number, k1);
-        uint odd = (uint)(~r->even >> bit & 1);
-        global const uchar *entry = cases + CUBE_CASE_BYTES * (256 * odd + pattern_at(corners, bit));
-        for (uint n = 0; n < 3u * entry[0]; n++) mesh.triangles[3ul * out + n] = number[entry[1 + n]];
-        out += entry[0];
+        uint bit = lowest_bit(active), odd = (uint)(~r.even >> bit & 1);
+        global const uchar *entry = cases + CUBE_CASE_BYTES * (256 * odd + pattern_at(&r, bit));
+        const uint count = entry[0];
+        for (uint m = 0; m < 3 * count; m++)
+            mesh.triangles[3ul * out + m] = vertex_number(s, y, z, w, n, bit, entry[1 + m], k1, table);
+        out += count;
     }
 }
 
-/* The sign word of a row, and the same shifted; 0 outside the grid. */
-inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_results k1) {
-    if (y >= s->ny || z >= s->nz) return rows_shifted(0, 0);
-    uint number = brick_index(s, y, z, w), place = row_place(s, y, z);
-    ulong next = 0, at = brick_words(number, k1.bricks[number].sign, k1.words)[place] & word_valid(s, w);
-    if (w + 1 < s->words_x) next = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words)[place];
-    return rows_shifted(at, next);
-}
+/* ------------------------------------------------------------------------------------------------------------ brick */
 
-/* The crossings of the rows y + 1, z + 1 and both that a cube names, seen from their own samples: parity alternates
- * from row to row. */
-inline_always void crossings_beside(const cube_rows *r, crossings *b, crossings *c, crossings *d) {
-    b->type[0] = r->b0 ^ r->b1;
-    b->type[2] = r->b0 ^ r->d0;
-    if (!HYBRID) b->type[4] = choose(r->even, r->b1 ^ r->d0, r->b0 ^ r->d1);
-    c->type[0] = r->c0 ^ r->c1;
-    c->type[1] = r->c0 ^ r->d0;
-    if (!HYBRID) c->type[3] = choose(r->even, r->c1 ^ r->d0, r->c0 ^ r->d1);
-    d->type[0] = r->d0 ^ r->d1;
-}
-
-inline_always void row_emit(const slab *s, corner brick, uint number, uint place, grid_arrays in, row_results k1,
-                            global const uchar *cases, mesh_buffers mesh) {
-    uint y = brick.y + place % BRICK_ROWS, z = brick.z + place / BRICK_ROWS, w = brick.x / 64;
-    cube_rows r = cube_rows_of(s, y, z, w, row_of(s, y, z, w, k1), row_of(s, y + 1, z, w, k1),
-                               row_of(s, y, z + 1, w, k1), row_of(s, y + 1, z + 1, w, k1));
-    crossings a = crossings_owned(&r);
-    ulong active = cubes_active(&r);
-#if MISSING
-    crossings_keep(s, k1.cells, y, z, w, &a);
-    active &= cells_at(s, k1.cells, y, z, w);
-#endif
-    const owner own = owner_of(s, y, z, w, k1);
+/* The row at a place of brick `number`. */
+inline_always void row_emit(const slab *s, uint number, uint place, grid_arrays in, row_results k1,
+                            global const uchar *cases, mesh_buffers mesh, const local row_table *table) {
+    const corner brick = brick_corner(s, number);
+    const uint y = brick.y + place % BRICK_ROWS, z = brick.z + place / BRICK_ROWS;
+    const uint n = place % BRICK_ROWS + TABLE_ROWS_Y * (place / BRICK_ROWS);
+    const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + place];
 #ifdef REAL
-    row_vertices(s, brick, y, z, w, &a, (uint)(number_of(own, 0) - s->vertex_window), in, mesh);
+    row_vertices(s, brick, y, z, n, in, table, mesh);
 #endif
-    if (!active) return;
-    crossings b = {{0, 0, 0, 0, 0, 0}}, c = b, d = b;
-    crossings_beside(&r, &b, &c, &d);
-#if MISSING
-    crossings_keep(s, k1.cells, y + 1, z, w, &b);
-    crossings_keep(s, k1.cells, y, z + 1, w, &c);
-    crossings_keep(s, k1.cells, y + 1, z + 1, w, &d);
-#endif
-    const owner owners[4] = {own, owner_of(s, y + 1, z, w, k1), owner_of(s, y, z + 1, w, k1),
-                             owner_of(s, y + 1, z + 1, w, k1)};
-    cube_numbers numbers = cube_numbers_of(&a, &b, &c, &d, owners);
-    uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + place];
-    row_triangles(s, y, z, w, &r, active, &numbers, before - s->triangle_window, k1, cases, mesh);
+    row_triangles(s, y, z, brick.x / 64, n, before - s->triangle_window, k1, table, cases, mesh);
 }
 
-/* What kernel 2 needs of private memory: nothing here. */
-typedef struct brick_work {
-    uint none;
-} brick_work;
-
-inline_always void brick_work_begin(const slab *s, brick_work *work) { work->none = 0; }
-
-/* Others of the group work while one waits for memory. */
-inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
-                                 global const BITS *samples) {}
-
-/* The work-item's row of brick `number`. */
-inline_always void brick_emit(const slab *s, uint number, corner brick, grid_arrays in, row_results k1,
-                              global const uchar *cases, mesh_buffers mesh, brick_work *work) {
+/* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group; no variable lives
+ * across its barriers, as compilers have gone wrong on that. */
+inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arrays in, row_results k1,
+                              global const uchar *cases, mesh_buffers mesh, local emit_room *room, brick_work *work) {
+    local row_table *table = &room->tables[get_local_id(0) / BRICK_WORDS];
+    group_barrier();
+    if (wanted) table_make(s, brick_corner(s, number), k1, table);
+    group_barrier();
     uint place = (uint)get_local_id(0) % BRICK_WORDS;
-    if (k1.bricks[number].rows >> place & 1) row_emit(s, brick, number, place, in, k1, cases, mesh);
+    if (wanted && k1.bricks[number].rows >> place & 1) row_emit(s, number, place, in, k1, cases, mesh, table);
 }

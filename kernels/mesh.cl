@@ -69,9 +69,3 @@ inline_always long place_step(const slab *s, uint place) {
 }
 
 #endif
-
-/* The signs of a cube's corners, corner n in bit n. */
-inline_always uint pattern_at(ulong8 corners, uint bit) {
-    char8 inside = convert_char8((corners & (ulong8)(1ul << bit)) != 0ul);
-    return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
-}

@@ -32,19 +32,10 @@ inline_always uint range_sign(const slab *s, brick_range range) {
     return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
 }
 
-inline_always BITS16 keys16(BITS16 bits, const slab *s) {
+inline_always BITS key_of(BITS bits, const slab *s) {
 #if FLOATING
-    return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
+    return bits ^ ((BITS)((signed_bits)bits >> (FLOATING - 1)) | KEY_SIGN);
 #else
     return bits ^ (BITS)s->key_flip;
 #endif
 }
-
-inline_always uint keys_least(BITS16 keys) {
-    PASTE(BITS, 8) m8 = min(keys.lo, keys.hi);
-    PASTE(BITS, 4) m4 = min(m8.lo, m8.hi);
-    return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
-}
-
-/* The largest upper half is the complement of the complement's least. */
-inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }

@@ -4,22 +4,23 @@
 #define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
 #define ROW_PARTS      4 /* of 16 samples */
 
-/* 16 samples of a row from 16 * part on; those past its end repeat the first. */
-inline_always BITS16 row_part_load(global const BITS *samples, const slab *s, uint y, uint z, uint part) {
-    const BITS16 lane = (BITS16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
-    uint left = min(s->nx - 16 * part, 16u);
-    return lane < (BITS16)(BITS)left ? bits : (BITS16)bits.s0;
-}
-
 /* A work-item's part of a brick's words and range. */
 inline_always void part_visit(const slab *s, uint y, uint z, uint part, global const BITS *samples, global ulong *word,
                               local brick_range *range) {
-    ((global ushort *)word)[part % ROW_PARTS] = (ushort)word_part(samples, s, y, z, part);
-    if (s->ranges_known || 16 * part >= s->nx) return;
-    BITS16 keys = keys16(row_part_load(samples, s, y, z, part), s);
-    atomic_min(&range->low, keys_least(keys));
-    atomic_max(&range->high, keys_most(keys));
+    const uint count = 16 * part < s->nx ? min(s->nx - 16 * part, 16u) : 0;
+    global const BITS *row = samples + row_start(s, y, z) + 16 * part;
+    BITS low = (BITS) ~(BITS)0, high = 0;
+    uint signs = 0;
+#pragma unroll 4
+    for (uint n = 0; n < count; n++) {
+        const BITS bits = row[n], key = key_of(bits, s);
+        signs |= (uint)bits_inside(bits, s) << n;
+        low = min(low, key), high = max(high, key);
+    }
+    ((global ushort *)word)[part % ROW_PARTS] = (ushort)signs;
+    if (s->ranges_known || !count) return;
+    atomic_min(&range->low, key_upper(low));
+    atomic_max(&range->high, key_upper(high));
 }
 
 /* What a group needs of local memory. */

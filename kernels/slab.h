@@ -56,6 +56,9 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 /* The table of cases then names lanes: of the NUMBER_LANES numbers from the cube's first sample on of its four rows. */
 #define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
 
+/* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
+#define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))
+
 /* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
     STATE_TICKET,      /* next tile of kernel 1 */

@@ -141,20 +141,8 @@ inline_always lanes offsets_pack(const crossings *k, lanes *vertex_count) {
     return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46;
 }
 
+/* Shifts and widths of the types, a byte and four bits of a constant for each: types may vary. */
 inline_always uint offset_of_type(ulong packed, uint type) {
-    uint first = (uint)packed & 0x3fff;
-    switch (type) {
-    case 0:
-        return first;
-    case 1:
-        return first + ((uint)(packed >> 14) & 0x7f);
-    case 2:
-        return first + ((uint)(packed >> 21) & 0xff);
-    case 3:
-        return first + ((uint)(packed >> 29) & 0xff);
-    case 4:
-        return first + ((uint)(packed >> 37) & 0x1ff);
-    default:
-        return first + ((uint)(packed >> 46) & 0x1ff);
-    }
+    const uint shift = (uint)(0x2e251d150e37ul >> (8 * type)) & 63, width = 0x998871u >> (4 * type) & 15;
+    return ((uint)packed & 0x3fff) + ((uint)(packed >> shift) & ((1u << width) - 1));
 }

@@ -71,14 +71,17 @@ inline_always bool neighbour_missing(grid_arrays in, const slab *s, ulong n) {
 #endif
 }
 
+/* One of three by an axis that may vary, which as an index would put them into memory. */
+#define OF_AXIS(axis, x, y, z) ((axis) == 0 ? (x) : (axis) == 1 ? (y) : (z))
+
 inline_always neighbours neighbours_of(grid_arrays in, const slab *s, const uint p[3], uint axis) {
-    const uint dims[3] = {s->nx, s->ny, s->nz};
-    const ulong strides[3] = {1, s->nx, (ulong)s->nx * s->ny};
+    const uint at = OF_AXIS(axis, p[0], p[1], p[2]), end = OF_AXIS(axis, s->nx, s->ny, s->nz);
+    const ulong stride = OF_AXIS(axis, 1ul, (ulong)s->nx, (ulong)s->nx * s->ny);
     ulong here = row_start(s, p[1], p[2]) + p[0];
-    bool has_before = p[axis] > 0 && !neighbour_missing(in, s, here - strides[axis]);
-    bool has_after = p[axis] + 1 < dims[axis] && !neighbour_missing(in, s, here + strides[axis]);
-    neighbours n = {has_before ? here - strides[axis] : here, has_after ? here + strides[axis] : here,
-                    p[axis] - has_before, p[axis] + has_after, has_before && has_after ? 0.03125f : 0.0625f};
+    bool has_before = at > 0 && !neighbour_missing(in, s, here - stride);
+    bool has_after = at + 1 < end && !neighbour_missing(in, s, here + stride);
+    neighbours n = {has_before ? here - stride : here, has_after ? here + stride : here, at - has_before,
+                    at + has_after, has_before && has_after ? 0.03125f : 0.0625f};
     return n;
 }
 
@@ -98,9 +101,8 @@ inline_always REAL largest_of(const REAL v[3]) {
 inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbours n, uint axis, uint row) {
     REAL weight = n.weight;
 #if GRID == 1
-    const uint starts[3] = {0, s->nx, s->nx + s->ny};
     if (row != axis) return 0;
-    global const float *positions = in.coordinates + starts[axis];
+    global const float *positions = in.coordinates + OF_AXIS(axis, 0, s->nx, s->nx + s->ny);
     return weight * (REAL)positions[n.last] - weight * (REAL)positions[n.first];
 #else
     global const float *points = in.coordinates + row;
@@ -114,22 +116,28 @@ inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbou
  * determinant is. */
 inline_always void gradient_map(REAL j[3][3], REAL g[3], REAL n[3]) {
     REAL size[3], c[3][3];
+#pragma unroll
     for (uint axis = 0; axis < 3; axis++) size[axis] = largest_of(j[axis]);
     REAL least = size[0] < size[1] ? size[0] : size[1];
     least = least < size[2] ? least : size[2];
     n[0] = n[1] = n[2] = 0;
     if (!(least > 0)) return;
+#pragma unroll
     for (uint axis = 0; axis < 3; axis++) {
+#pragma unroll
         for (uint row = 0; row < 3; row++) j[axis][row] = DIVIDE(j[axis][row], size[axis]);
         g[axis] *= DIVIDE(least, size[axis]);
     }
+#pragma unroll
     for (uint axis = 0; axis < 3; axis++) {
         const REAL *u = j[(axis + 1) % 3], *v = j[(axis + 2) % 3];
+#pragma unroll
         for (uint row = 0; row < 3; row++)
             c[axis][row] = u[(row + 1) % 3] * v[(row + 2) % 3] - u[(row + 2) % 3] * v[(row + 1) % 3];
     }
     REAL determinant = (j[0][0] * c[0][0] + j[0][1] * c[0][1]) + j[0][2] * c[0][2];
     REAL sign = determinant > 0 ? (REAL)-1 : determinant < 0 ? (REAL)1 : (REAL)0;
+#pragma unroll
     for (uint row = 0; row < 3; row++) n[row] = sign * ((c[0][row] * g[0] + c[1][row] * g[1]) + c[2][row] * g[2]);
 }
 
@@ -140,18 +148,19 @@ inline_always void gradient_map(REAL j[3][3], REAL g[3], REAL n[3]) {
 inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint place, float t, global float *out) {
     const uint a[3] = {c.x + (place & 0x7f), c.y + (place >> 7 & 0xf), c.z + (place >> 11 & 7)};
     const uint b[3] = {a[0] + (place >> 14 & 3) - 1, a[1] + (place >> 16 & 3) - 1, a[2] + (place >> 18 & 3) - 1};
-    REAL g[3], n[3];
+    REAL g[3] = {0, 0, 0}, n[3];
 #if GRID
-    REAL j[3][3];
+    REAL j[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 #endif
-    for (uint axis = 0; axis < 3; axis++) {
+    for_axis(axis) { /* each is entered last; after three all have their places */
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
         REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
-        g[axis] = ga + (REAL)t * (gb - ga);
+        g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);
 #if GRID
+#pragma unroll
         for (uint row = 0; row < 3; row++) {
             REAL ja = coordinate_difference(in, s, at_a, axis, row), jb = coordinate_difference(in, s, at_b, axis, row);
-            j[axis][row] = ja + (REAL)t * (jb - ja);
+            j[0][row] = j[1][row], j[1][row] = j[2][row], j[2][row] = ja + (REAL)t * (jb - ja);
         }
 #endif
     }
@@ -159,14 +168,17 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
     gradient_map(j, g, n);
 #else
     const float *m = s->normal_matrix;
+#pragma unroll
     for (uint row = 0; row < 3; row++)
         n[row] = -(((REAL)m[3 * row] * g[0] + (REAL)m[3 * row + 1] * g[1]) + (REAL)m[3 * row + 2] * g[2]);
 #endif
     REAL largest = largest_of(n);
     out[0] = out[1] = out[2] = 0;
     if (!(largest > 0)) return;
+#pragma unroll
     for (uint row = 0; row < 3; row++) n[row] = DIVIDE(n[row], largest);
     REAL length = ROOT((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
+#pragma unroll
     for (uint row = 0; row < 3; row++) out[row] = (float)DIVIDE(n[row], length);
 }
 

@@ -75,39 +75,55 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
 }
 
 /* Sources of each text, in order; the rest of a list is NULL. */
-enum { SOURCES_MOST = 20 };
+enum { SOURCES_MOST = 24 };
 
 static const char *const classify_sources[][SOURCES_MOST] = {
     [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
-                    kernel_source_words, kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
-                    kernel_source_sign, kernel_source_sign_alone, kernel_source_count, kernel_source_count_alone,
-                    kernel_source_scan, kernel_source_classify},
+                    kernel_source_words, kernel_source_words_alone, kernel_source_tetrahedra, kernel_source_cells,
+                    kernel_source_ranges, kernel_source_ranges_alone, kernel_source_sign, kernel_source_sign_alone,
+                    kernel_source_count, kernel_source_count_alone, kernel_source_scan, kernel_source_classify},
     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges, kernel_source_sign,
-                     kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups, kernel_source_scan,
-                     kernel_source_classify},
+                     kernel_source_words_groups, kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
+                     kernel_source_sign, kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups,
+                     kernel_source_scan, kernel_source_classify},
 };
 static const char *const emit_sources[][SOURCES_MOST] = {
     [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
-                    kernel_source_words, kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing,
-                    kernel_source_vertex, kernel_source_mesh, kernel_source_emit_numbers, kernel_source_emit_brick,
-                    kernel_source_emit},
+                    kernel_source_words, kernel_source_words_alone, kernel_source_tetrahedra, kernel_source_cells,
+                    kernel_source_crossing, kernel_source_vertex, kernel_source_mesh, kernel_source_emit_numbers,
+                    kernel_source_emit_brick, kernel_source_emit},
     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing, kernel_source_vertex,
-                     kernel_source_mesh, kernel_source_emit_rows, kernel_source_emit},
+                     kernel_source_words_groups, kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing,
+                     kernel_source_vertex, kernel_source_mesh, kernel_source_emit_rows, kernel_source_emit},
 };
 static const char *const complex_sources[][SOURCES_MOST] = {
-    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
-                    kernel_source_words, kernel_source_ranges, kernel_source_scan, kernel_source_crossing,
-                    kernel_source_complex_job, kernel_source_complex_cluster, kernel_source_complex_tile,
-                    kernel_source_complex_count, kernel_source_complex_count_alone, kernel_source_complex_classify,
-                    kernel_source_complex_join, kernel_source_complex_join_alone, kernel_source_complex_number,
+    [TEXT_ALONE] = {kernel_source_slab,
+                    kernel_source_common,
+                    kernel_source_extensions,
+                    kernel_source_lanes_alone,
+                    kernel_source_words,
+                    kernel_source_words_alone,
+                    kernel_source_ranges,
+                    kernel_source_ranges_alone,
+                    kernel_source_scan,
+                    kernel_source_crossing,
+                    kernel_source_complex_job,
+                    kernel_source_complex_cluster,
+                    kernel_source_complex_cluster_alone,
+                    kernel_source_complex_tile,
+                    kernel_source_complex_count,
+                    kernel_source_complex_count_alone,
+                    kernel_source_complex_classify,
+                    kernel_source_complex_join,
+                    kernel_source_complex_join_alone,
+                    kernel_source_complex_number,
                     kernel_source_complex_emit},
     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_ranges, kernel_source_scan, kernel_source_crossing, kernel_source_complex_job,
-                     kernel_source_complex_cluster, kernel_source_complex_tile, kernel_source_complex_count,
-                     kernel_source_complex_count_groups, kernel_source_complex_classify, kernel_source_complex_join,
-                     kernel_source_complex_join_groups, kernel_source_complex_number, kernel_source_complex_emit},
+                     kernel_source_words_groups, kernel_source_ranges, kernel_source_scan, kernel_source_crossing,
+                     kernel_source_complex_job, kernel_source_complex_cluster, kernel_source_complex_cluster_groups,
+                     kernel_source_complex_tile, kernel_source_complex_count, kernel_source_complex_count_groups,
+                     kernel_source_complex_classify, kernel_source_complex_join, kernel_source_complex_join_groups,
+                     kernel_source_complex_number, kernel_source_complex_emit},
 };
 
 static kernel_text text_of(const tc_context *context) { return text_for(context->options.work_items); }

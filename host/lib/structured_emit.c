@@ -76,11 +76,11 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
     return status;
 }
 
-/* How kernel 2 finds the vertex on an edge of a cube: by its place in cube_edges, or, where a work-item has a brick to
- * itself, by lane. */
+/* How kernel 2 finds the vertex on an edge of a cube: by the edge's owner and type, or, where a work-item has a brick
+ * to itself, by lane. */
 static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
-    if (r->context->options.work_items > 1) return edge;
+    if (r->context->options.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
     return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
 }
 

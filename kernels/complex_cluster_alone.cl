@@ -1,0 +1,69 @@
+/*
+ * complex_cluster_alone.cl - clusters where a work-item is alone: the samples of four tetrahedra make a vector
+ */
+inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
+    uint largest = 0, count = 4 * cluster_size(c, n);
+    if (count == CLUSTER_POINTS) {
+        uint16 most = 0;
+        for (uint m = 0; m < CLUSTER_POINTS / 16; m++) most = max(most, vload16(m, points));
+        return mask_pack(convert_char16(most >= c->point_count)) == 0;
+    }
+    for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
+    return largest < c->point_count;
+}
+
+/* Samples [16 part, 16 part + 16) of a cluster's; one that is not full repeats its first. One by one: vector gathers of
+ * CPUs are no faster. */
+inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, complex_arrays in) {
+    global const uint *p = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    global const BITS *s = in.samples;
+    uint count = 4 * cluster_size(c, n);
+    if (count == CLUSTER_POINTS) {
+        p += 16 * part;
+        return (BITS16)(s[p[0]], s[p[1]], s[p[2]], s[p[3]], s[p[4]], s[p[5]], s[p[6]], s[p[7]], s[p[8]], s[p[9]],
+                        s[p[10]], s[p[11]], s[p[12]], s[p[13]], s[p[14]], s[p[15]]);
+    }
+    BITS samples[16];
+    for (uint m = 0; m < 16; m++) samples[m] = s[p[16 * part + m < count ? 16 * part + m : 0]];
+    return vload16(0, samples);
+}
+
+/* The least key of all and the greatest; side by side, as the least of the complements. */
+inline_always brick_range keys_range(BITS16 low, BITS16 high) {
+    PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);
+    PASTE(BITS, 8) m8 = (PASTE(BITS, 8))(min(low8.lo, low8.hi), min(high8.lo, high8.hi));
+    PASTE(BITS, 4) m4 = min(m8.even, m8.odd);
+    PASTE(BITS, 2) m2 = min(m4.even, m4.odd);
+    brick_range range = {key_upper(m2.x), key_upper((BITS)~m2.y)};
+    return range;
+}
+
+/* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
+inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
+    brick_range range = {0, 0};
+    if (!cluster_valid(c, n, in.tetrahedra + (ulong)CLUSTER_POINTS * n)) {
+        *invalid = 1;
+        return range;
+    }
+    BITS16 low = (BITS) ~(BITS)0, high = 0;
+    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
+        BITS16 keys = keys16(cluster_samples(c, n, m, in), s);
+        low = min(low, keys), high = max(high, keys);
+    }
+    return keys_range(low, high);
+}
+
+/* Where the surface passes through, and what it makes there. Of points that are valid. */
+inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
+    ulong inside = 0, missing = 0;
+    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
+        BITS16 bits = cluster_samples(c, n, m, in);
+        inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
+#if FLOATING
+        missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
+#endif
+    }
+    uint size = cluster_size(c, n);
+    if (size < CLUSTER_TETRAHEDRA) missing |= ~0ul << 4 * size;
+    return report_of(inside, missing);
+}

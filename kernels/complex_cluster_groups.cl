@@ -1,0 +1,45 @@
+/*
+ * complex_cluster_groups.cl - clusters where the work-items of a group take one each: point by point
+ */
+inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
+    const uint count = 4 * cluster_size(c, n);
+    uint largest = 0;
+#pragma unroll 4
+    for (uint m = 0; m < count; m++) largest = max(largest, points[m]);
+    return largest < c->point_count;
+}
+
+/* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
+inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    const uint count = 4 * cluster_size(c, n);
+    brick_range range = {0, 0};
+    if (!cluster_valid(c, n, points)) {
+        *invalid = 1;
+        return range;
+    }
+    BITS low = (BITS) ~(BITS)0, high = 0;
+#pragma unroll 4
+    for (uint m = 0; m < count; m++) {
+        const BITS key = key_of(in.samples[points[m]], s);
+        low = min(low, key), high = max(high, key);
+    }
+    range.low = key_upper(low), range.high = key_upper(high);
+    return range;
+}
+
+/* Where the surface passes through, and what it makes there. Of points that are valid. */
+inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    const uint count = 4 * cluster_size(c, n);
+    ulong inside = 0, missing = 0;
+#pragma unroll 4
+    for (uint m = 0; m < count; m++) {
+        const BITS bits = in.samples[points[m]];
+        inside |= (ulong)bits_inside(bits, s) << m;
+#if FLOATING
+        missing |= (ulong)bits_missing(bits, s) << m;
+#endif
+    }
+    return report_of(inside, missing);
+}

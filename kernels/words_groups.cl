@@ -1,0 +1,48 @@
+/*
+ * words_groups.cl - sign words where the work-items of a group share bricks: sample by sample
+ *
+ * Every work-item has samples of its own, so that a group has many loads under way; each needs few registers. Loops
+ * stay loops for the same reason: unrolled, they need masks and addresses side by side.
+ */
+inline_always bool bits_inside(BITS bits, const slab *s) {
+    return (BITS)(bits - (BITS)s->inside_low) <= (BITS)s->inside_span;
+}
+
+/* Signs of samples, bit n for row[n]. */
+inline_always ulong signs_make(global const BITS *row, uint count, const slab *s) {
+    ulong word = 0;
+#pragma unroll 1
+    for (uint n = 0; n < count; n++) word |= (ulong)bits_inside(row[n], s) << n;
+    return word;
+}
+
+/* 16 bits of a word. */
+inline_always uint word_part(global const BITS *samples, const slab *s, uint y, uint z, uint part) {
+    if (16 * part >= s->nx) return 0;
+    return (uint)signs_make(samples + row_start(s, y, z) + 16 * part, min(s->nx - 16 * part, 16u), s);
+}
+
+inline_always ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
+    return signs_make(samples + row_start(s, y, z) + 64 * w, min(s->nx - 64 * w, 64u), s);
+}
+
+/* Bit n for byte `first` + n, which is not 0; bytes from `end` on are not read. */
+inline_always ulong bytes_word(global const uchar *bytes, ulong first, ulong end) {
+    const uint count = first < end ? (uint)min(end - first, 64ul) : 0;
+    ulong word = 0;
+#pragma unroll 1
+    for (uint n = 0; n < count; n++) word |= (ulong)(bytes[first + n] != 0) << n;
+    return word;
+}
+
+inline_always ulong word_present(global const BITS *samples, global const uchar *blanked, const slab *s, uint y, uint z,
+                                 uint w) {
+    const ulong start = row_start(s, y, z) + 64ul * w;
+    const uint count = min(s->nx - 64 * w, 64u);
+    ulong word = 0;
+#pragma unroll 1
+    for (uint n = 0; n < count; n++) word |= (ulong)!bits_missing(samples[start + n], s) << n;
+    if (s->has_blanked_samples)
+        word &= ~bytes_word(blanked, start + s->blanked_offset, start + s->blanked_offset + count);
+    return word;
+}
