@@ -240,7 +240,7 @@ static void emit_programs(tc_context *context) {
 
 static void complex_programs(tc_context *context) {
     tc_grid grid = {.context = context};
-    cl_kernel const *found;
+    const program *found;
     for (int type = TC_U8; type <= TC_F64; type++) {
         grid.type = (tc_type)type;
         snprintf(name, sizeof name, "complex-%s", type_names[type]);
@@ -260,7 +260,7 @@ int main(int count, char **arguments) {
     }
     folder = arguments[3];
     setenv("TETRACUBES_CACHE_DIR", "", 1); /* neither programs nor tuning of the user's */
-    opencl_load();                         /* where there is a loader it is not asked again */
+    if (!opencl_lock()) opencl_unlock();   /* where there is a loader it is not asked again */
     cl = &stand_in;
     tc_context_options_init(&options);
     options.device = "0";
