@@ -249,16 +249,16 @@ static int compare_edges(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Edges, with their direction, of several kept near triangles. Takes the memory of the fans. */
+/* Edges of more than two triangles. Takes the memory of the fans. */
 static uint64_t count_crowded(const job *j) {
     uint64_t *edges = j->around, count = 0, crowded = 0;
     for (uint64_t c = 0; c < 3 * j->near_count; c++) {
         if (j->is_dropped[c / 3]) continue;
-        if (is_member(j, vertex_at(j, c)) || is_member(j, vertex_at(j, next_corner(c))))
-            edges[count++] = (uint64_t)new_vertex(j, c) << 32 | new_vertex(j, next_corner(c));
+        const uint32_t a = new_vertex(j, c), b = new_vertex(j, next_corner(c));
+        edges[count++] = (uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a);
     }
     qsort(edges, (size_t)count, sizeof *edges, compare_edges);
-    for (uint64_t n = 1; n < count; n++) crowded += edges[n] == edges[n - 1] && (n == 1 || edges[n] != edges[n - 2]);
+    for (uint64_t n = 2; n < count; n++) crowded += edges[n] == edges[n - 2] && (n == 2 || edges[n] != edges[n - 3]);
     return crowded;
 }
 

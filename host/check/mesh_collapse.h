@@ -20,8 +20,7 @@ typedef struct collapsed_mesh {
     uint32_t *sources;   /* the vertex of the mesh that each vertex is: its place, normal and values. Not falling; one
                             may stand several times, where a sheet was pinched off; from malloc */
     uint64_t dropped_count; /* triangles */
-    uint64_t crowded_edges; /* edges in one direction of two triangles or more: where the mesh has a handle or a tunnel
-                               around nothing but such triangles, its two sides meet in an edge */
+    uint64_t crowded_edges; /* of more than two triangles: where sheets with only dropped ones between them meet */
 } collapsed_mesh;
 
 /* positions and triangles as those of mesh_check, indices valid. Returns 0 and a mesh to be released, or STATUS_FAILED

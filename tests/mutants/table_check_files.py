@@ -51,7 +51,7 @@ MUTANTS = [
             "the way through dropped triangles leads astray", RESULTS),
            ("return !j->is_dropped[corner / 3] && j->joined[corner] == corner;", "return j->joined[corner] == corner;",
             "dropped triangles keep vertices", RESULTS),
-           ("crowded += edges[n] == edges[n - 1]", "crowded += edges[n] != edges[n - 1]",
+           ("crowded += edges[n] == edges[n - 2]", "crowded += edges[n] != edges[n - 2]",
             "crowded edges: those that are not", RESULTS)),
     *group("host/check/complex_check.c",
            ("end - first == 2 && faces[first].next == faces[first + 1].next", "end - first == 2 && faces[first].next != faces[first + 1].next",
