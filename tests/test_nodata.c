@@ -93,6 +93,12 @@ static void expect_same_cut(const tc_grid_options *one, const tc_grid_options *o
     tc_complex_release(&b);
 }
 
+/* Each type and kind of grid has kernels of its own, whose building takes long: one integer type stands for the others.
+ */
+static bool is_for_device(tc_type type, int curvilinear) {
+    return type == TC_F32 || (!curvilinear && (type == TC_F64 || type == TC_U8));
+}
+
 static void test_value(tc_context *const contexts[2], const named_value *v, int possible) {
     for (int curvilinear = 0; curvilinear < 2; curvilinear++) {
         char name[80];
@@ -105,7 +111,8 @@ static void test_value(tc_context *const contexts[2], const named_value *v, int 
         if (possible) masked.blanked_samples = blanked;
         snprintf(name, sizeof name, "%s %s%s", tc_type_name(v->type), v->text, curvilinear ? ", curvilinear" : "");
         if (!test_chosen(name)) continue;
-        for (int n = 0; n < 2 && contexts[n]; n++) expect_same(contexts[n], &named, &masked, name);
+        expect_same(contexts[0], &named, &masked, name);
+        if (contexts[1] && is_for_device(v->type, curvilinear)) expect_same(contexts[1], &named, &masked, name);
         expect_same_cut(&named, &masked, name);
     }
 }
