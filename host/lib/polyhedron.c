@@ -95,7 +95,7 @@ static bool is_closed(const polyhedron *p) {
     for (uint32_t n = 0, end; n < p->side_count; n = end) {
         int64_t balance = 0;
         end = run_end(p, n);
-        for (uint32_t m = n; m < end; m++) balance += p->sides[m].falls ^ p->faces[p->sides[m].face].flipped ? -1 : 1;
+        for (uint32_t m = n; m < end; m++) balance += (p->sides[m].falls ^ p->faces[p->sides[m].face].flipped) ? -1 : 1;
         if (balance) return false;
     }
     return true;

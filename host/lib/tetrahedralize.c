@@ -189,11 +189,8 @@ static bool cells_cut(const void *source, uint64_t first, uint64_t end, tetrahed
 /* ------------------------------------------------------------------------------------------------------------ check */
 
 /* A cell whose points are all there. */
-static tc_status position_refuse(const tc_cells *cells, uint64_t c, const uint32_t corners[]) {
+static tc_status position_refuse(const tc_cells *cells, uint64_t c, uint32_t point) {
     const cell_type *type = cell_type_get(cells->types[c]);
-    const bool is_polyhedron = type->shape == CELL_POLYHEDRON;
-    uint32_t point = is_polyhedron ? (uint32_t)*polyhedron_unusable_point(cells, c)
-                                   : corners[unusable_corner(cells, corners, type->corner_count)];
     double p[3];
     for (unsigned axis = 0; axis < 3; axis++) p[axis] = coordinate_get(points_of(cells), 3 * (uint64_t)point + axis);
     return (tc_status)fail(TC_ERROR_DATA,
@@ -212,7 +209,8 @@ static tc_status polyhedron_refuse(const tc_cells *cells, uint64_t c) {
         [POLYHEDRON_OPEN] = "has faces that are not closed: an edge of one is not that of another"};
     int tetrahedra;
     polyhedron_verdict verdict = polyhedron_look(cells, c);
-    if (!verdict && polyhedron_unusable_point(cells, c)) return position_refuse(cells, c, NULL);
+    const int64_t *unusable = verdict ? NULL : polyhedron_unusable_point(cells, c);
+    if (unusable) return position_refuse(cells, c, (uint32_t)*unusable);
     if (!verdict) verdict = polyhedron_cut(cells, c, NULL, &tetrahedra);
     if (!verdict || verdict == POLYHEDRON_NO_MEMORY)
         return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to cut cell %llu, a polyhedron",
@@ -242,7 +240,7 @@ static tc_status cell_refuse(const tc_cells *cells, uint64_t c, const uint32_t c
                                type->point_count ? type->point_count : type->corner_count);
     if (type->point_count) count = type->point_count;
     if (points_in_range(cells, cells->connectivity + cells->offsets[c], count))
-        return position_refuse(cells, c, corners);
+        return position_refuse(cells, c, corners[unusable_corner(cells, corners, type->corner_count)]);
     return (tc_status)fail(TC_ERROR_DATA, "cell %llu, a %s, has a point that is not among the %llu of the grid", number,
                            name, (unsigned long long)cells->point_count);
 }
