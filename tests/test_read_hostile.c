@@ -33,12 +33,12 @@ static void test_nrrd(void) {
         {"a.nrrd", NRRD_U8 "\n" EIGHT, "'sizes'", STATUS_INPUT},
         {"a.nrrd", NRRD "type: uchar\nencoding: raw\n\n" EIGHT, "'dimension'", STATUS_INPUT},
         {"a.nrrd", NRRD "type: short\ndimension: 3\nencoding: raw\nsizes: 2 2 1\n\n" EIGHT, "'endian'", STATUS_INPUT},
-        {"a.nrrd", NRRD "sizes: 2 2 2\n", "before 'dimension'", STATUS_INPUT},
+        {"a.nrrd", NRRD "sizes: 2 2 2\n", "'dimension'", STATUS_INPUT},
         {"a.nrrd", NRRD "dimension: 17\n", "1 to 16", STATUS_INPUT},
         {"a.nrrd", NRRD "dimension: -1\n", "1 to 16", STATUS_INPUT},
         {"a.nrrd", NRRD "type: block\n", "'block'", STATUS_INPUT},
         {"a.nrrd", NRRD "type: uchar|short\n", "type", STATUS_INPUT},
-        {"a.nrrd", NRRD "encoding: hex\n", "'hex'", STATUS_INPUT},
+        {"a.nrrd", NRRD "encoding: zrl\n", "'zrl'", STATUS_INPUT},
         {"a.nrrd", NRRD "endian: middle\n", "'middle'", STATUS_INPUT},
         {"a.nrrd", NRRD "nonsense\n", "no field", STATUS_INPUT},
         {"a.nrrd", NRRD_222, "no end", STATUS_INPUT},
@@ -52,19 +52,19 @@ static void test_nrrd(void) {
         {"a.nrrd", NRRD_U8 "sizes: 4294967296 2147483648 1\n\n" EIGHT, "2^60", STATUS_INPUT},
         {"a.nrrd", NRRD_U8 "sizes: 99999999999999999999 1 1\n\n" EIGHT, "3 values", STATUS_INPUT},
         {"a.nrrd", NRRD_U8 "sizes: 1000000 1000000 1000\n\n" EIGHT, "asks for", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "spacings: 1 nan 1\n\n" EIGHT, "spacing along axis 2", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "spacings: 1 1 0\n\n" EIGHT, "spacing along axis 3", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "spacings: inf 1 1\n\n" EIGHT, "spacing along axis 1", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "spacings: 1 1\n\n" EIGHT, "3 values", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "kinds: space space\n\n" EIGHT, "3 values", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "centers: cell cell cell cell\n\n" EIGHT, "3 values", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (1,1,0)\n\n" EIGHT, "determinant", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,0)\n\n" EIGHT, "determinant", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,0)\n\n" EIGHT, "axis 3 is 0", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,nan)\n\n" EIGHT, "vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0)\n\n" EIGHT, "has 2 vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,1,\n\n" EIGHT, "vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,1,2,3)\n\n" EIGHT, "vectors", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "space origin: none\n\n" EIGHT, "finite", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "space origin: (0,0,inf)\n\n" EIGHT, "vectors", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "space origin: (0,0,nan)\n\n" EIGHT, "vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "kinds: vector domain domain\n\n" EIGHT, "--component 0 to 1", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "kinds: time domain domain\n\n" EIGHT, "--frame 0 to 1", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "kinds: time time domain\n\n" EIGHT, "--frame", STATUS_INPUT},
@@ -74,16 +74,25 @@ static void test_nrrd(void) {
          "asks for 8", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "byte skip: 1\n\n" EIGHT, "asks for 8", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "byte skip: 9223372036854775807\n\n" EIGHT, "behind", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "byte skip: -2\n\n" EIGHT, "skip", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "byte skip: -2\n\n" EIGHT, "8 and 1 behind", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "byte skip: -9223372036854775808\n\n" EIGHT, "behind", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "line skip: 2\n\n" EIGHT "\n", "only 1", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "line skip: -1\n\n" EIGHT, "skip", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "encoding: gzip\nbyte skip: -1\n\n" EIGHT, "raw data only", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: gzip\nbyte skip: -1\n\n" EIGHT, "damaged", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: gzip\nbyte skip: -9223372036854775808\n\n" EIGHT, "cannot hold", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: ascii\nbyte skip: -1\n\n1 2 3 4 5 6 7 8", "no sense", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: hex\nbyte skip: -1\n\n0102030405060708", "no sense", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: hex\n\n010203040506070", "15 hexadecimal", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: hex\n\n010203040506070 ", "has 15 hexadecimal", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: hex\n\n01020304050607g8", "no hexadecimal digit", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: hex\ntype: short\n\n" EIGHT EIGHT EIGHT EIGHT, "'endian'", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: gzip\nbyte skip: 9223372036854775807\n\n" EIGHT, "cannot hold", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: gzip\n\n" EIGHT, "damaged", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: bzip2\n\n" EIGHT, "damaged", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: gzip\n\n", "cannot hold", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: gzip\nsizes: 1000 1000 1\n\n" EIGHT, "cannot hold", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "encoding: bzip2\nsizes: 1000 1000 1\n\n" EIGHT, "cannot hold", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: bzip2\nsizes: 1000 1000 1\n\n" EIGHT, "damaged", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "encoding: bzip2\nsizes: 10000 10000 1\n\n" EIGHT, "cannot hold", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: ascii\n\n1 2 3 4 5 6 7\n", "few", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: ascii\n\n1 2 3 4 5 6 7        ", "has 7 numbers", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: ascii\n\n1 2 3 4 5 6 7 256", "'256'", STATUS_INPUT},
@@ -149,8 +158,10 @@ static void test_metaimage(void) {
         {"a.mha", META, "ElementDataFile", STATUS_INPUT},
         {"a.mha", "NDims = 3\nnonsense\n", "KEY = VALUE", STATUS_INPUT},
         {"a.mha", "DimSize = 2 2 2\nElementType = MET_UCHAR\n" LOCAL EIGHT, "NDims", STATUS_INPUT},
-        {"a.mha", "NDims = 5\n", "1 to 4", STATUS_INPUT},
-        {"a.mha", "NDims = 3\nDimSize = 2 2\nElementType = MET_UCHAR\n" LOCAL EIGHT, "2 sizes", STATUS_INPUT},
+        {"a.mha", "NDims = 11\n", "1 to 10", STATUS_INPUT},
+        {"a.mha", "NDims = 3\nDimSize = 2 2\nElementType = MET_UCHAR\n" LOCAL EIGHT, "DimSize has 2 values",
+         STATUS_INPUT},
+        {"a.mha", "NDims = 3\nDimSize = 2 2 2.5\nElementType = MET_UCHAR\n" LOCAL EIGHT, "2.5", STATUS_INPUT},
         {"a.mha", "NDims = 3\nDimSize = 2 2 2\n" LOCAL EIGHT, "ElementType", STATUS_INPUT},
         {"a.mha", "NDims = 3\nDimSize = 2 2 2\nElementType = MET_STRING\n" LOCAL EIGHT, "MET_STRING", STATUS_INPUT},
         {"a.mha", "NDims = 3\nDimSize = 2 2 -2\nElementType = MET_UCHAR\n" LOCAL EIGHT, "at least 1", STATUS_INPUT},
@@ -158,17 +169,19 @@ static void test_metaimage(void) {
         {"a.mha", META "ElementNumberOfChannels = 0\n" LOCAL EIGHT, "Channels", STATUS_INPUT},
         {"a.mha", META "ElementNumberOfChannels = 2\n" LOCAL EIGHT EIGHT, "--component 0 to 1", STATUS_INPUT},
         {"a.mha", META "ElementSpacing = 1 0 1\n" LOCAL EIGHT, "axis 2", STATUS_INPUT},
-        {"a.mha", META "ElementSpacing = 1 1 -1\n" LOCAL EIGHT, "axis 3", STATUS_INPUT},
+        {"a.mha", META "ElementSpacing = 1 1 x\n" LOCAL EIGHT, "numbers are needed", STATUS_INPUT},
         {"a.mha", META "ElementSpacing = nan 1 1\n" LOCAL EIGHT, "axis 1", STATUS_INPUT},
         {"a.mha", META "ElementSpacing = 1 1\n" LOCAL EIGHT, "NDims", STATUS_INPUT},
         {"a.mha", META "Offset = 1 inf 1\n" LOCAL EIGHT, "finite", STATUS_INPUT},
         {"a.mha", META "TransformMatrix = 1 0 0 0 1 0\n" LOCAL EIGHT, "NDims", STATUS_INPUT},
-        {"a.mha", META "TransformMatrix = 1 0 0 0 1 0 0 0 0\n" LOCAL EIGHT, "determinant", STATUS_INPUT},
+        {"a.mha", META "TransformMatrix = 1 0 0 0 1 0 0 0 0\n" LOCAL EIGHT, "axis 3 is 0", STATUS_INPUT},
+        {"a.mha", META "TransformMatrix = 1 0 0 0 1 0 1 1 0\n" LOCAL EIGHT, "determinant", STATUS_INPUT},
         {"a.mha", META "HeaderSize = -2\n" LOCAL EIGHT, "HeaderSize", STATUS_INPUT},
-        {"a.mha", META "HeaderSize = 100\n" LOCAL EIGHT, "behind", STATUS_INPUT},
+        {"a.mha", META "HeaderSize = 1000\n" LOCAL EIGHT, "behind", STATUS_INPUT},
+        {"a.mha", META "HeaderSize = 10\n" LOCAL EIGHT, "ends within the header", STATUS_INPUT},
         {"a.mha", META "CompressedData = True\nHeaderSize = -1\n" LOCAL EIGHT, "HeaderSize", STATUS_INPUT},
         {"a.mha", META "CompressedData = True\n" LOCAL EIGHT, "damaged", STATUS_INPUT},
-        {"a.mha", META "CompressedData = True\nBinaryData = False\n" LOCAL EIGHT, "both", STATUS_INPUT},
+        {"a.mha", META "CompressedData = True\nBinaryData = False\n" LOCAL EIGHT, "characters of text", STATUS_INPUT},
     };
     test_texts(cases, sizeof cases / sizeof *cases);
 }
@@ -197,14 +210,6 @@ static void test_nifti(void) {
             expect_nifti_failure("a negative size", &f, 8, "at least 1");
             f.dim[i] = 32767;
             expect_nifti_failure("an absurd size", &f, 8, "asks for");
-            f = good;
-            f.pixdim[i] = 0;
-            expect_nifti_failure("no voxel size", &f, 8, "pixdim");
-            f.pixdim[i] = NAN;
-            expect_nifti_failure("a voxel size that is no number", &f, 8, "pixdim");
-            f.pixdim[i] = -1;
-            f.qform = 1;
-            expect_nifti_failure("a negative voxel size", &f, 8, "pixdim");
         }
         f = good;
         f.dim[0] = 7;
@@ -233,19 +238,14 @@ static void test_nifti(void) {
             expect_nifti_failure("vox_offset", &f, 8, i ? "behind" : "vox_offset");
         }
         f = good;
-        f.slope = 2;
-        f.intercept = INFINITY;
-        expect_nifti_failure("intercept", &f, 8, "intercept");
-        f = good;
-        f.sform = 1;
-        expect_nifti_failure("an sform of zeros", &f, 8, "determinant");
-        f.srow[0] = NAN;
-        expect_nifti_failure("an sform of no numbers", &f, 8, "finite");
+        f.qform = 1;
+        f.quatern[0] = 1e200;
+        if (version == 2) expect_nifti_failure("a qform beyond all numbers", &f, 8, "correct");
         f = good;
         f.magic = "xx";
         expect_nifti_failure("magic", &f, 8, "does not begin");
         f.magic = "ni";
-        expect_nifti_failure("half of a pair", &f, 8, ".img file is missing");
+        expect_nifti_failure("half of a pair", &f, 0, ".img file is missing");
         f = nifti_plain(version, 1024, 64, 2, 2, 1);
         f.dim[0] = 1;
         f.dim[1] = 1;
@@ -257,8 +257,6 @@ static void test_nifti(void) {
     }
     nifti_fields f = nifti_plain(1, 2, 8, 2, 2, 2);
     f.vox_offset = NAN;
-    expect_nifti_failure("vox_offset", &f, 8, "vox_offset");
-    f.vox_offset = 352.5;
     expect_nifti_failure("vox_offset", &f, 8, "vox_offset");
     f = nifti_plain(2, 2, 8, INT64_MAX, INT64_MAX, 2);
     expect_nifti_failure("sizes that overflow", &f, 8, "2^64");
@@ -328,7 +326,7 @@ static void test_other_files(void) {
         {"a.vti", "<?xml version=\"1.0\"?>\n", "this program reads raw, NRRD", STATUS_INPUT},
         {"noending", "x", "--dims", STATUS_INPUT},
         {"a.nii", "abc", "cut or no NIfTI", STATUS_INPUT},
-        {"a.nii.gz", "short and not packed", "does not begin", STATUS_INPUT},
+        {"a.nii.gz", "short and not packed", "cut or no NIfTI", STATUS_INPUT},
     };
     test_texts(cases, sizeof cases / sizeof *cases);
     read_request r = request_for(file_path("missing.nrrd"));

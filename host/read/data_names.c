@@ -77,9 +77,10 @@ static const char *find_conversion(const char *pattern, const char **start, int 
 }
 
 int data_names_is_pattern(const char *text) {
-    const char *percent = strchr(text, '%');
-    while (percent && *percent && !isspace((unsigned char)*percent)) percent++;
-    return percent && *percent;
+    const char *percent = strchr(text, '%'), *last = strrchr(text, ' '), *tab = strrchr(text, '\t');
+    int64_t number;
+    if (tab && (!last || tab > last)) last = tab;
+    return percent && last && percent < last && parse_integers(last, &number, 1) == 1;
 }
 
 int data_names_pattern(data_names *names, const char *header_path, const char *text, int64_t *axes_per_file) {
@@ -161,8 +162,12 @@ int data_names_open(const char *header_path, const char *path, mapping *m) {
     return status ? status : mapping_open(path, m);
 }
 
+void data_names_cut(data_names *names, int64_t count) {
+    while (names->count > count) free(names->paths[--names->count]);
+}
+
 void data_names_release(data_names *names) {
-    for (int64_t i = 0; i < names->count; i++) free(names->paths[i]);
+    data_names_cut(names, 0);
     free(names->paths);
     *names = (data_names){0};
 }

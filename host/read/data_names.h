@@ -22,7 +22,7 @@ int data_names_add(data_names *names, const char *header_path, const char *name)
 /* Adds every further line of the header. */
 int data_names_list(data_names *names, header_text *header);
 
-/* Whether the text is a numbered pattern, "slice.%03d 1 93 1", rather than a name. */
+/* Whether the text is a numbered pattern, "slice.%03d 1 93 1", rather than a name: a % and, at the end, a number. */
 int data_names_is_pattern(const char *text);
 
 /* Adds the names of "PATTERN FIRST LAST [STEP [AXES]]"; one %d in the pattern, with optional 0 and width.
@@ -32,6 +32,9 @@ int data_names_pattern(data_names *names, const char *header_path, const char *t
 /* Opens one of the names. 0, or STATUS_INPUT where it cannot be, or where links lead out of the folders that the header
  * is named in and lies in. */
 int data_names_open(const char *header_path, const char *path, mapping *m);
+
+/* Leaves the first so many. */
+void data_names_cut(data_names *names, int64_t count);
 
 /* Frees and zeroes. */
 void data_names_release(data_names *names);

@@ -5,7 +5,6 @@
 #include "failure.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -15,15 +14,25 @@ size_t element_bytes(int element) {
     return bytes[element];
 }
 
-/* The index along a component or frame axis that the request chooses. */
-static int choose(const char *path, const char *what, const char *meaning, const char *option, int64_t size, int wanted,
-                  uint64_t *index) {
+/* The index along an axis of frames or components that the request chooses; 0 where it may leave that open. */
+static int choose(const char *path, const axes *from, int axis, const read_request *request, uint64_t *index) {
+    int is_component = from->role[axis] == AXIS_COMPONENT, wanted = is_component ? request->component : request->frame;
+    const char *meaning = is_component ? from->meaning : NULL;
+    int64_t size = from->size[axis];
+    if (wanted < 0 && request->describe) wanted = 0;
     if (wanted >= 0 && wanted < size) {
         *index = (uint64_t)wanted;
         return 0;
     }
-    return fail(STATUS_INPUT, "%s: has %" PRId64 " %s%s%s%s; choose one with %s 0 to %" PRId64, path, size, what,
-                meaning ? " (" : "", meaning ? meaning : "", meaning ? ")" : "", option, size - 1);
+    return fail(STATUS_INPUT, "%s: has %" PRId64 " %s%s%s%s; choose one with %s 0 to %" PRId64 "%s", path, size,
+                is_component ? "values per sample" : "frames", meaning ? " (" : "", meaning ? meaning : "",
+                meaning ? ")" : "", is_component ? "--component" : "--frame", size - 1,
+                is_component ? ", or their length with --component magnitude" : "");
+}
+
+/* Components side by side, for their length or to be described. */
+static int are_together(const read_request *request) {
+    return request->component == COMPONENT_MAGNITUDE || (request->component < 0 && request->describe);
 }
 
 /* Sizes multiplied, all checked, before any is acted on. */
@@ -41,7 +50,7 @@ static int count_elements(const char *path, const axes *from, int element, layou
 }
 
 int layout_make(const char *path, const axes *from, int element, const read_request *request, layout *out) {
-    *out = (layout){.element = element, .count = 1, .dims = {1, 1, 1}, .slope = 1};
+    *out = (layout){.element = element, .count = 1, .dims = {1, 1, 1}, .components = 1, .frames = 1, .slope = 1};
     int status = count_elements(path, from, element, out), space = 0, chosen[3] = {0};
     uint64_t stride = 1;
     for (int a = 0; a < from->count && !status; stride *= (uint64_t)from->size[a++]) {
@@ -55,14 +64,16 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
         if (chosen[from->role[a]]++)
             return fail(STATUS_INPUT, "%s: has more axes than three of space, one of components and one of frames",
                         path);
-        if (from->role[a] == AXIS_COMPONENT)
-            status = choose(path, "values per sample", from->meaning, "--component", from->size[a], request->component,
-                            &index);
-        else
-            status = choose(path, "frames", NULL, "--frame", from->size[a], request->frame, &index);
+        if (from->role[a] == AXIS_FRAME && request->frame < 0) out->frames = from->size[a];
+        if (from->role[a] == AXIS_COMPONENT && are_together(request) && from->size[a] <= INT32_MAX) {
+            out->components = (int)from->size[a];
+            out->component_stride = stride;
+            continue;
+        }
+        status = choose(path, from, a, request, &index);
         out->offset += index * stride;
     }
-    if (!status && request->component > 0 && !chosen[AXIS_COMPONENT])
+    if (!status && (request->component > 0 || request->component == COMPONENT_MAGNITUDE) && !chosen[AXIS_COMPONENT])
         status = fail(STATUS_INPUT, "%s: has one value per sample; leave out --component", path);
     if (!status && request->frame > 0 && !chosen[AXIS_FRAME])
         status = fail(STATUS_INPUT, "%s: has one frame; leave out --frame", path);
@@ -71,12 +82,15 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
 
 tc_type layout_type(const layout *l) { return l->scaled || l->element > TC_F64 ? TC_F64 : (tc_type)l->element; }
 
+static int64_t values_per_sample(const layout *l) { return l->components > 1 ? l->components : 1; }
+
 int layout_is_plain(const layout *l, const unsigned char *stored) {
     size_t bytes = element_bytes(l->element);
+    uint64_t values = (uint64_t)values_per_sample(l), row = values * (uint64_t)l->dims[0];
     return !l->scaled && l->element <= TC_F64 && (!l->swapped || bytes == 1) &&
-           (l->dims[0] == 1 || l->stride[0] == 1) && (l->dims[1] == 1 || l->stride[1] == (uint64_t)l->dims[0]) &&
-           (l->dims[2] == 1 || l->stride[2] == (uint64_t)l->dims[0] * (uint64_t)l->dims[1]) &&
-           (uintptr_t)stored % bytes == 0;
+           (values == 1 || l->component_stride == 1) && (l->dims[0] == 1 || l->stride[0] == values) &&
+           (l->dims[1] == 1 || l->stride[1] == row) &&
+           (l->dims[2] == 1 || l->stride[2] == row * (uint64_t)l->dims[1]) && (uintptr_t)stored % bytes == 0;
 }
 
 /* Copies n elements of the given size, in this machine's byte order. */
@@ -193,18 +207,37 @@ static int convert_elements(double *to, const unsigned char *from, int64_t n, si
     return exact;
 }
 
+/* n elements, each `step` elements behind the one before. Returns 0 where one has no exact double. */
+static int take_run(const layout *l, unsigned char *to, const unsigned char *from, int64_t n, uint64_t step) {
+    size_t bytes = element_bytes(l->element);
+    if (l->scaled || l->element > TC_F64)
+        return convert_elements((double *)(void *)to, from, n, (size_t)step * bytes, l);
+    copy_row(to, from, n, (size_t)step * bytes, bytes, l->swapped);
+    return 1;
+}
+
+/* A row of samples: one run where they have one value, or their values lie side by side; else a run for each sample. */
+static int take_row(const layout *l, unsigned char *to, const unsigned char *from) {
+    int64_t values = values_per_sample(l);
+    size_t bytes = element_bytes(l->element), sample = (size_t)values * element_bytes((int)layout_type(l));
+    int exact = 1;
+    if (values == 1) return take_run(l, to, from, l->dims[0], l->stride[0]);
+    if (l->component_stride == 1 && l->stride[0] == (uint64_t)values)
+        return take_run(l, to, from, l->dims[0] * values, 1);
+    for (int64_t x = 0; x < l->dims[0]; x++)
+        exact &= take_run(l, to + (size_t)x * sample, from + (size_t)x * (size_t)l->stride[0] * bytes, values,
+                          l->component_stride);
+    return exact;
+}
+
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples) {
-    size_t bytes = element_bytes(l->element), out_bytes = element_bytes((int)layout_type(l));
-    int converts = l->scaled || l->element > TC_F64;
+    size_t bytes = element_bytes(l->element);
+    size_t row = (size_t)l->dims[0] * (size_t)values_per_sample(l) * element_bytes((int)layout_type(l));
     unsigned char *to = samples;
     for (int64_t z = 0; z < l->dims[2]; z++)
-        for (int64_t y = 0; y < l->dims[1]; y++, to += (size_t)l->dims[0] * out_bytes) {
-            const unsigned char *from =
-                stored + (l->offset + (uint64_t)z * l->stride[2] + (uint64_t)y * l->stride[1]) * bytes;
-            size_t step = (size_t)l->stride[0] * bytes;
-            if (!converts)
-                copy_row(to, from, l->dims[0], step, bytes, l->swapped);
-            else if (!convert_elements((double *)(void *)to, from, l->dims[0], step, l))
+        for (int64_t y = 0; y < l->dims[1]; y++, to += row) {
+            uint64_t first = l->offset + (uint64_t)z * l->stride[2] + (uint64_t)y * l->stride[1];
+            if (!take_row(l, to, stored + first * bytes))
                 return fail(STATUS_INPUT,
                             "%s: has 64-bit integers that a double cannot hold exactly; convert it to another type",
                             path);
@@ -221,20 +254,4 @@ void *samples_allocate(uint64_t bytes) {
     if (posix_memalign(&memory, page, whole_pages ? whole_pages : page)) return NULL;
     if (page == HUGE_PAGE) madvise(memory, whole_pages, MADV_HUGEPAGE);
     return memory;
-}
-
-int matrix_check(const char *path, double matrix[3][4]) {
-    double(*m)[4] = matrix;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 4; c++)
-            if (!isfinite(m[r][c]))
-                return fail(STATUS_INPUT, "%s: its spacing, directions or origin are not finite numbers; correct them",
-                            path);
-    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    if (determinant == 0 || !isfinite(determinant))
-        return fail(STATUS_INPUT, "%s: its spacing and directions do not span space (determinant %g); correct them",
-                    path, determinant);
-    return 0;
 }

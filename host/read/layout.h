@@ -2,8 +2,9 @@
  * layout.h - how a file stores its samples, and how one scalar volume is taken out of it
  *
  * A stored array has up to 16 axes, fastest first; at most three are of space, the others hold several values per
- * sample (components) or several volumes (frames), of which the user chooses one. What remains is a strided view, and
- * every format is gathered by the same loop: byte order, 64-bit integers and scaling included.
+ * sample (components) or several volumes (frames), of which the user chooses one, or for a vector's length takes all
+ * components. What remains is a strided view, and every format is gathered by the same loop: byte order, 64-bit
+ * integers and scaling included.
  */
 #ifndef LAYOUT_H
 #define LAYOUT_H
@@ -29,13 +30,16 @@ typedef struct axes {
 
 typedef struct layout {
     int element;
-    int swapped;        /* the other byte order than this machine's */
-    uint64_t count;     /* elements stored */
-    uint64_t bytes;     /* of all of them */
-    int64_t dims[3];    /* of the volume taken out */
-    uint64_t stride[3]; /* elements from one sample to the next */
-    uint64_t offset;    /* element of the first sample */
-    int scaled;         /* slope * value + intercept, in double */
+    int swapped;               /* the other byte order than this machine's */
+    uint64_t count;            /* elements stored */
+    uint64_t bytes;            /* of all of them */
+    int64_t dims[3];           /* of the volume taken out */
+    uint64_t stride[3];        /* elements from one sample to the next */
+    int components;            /* values of a sample that are taken out (0 as 1), */
+    uint64_t component_stride; /* so many elements from one to the next */
+    int64_t frames;            /* as in volume */
+    uint64_t offset;           /* element of the first sample */
+    int scaled;                /* slope * value + intercept, in double */
     double slope;
     double intercept;
 } layout;
@@ -49,15 +53,12 @@ tc_type layout_type(const layout *l);
 /* Whether the samples can be used where they are, given the address of the stored array. */
 int layout_is_plain(const layout *l, const unsigned char *stored);
 
-/* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of layout_type. STATUS_INPUT where a
- * 64-bit integer has no exact double. */
+/* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of so many components, of layout_type.
+ * STATUS_INPUT where a 64-bit integer has no exact double. */
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
 
 /* Memory for samples, to be freed: page-aligned, so that devices can use it in place, and in huge pages where large,
  * since new small ones cost more than reading a file. NULL where there is none. */
 void *samples_allocate(uint64_t bytes);
-
-/* STATUS_INPUT unless the matrix is finite and invertible. */
-int matrix_check(const char *path, double matrix[3][4]);
 
 #endif

@@ -2,7 +2,9 @@
  * metaimage.c - MetaImage, attached (.mha) and detached (.mhd)
  *
  * Source: the MetaIO documentation and ITK's use of it: row i of TransformMatrix is the direction of axis i in the
- * world, Offset (Position, Origin) is the first sample, ElementSpacing goes before ElementSize. The declared
+ * world, Offset (Position, Origin) is the first sample, ElementSpacing goes before ElementSize, and a negative one
+ * turns the axis. HeaderSize counts from the file's begin, that of attached data too. Keys come in any case, with "="
+ * or ":" behind them; lists may go on in the next line and have more values than there are axes. The declared
  * CompressedDataSize is not relied on: writers get it wrong, and the stream knows its own end.
  */
 #include "readers.h"
@@ -10,6 +12,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "source.h"
+#include "world.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -17,18 +20,23 @@
 #include <string.h>
 #include <strings.h>
 
-enum { SPATIAL_AXES = 3, MAX_DIMENSION = 4, HEADER_BYTES = 1 << 24 };
+enum { SPATIAL_AXES = 3, MAX_DIMENSION = 10, LIST_VALUES = MAX_DIMENSION * MAX_DIMENSION, HEADER_BYTES = 1 << 24 };
+
+typedef struct number_list {
+    int count;           /* 0: not given */
+    int is_first_choice; /* given by the key that goes before its other names */
+    double values[LIST_VALUES];
+} number_list;
 
 typedef struct meta_header {
     const char *path;
+    const read_request *request;
     int dimension;
     int element; /* -1: not given */
-    int is_big_endian, is_compressed, is_text, has_data_file;
+    int is_big_endian, element_order_given, is_compressed, is_text, has_data_file;
     int64_t sizes[MAX_DIMENSION];
-    int64_t channels;
-    int size_count, spacing_count, element_size_count, offset_count, direction_count;
-    double spacing[MAX_DIMENSION], element_size[MAX_DIMENSION], offset[MAX_DIMENSION];
-    double direction[MAX_DIMENSION * MAX_DIMENSION];
+    int64_t channels, header_size;
+    number_list size, spacing, element_size, offset, direction;
     char orientation[16];
     source from;
 } meta_header;
@@ -38,6 +46,7 @@ static int parse_type(meta_header *h, const char *text) {
         const char *name;
         int element;
     } types[] = {{"MET_CHAR", TC_I8},
+                 {"MET_ASCII_CHAR", TC_I8},
                  {"MET_UCHAR", TC_U8},
                  {"MET_SHORT", TC_I16},
                  {"MET_USHORT", TC_U16},
@@ -50,9 +59,9 @@ static int parse_type(meta_header *h, const char *text) {
                  {"MET_FLOAT", TC_F32},
                  {"MET_DOUBLE", TC_F64}};
     size_t length = strlen(text);
-    if (length > 6 && strcmp(text + length - 6, "_ARRAY") == 0) length -= 6;
+    if (length > 6 && strcasecmp(text + length - 6, "_ARRAY") == 0) length -= 6;
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (strlen(types[i].name) == length && strncmp(text, types[i].name, length) == 0) {
+        if (strlen(types[i].name) == length && strncasecmp(text, types[i].name, length) == 0) {
             h->element = types[i].element;
             return 0;
         }
@@ -67,10 +76,13 @@ static int parse_integer(meta_header *h, const char *key, const char *text, int6
                 text, low, high);
 }
 
-static int parse_list(meta_header *h, const char *key, const char *text, double *values, int max, int *count) {
-    *count = parse_numbers(text, values, max);
-    if (*count > 0) return 0;
-    return fail(STATUS_INPUT, "%s: %s is '%.60s'; 1 to %d numbers are needed", h->path, key, text, max);
+/* Of keys that mean one thing, the first choice stays, whatever follows it. */
+static int parse_list(meta_header *h, const char *key, const char *first_choice, const char *text, number_list *list) {
+    if (list->is_first_choice && strcasecmp(key, first_choice)) return 0;
+    list->is_first_choice = !strcasecmp(key, first_choice);
+    list->count = parse_numbers(text, list->values, LIST_VALUES);
+    if (list->count > 0) return 0;
+    return fail(STATUS_INPUT, "%s: %s is '%.60s'; 1 to %d numbers are needed", h->path, key, text, LIST_VALUES);
 }
 
 static int parse_data_file(meta_header *h, header_text *text, const char *value) {
@@ -78,7 +90,7 @@ static int parse_data_file(meta_header *h, header_text *text, const char *value)
     h->has_data_file = 1;
     h->from.axes_per_file = axes_per_file;
     if (!strcasecmp(value, "LOCAL")) return 0;
-    if (!strncmp(value, "LIST", 4) && (!value[4] || value[4] == ' ')) {
+    if (!strncasecmp(value, "LIST", 4) && (!value[4] || value[4] == ' ')) {
         char word[16];
         snprintf(word, sizeof word, "%s", value + 4);
         char *last = trim(word);
@@ -98,14 +110,11 @@ static int is_one_of(const char *key, const char *a, const char *b, const char *
 }
 
 static int parse_geometry(meta_header *h, const char *key, const char *value) {
-    if (!strcasecmp(key, "ElementSpacing"))
-        return parse_list(h, key, value, h->spacing, MAX_DIMENSION, &h->spacing_count);
-    if (!strcasecmp(key, "ElementSize"))
-        return parse_list(h, key, value, h->element_size, MAX_DIMENSION, &h->element_size_count);
-    if (is_one_of(key, "Offset", "Position", "Origin"))
-        return parse_list(h, key, value, h->offset, MAX_DIMENSION, &h->offset_count);
+    if (!strcasecmp(key, "ElementSpacing")) return parse_list(h, key, key, value, &h->spacing);
+    if (!strcasecmp(key, "ElementSize")) return parse_list(h, key, key, value, &h->element_size);
+    if (is_one_of(key, "Offset", "Position", "Origin")) return parse_list(h, key, "Offset", value, &h->offset);
     if (is_one_of(key, "TransformMatrix", "Rotation", "Orientation"))
-        return parse_list(h, key, value, h->direction, MAX_DIMENSION * MAX_DIMENSION, &h->direction_count);
+        return parse_list(h, key, "TransformMatrix", value, &h->direction);
     if (!strcasecmp(key, "AnatomicalOrientation") && strcmp(value, "???"))
         snprintf(h->orientation, sizeof h->orientation, "%s", value);
     return 0;
@@ -118,18 +127,15 @@ static int parse_field(meta_header *h, header_text *text, const char *key, const
         if (!status) h->dimension = (int)number;
         return status;
     }
-    if (!strcasecmp(key, "DimSize")) {
-        h->size_count = parse_integers(value, h->sizes, MAX_DIMENSION);
-        return h->size_count > 0 ? 0
-                                 : fail(STATUS_INPUT, "%s: DimSize is '%.60s'; up to %d sizes are needed", h->path,
-                                        value, MAX_DIMENSION);
-    }
+    if (!strcasecmp(key, "DimSize")) return parse_list(h, key, key, value, &h->size);
     if (!strcasecmp(key, "ElementType")) return parse_type(h, value);
     if (!strcasecmp(key, "ElementNumberOfChannels")) return parse_integer(h, key, value, 1, INT32_MAX, &h->channels);
-    if (!strcasecmp(key, "HeaderSize"))
-        return parse_integer(h, key, value, SKIP_FROM_END, INT64_MAX, &h->from.byte_skip);
+    if (!strcasecmp(key, "HeaderSize")) return parse_integer(h, key, value, SKIP_FROM_END, INT64_MAX, &h->header_size);
     if (!strcasecmp(key, "ElementDataFile")) return parse_data_file(h, text, value);
-    if (!strcasecmp(key, "BinaryDataByteOrderMSB") || !strcasecmp(key, "ElementByteOrderMSB"))
+    if (!strcasecmp(key, "ElementByteOrderMSB")) {
+        h->is_big_endian = parse_flag(value);
+        h->element_order_given = 1;
+    } else if (!strcasecmp(key, "BinaryDataByteOrderMSB") && !h->element_order_given)
         h->is_big_endian = parse_flag(value);
     else if (!strcasecmp(key, "CompressedData"))
         h->is_compressed = parse_flag(value);
@@ -140,6 +146,20 @@ static int parse_field(meta_header *h, header_text *text, const char *key, const
     return 0;
 }
 
+/* Joins the lines that a list of numbers goes on in to the line where it begins. */
+static void join_lines(header_text *text, char *line) {
+    for (;;) {
+        char further[HEADER_LINE_BYTES];
+        header_text ahead = *text;
+        int more, status = header_line(&ahead, further, &more);
+        size_t used = strlen(line);
+        int goes_on = !status && more && *further && strspn(further, "0123456789+-.eE \t") == strlen(further);
+        if (!goes_on || used + strlen(further) + 2 > HEADER_LINE_BYTES) return; /* it is looked at later */
+        stpcpy(stpcpy(line + used, " "), further);
+        *text = ahead;
+    }
+}
+
 /* Reads fields up to ElementDataFile, which ends the header. */
 static int parse_header(meta_header *h, header_text *text) {
     char line[HEADER_LINE_BYTES];
@@ -148,52 +168,112 @@ static int parse_header(meta_header *h, header_text *text) {
         if (status) return status;
         if (!more) return fail(STATUS_INPUT, "%s: its header ends without ElementDataFile; add it", h->path);
         if (!*line) continue;
-        char *equals = strchr(line, '=');
-        if (!equals)
+        int is_last = !strncasecmp(line, "ElementDataFile", 15);
+        if (is_last && !h->dimension)
+            return fail(STATUS_INPUT, "%s: its header has no NDims before ElementDataFile; add it", h->path);
+        if (!is_last) join_lines(text, line);
+        size_t key = strcspn(line, "=:");
+        if (!line[key])
             return fail(STATUS_INPUT, "%s: line %" PRId64 " of its header, '%.60s', is not KEY = VALUE", h->path,
                         text->line, line);
-        *equals = 0;
-        if (!strcasecmp(trim(line), "ElementDataFile") && !h->dimension)
-            return fail(STATUS_INPUT, "%s: its header has no NDims before ElementDataFile; add it", h->path);
-        if ((status = parse_field(h, text, trim(line), trim(equals + 1)))) return status;
+        line[key] = 0;
+        if ((status = parse_field(h, text, trim(line), trim(line + key + 1)))) return status;
     }
     return 0;
 }
 
-static int check_header(const meta_header *h) {
-    int n = h->dimension;
+/* Cuts what is too much, with a notice; what is too little is an error unless the request stands for it. */
+static int check_list(const meta_header *h, const char *key, number_list *list, int needed, int is_replaced,
+                      volume *out) {
+    if (!list->count) return 0;
+    if (list->count < needed && is_replaced) {
+        list->count = 0;
+        return 0;
+    }
+    if (list->count < needed)
+        return fail(STATUS_INPUT, "%s: %s has %d values, but NDims = %d asks for %d", h->path, key, list->count,
+                    h->dimension, needed);
+    if (list->count > needed)
+        volume_notice(out, "%s has %d values, of which its %d axes need %d: those are used", key, list->count,
+                      h->dimension, needed);
+    return 0;
+}
+
+/* Of a matrix for more axes the upper left part. */
+static void cut_matrix(number_list *matrix, int n) {
+    int rows = n;
+    while (rows < MAX_DIMENSION && rows * rows < matrix->count) rows++;
+    if (rows * rows != matrix->count) return;
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < n; c++) matrix->values[r * n + c] = matrix->values[r * rows + c];
+}
+
+/* Of more files than the sizes ask for, the first. */
+static void cut_names(meta_header *h, volume *out) {
+    int64_t expected = 1;
+    if (h->from.axes_per_file < 1 || h->from.axes_per_file >= h->dimension) return;
+    for (int64_t i = h->from.axes_per_file; i < h->dimension; i++)
+        if (h->sizes[i] < 1 || __builtin_mul_overflow(expected, h->sizes[i], &expected)) return;
+    if (h->from.files.count <= expected) return;
+    volume_notice(out, "it names %" PRId64 " data files, of which its sizes ask for %" PRId64 ": the first are used",
+                  h->from.files.count, expected);
+    data_names_cut(&h->from.files, expected);
+}
+
+static int take_sizes(meta_header *h) {
+    if (h->size.count < 1) return fail(STATUS_INPUT, "%s: its header has no DimSize; add it", h->path);
+    for (int i = 0; i < h->dimension; i++) {
+        double size = h->size.values[i];
+        if (!(fabs(size) <= 0x1p53) || size != floor(size))
+            return fail(STATUS_INPUT, "%s: DimSize has a size of %g; whole numbers up to 2^53 are possible", h->path,
+                        size);
+        h->sizes[i] = (int64_t)size;
+    }
+    return 0;
+}
+
+static int check_header(meta_header *h, volume *out) {
+    int n = h->dimension, status;
     if (h->element < 0) return fail(STATUS_INPUT, "%s: its header has no ElementType; add it", h->path);
-    if (h->size_count != n)
-        return fail(STATUS_INPUT, "%s: DimSize has %d sizes, but NDims is %d", h->path, h->size_count, n);
-    if ((h->spacing_count && h->spacing_count != n) || (h->offset_count && h->offset_count != n) ||
-        (h->direction_count && h->direction_count != n * n) ||
-        (!h->spacing_count && h->element_size_count && h->element_size_count != n))
-        return fail(STATUS_INPUT,
-                    "%s: its spacing, offset or matrix has not one value, or row, for each of NDims = %d axes", h->path,
-                    n);
-    if (h->is_compressed && h->is_text)
-        return fail(STATUS_INPUT, "%s: says that its data is both compressed and text; correct the header", h->path);
-    if (h->is_compressed && h->from.byte_skip == SKIP_FROM_END)
+    if (h->spacing.count) h->element_size.count = 0;
+    if ((status = check_list(h, "DimSize", &h->size, n, 0, out)) || (status = take_sizes(h)) ||
+        (status = check_list(h, "ElementSpacing", &h->spacing, n, h->request->has_spacing, out)) ||
+        (status = check_list(h, "ElementSize", &h->element_size, n, h->request->has_spacing, out)) ||
+        (status = check_list(h, "Offset", &h->offset, n, h->request->has_origin, out)) ||
+        (status = check_list(h, "TransformMatrix", &h->direction, n * n, 0, out)))
+        return status;
+    cut_matrix(&h->direction, n);
+    cut_names(h, out);
+    if (h->is_text) h->is_compressed = 0; /* as ITK has it */
+    if (h->is_compressed && h->header_size < 0)
         return fail(STATUS_INPUT, "%s: HeaderSize = -1 is for uncompressed data only; say how many bytes", h->path);
+    return 0;
+}
+
+/* Attached data begins behind the header, or where HeaderSize says, which counts from the file's begin. */
+static int place_data(meta_header *h, uint64_t header_end) {
+    h->from.start = header_end;
+    h->from.byte_skip = h->header_size;
+    if (h->from.files.count || h->header_size <= 0) return 0;
+    if ((uint64_t)h->header_size < header_end)
+        return fail(STATUS_INPUT, "%s: HeaderSize = %" PRId64 " ends within the header, which has %" PRIu64 " bytes",
+                    h->path, h->header_size, header_end);
+    h->from.byte_skip = h->header_size - (int64_t)header_end;
     return 0;
 }
 
 static int fill_matrix(const meta_header *h, double matrix[3][4]) {
     int n = h->dimension < SPATIAL_AXES ? h->dimension : SPATIAL_AXES;
+    const number_list *distance = h->spacing.count ? &h->spacing : &h->element_size;
     for (int r = 0; r < SPATIAL_AXES; r++) matrix[r][r] = 1;
     for (int axis = 0; axis < n; axis++) {
-        double spacing = h->spacing_count ? h->spacing[axis] : h->element_size_count ? h->element_size[axis] : 1;
-        if (!isfinite(spacing) || spacing <= 0)
-            return fail(STATUS_INPUT,
-                        "%s: its spacing along axis %d is %g; give a finite number above 0 (directions "
-                        "belong into TransformMatrix)",
-                        h->path, axis + 1, spacing);
-        for (int r = 0; r < n && h->direction_count; r++)
-            matrix[r][axis] = h->direction[axis * h->dimension + r] * spacing;
-        if (!h->direction_count) matrix[axis][axis] = spacing;
-        if (h->offset_count) matrix[axis][3] = h->offset[axis];
+        double spacing = distance->count ? distance->values[axis] : 1;
+        for (int r = 0; r < n && h->direction.count; r++)
+            matrix[r][axis] = h->direction.values[axis * h->dimension + r] * spacing;
+        if (!h->direction.count) matrix[axis][axis] = spacing;
+        if (h->offset.count) matrix[axis][3] = h->offset.values[axis];
     }
-    return matrix_check(h->path, matrix);
+    return world_place(h->request, h->path, matrix);
 }
 
 static void list_axes(const meta_header *h, axes *out) {
@@ -212,18 +292,22 @@ static void list_axes(const meta_header *h, axes *out) {
 int metaimage_read(const read_request *request, const mapping *file, volume *out) {
     size_t limit = file->size < HEADER_BYTES ? file->size : HEADER_BYTES;
     header_text text = {.path = request->path, .bytes = file->bytes, .size = limit};
-    meta_header h = {.path = request->path, .element = -1, .channels = 1, .from = {.header_path = request->path}};
+    meta_header h = {.path = request->path,
+                     .request = request,
+                     .element = -1,
+                     .channels = 1,
+                     .from = {.header_path = request->path}};
     axes stored;
     layout l;
     int status;
-    if ((status = parse_header(&h, &text)) || (status = check_header(&h)) || (status = fill_matrix(&h, out->matrix)))
+    if ((status = parse_header(&h, &text)) || (status = check_header(&h, out)) ||
+        (status = fill_matrix(&h, out->matrix)) || (status = place_data(&h, text.position)))
         goto cleanup;
     list_axes(&h, &stored);
     if ((status = layout_make(h.path, &stored, h.element, request, &l))) goto cleanup;
     h.from.axes = &stored;
     if (__builtin_add_overflow(h.from.axes_per_file, stored.count - h.dimension, &h.from.axes_per_file))
         h.from.axes_per_file = INT64_MAX; /* refused like any that is too many */
-    h.from.start = text.position;
     h.from.encoding = h.is_compressed ? ENCODING_DEFLATE : h.is_text ? ENCODING_TEXT : ENCODING_RAW;
     l.swapped = !h.is_text && h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
     snprintf(out->format, sizeof out->format, "MetaImage");

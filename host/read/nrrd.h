@@ -9,6 +9,7 @@ enum nrrd_kind { KIND_UNKNOWN, KIND_SPACE, KIND_COMPONENT, KIND_TIME };
 
 typedef struct nrrd_header {
     const char *path;
+    const read_request *request;
     int dimension; /* 0: not given yet */
     int element;   /* -1: not given yet */
     int endian;    /* 0: not given, else __ORDER_LITTLE_ENDIAN__ or __ORDER_BIG_ENDIAN__ */
@@ -23,19 +24,20 @@ typedef struct nrrd_header {
     enum nrrd_center centers[MAX_AXES];
     enum nrrd_kind kinds[MAX_AXES];
     double directions[MAX_AXES][3]; /* NaN: none */
-    double origin[3];
+    double origin[3];               /* NaN: not known */
     int has_sizes, has_spacings, has_mins, has_maxs, has_kinds, has_directions, has_origin;
     char space[64];
 } nrrd_header;
 
-/* Parses "space directions" or "space origin": count vectors "(x,y,z)" or "none" (NaN). In a space with time
- * the fourth number is dropped, and a direction along time alone is as "none". */
+/* Parses "space directions" or "space origin": count vectors "(x,y,z)", or "none" or "(nan,nan,nan)" (NaN). In a space
+ * with time the fourth number is dropped, and a direction along time alone is as "none". */
 int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, double (*vectors)[3], int count);
 
 /* Which axes are of space, components and frames. */
 void nrrd_axes(const nrrd_header *h, axes *out);
 
-/* Index space to world, in the space that the header names. */
-int nrrd_matrix(const nrrd_header *h, const axes *a, double matrix[3][4]);
+/* Fills the matrix, index space to world, in the space that the header names; what is not known is taken for 1 or 0,
+ * with a notice. */
+int nrrd_matrix(const nrrd_header *h, const axes *a, volume *out);
 
 #endif

@@ -4,33 +4,39 @@
  * Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html, sections 3 to 6. "space directions"
  * and "space origin" place the first sample itself, whatever the centering. Without them the axes are scaled by
  * "spacings", and "axis mins" says where the first sample (node) or its cell's lower border (cell, the default) lies.
+ * NaN is the format's word for what is not known or makes no sense.
  */
 #include "nrrd.h"
 
 #include "exit_status.h"
 #include "failure.h"
+#include "world.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One "(a,b,c)" or "(a,b,c,t)" at *text, which moves behind it. The count of numbers; 0 where it is none. */
+/* One "(a,b,c)" or "(a,b,c,t)" at *text, which moves behind it. The count of numbers; 0 where it is none. All may be
+ * NaN, or none. */
 static int parse_vector(const char **text, double vector[3]) {
     const char *at = *text;
-    int count = 0;
+    int count = 0, unknown = 0;
     if (*at++ != '(') return 0;
     for (;;) {
         char *end;
         double value = strtod(at, &end);
-        if (end == at || count == 4 || !isfinite(value)) return 0;
+        if (end == at || count == 4 || isinf(value)) return 0;
         if (count < 3) vector[count] = value;
         count++;
+        unknown += isnan(value) != 0;
         at = end;
         while (isspace((unsigned char)*at)) at++;
         if (*at == ')') break;
         if (*at++ != ',') return 0;
     }
+    if (unknown && unknown != count) return 0;
+    for (int i = 0; unknown && i < 3; i++) vector[i] = NAN;
     *text = at + 1;
     return count;
 }
@@ -60,47 +66,85 @@ int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, doub
     return 0;
 }
 
+/* Of more than three axes without kinds, those whose spacing makes no sense where that leaves three of space. */
+static int spacings_tell_space(const nrrd_header *h) {
+    int spaced = 0;
+    if (!h->has_spacings || h->has_directions || h->dimension <= 3) return 0;
+    for (int a = 0; a < h->dimension; a++) {
+        if (h->kinds[a] != KIND_UNKNOWN) return 0;
+        spaced += !isnan(h->spacings[a]);
+    }
+    return spaced == 3;
+}
+
+static int is_outside(const nrrd_header *h, int axis) {
+    if (h->has_directions) return isnan(h->directions[axis][0]) && (h->kinds[axis] != KIND_SPACE || h->dimension > 3);
+    return spacings_tell_space(h) && isnan(h->spacings[axis]);
+}
+
 void nrrd_axes(const nrrd_header *h, axes *out) {
     int space = 0;
     *out = (axes){.count = h->dimension};
     for (int a = 0; a < h->dimension; a++) {
-        int outside = h->has_directions && isnan(h->directions[a][0]);
         out->size[a] = h->sizes[a];
         if (h->kinds[a] == KIND_COMPONENT)
             out->role[a] = AXIS_COMPONENT;
         else if (h->kinds[a] == KIND_TIME)
             out->role[a] = AXIS_FRAME;
-        else if (outside) /* the format does not say more; values vary fastest, volumes slowest */
+        else if (is_outside(h, a)) /* the format does not say more; values vary fastest, volumes slowest */
             out->role[a] = a == 0 ? AXIS_COMPONENT : AXIS_FRAME;
         else
             out->role[a] = space++ < 3 ? AXIS_SPACE : AXIS_FRAME;
     }
 }
 
-/* Length of a step along axis a, where there are no directions. */
+/* Length of a step along axis a, where there are no directions; NaN where it is not known. */
 static double axis_step(const nrrd_header *h, int a) {
-    if (h->has_spacings) return h->spacings[a];
-    if (!h->has_mins || !h->has_maxs) return 1;
+    if (h->has_spacings && !isnan(h->spacings[a])) return h->spacings[a];
+    if (!h->has_mins || !h->has_maxs) return h->has_spacings ? NAN : 1;
     int64_t steps = h->sizes[a] - (h->centers[a] == CENTER_NODE);
     return steps > 0 ? (h->maxs[a] - h->mins[a]) / (double)steps : 1;
 }
 
-int nrrd_matrix(const nrrd_header *h, const axes *a, double matrix[3][4]) {
-    int space = 0;
-    for (int i = 0; i < a->count; i++) {
-        if (a->role[i] != AXIS_SPACE) continue;
-        double step = axis_step(h, i);
-        if (!h->has_directions && (!isfinite(step) || step == 0))
-            return fail(STATUS_INPUT, "%s: the spacing along axis %d is %g; give a finite number other than 0", h->path,
-                        i + 1, step);
-        for (int r = 0; r < 3; r++) matrix[r][space] = h->has_directions ? h->directions[i][r] : r == space ? step : 0;
-        if (h->has_mins && !h->has_directions)
-            matrix[space][3] = h->mins[i] + (h->centers[i] == CENTER_NODE ? 0 : step / 2);
-        space++;
+/* A column for an axis of one sample, of which any direction does that makes a volume with those before it: its own
+ * axis, or the first one along which they do not go. */
+static void complete_matrix(double matrix[3][4], int column) {
+    int axis = column;
+    for (int n = 0; n < 4; n++) {
+        int tried = n ? n - 1 : column, is_free = 1;
+        for (int c = 0; c < column; c++) is_free &= matrix[tried][c] == 0;
+        if (!is_free) continue;
+        axis = tried;
+        break;
     }
-    for (int r = 0; r < 3 && h->has_origin; r++) matrix[r][3] = h->origin[r];
-    if (space == 3) return matrix_check(h->path, matrix);
-    for (; space < 3; space++) /* one sample: any direction does */
-        for (int r = 0; r < 3; r++) matrix[r][space] = r == space;
-    return 0;
+    for (int r = 0; r < 3; r++) matrix[r][column] = r == axis;
+}
+
+/* The column of the space's axis, which is the file's axis a; without a direction it is the space's own. */
+static void place_axis(const nrrd_header *h, int a, int space, volume *out) {
+    if (h->has_directions && !isnan(h->directions[a][0])) {
+        for (int r = 0; r < 3; r++) out->matrix[r][space] = h->directions[a][r];
+        return;
+    }
+    double step = h->has_directions ? NAN : axis_step(h, a), least = h->has_mins ? h->mins[a] : 0;
+    if (isnan(step) && !h->request->has_spacing)
+        volume_notice(out, "the spacing along axis %d is not known (NaN), it is taken for 1", a + 1);
+    if (isnan(least) && !h->request->has_origin)
+        volume_notice(out, "the minimum of axis %d is not known (NaN), its origin is taken for 0", a + 1);
+    if (isnan(step)) step = 1;
+    out->matrix[space][space] = step;
+    if (h->has_mins && !h->has_directions && !isnan(least))
+        out->matrix[space][3] = least + (h->centers[a] == CENTER_NODE ? 0 : step / 2);
+}
+
+int nrrd_matrix(const nrrd_header *h, const axes *a, volume *out) {
+    int space = 0;
+    for (int i = 0; i < a->count; i++)
+        if (a->role[i] == AXIS_SPACE) place_axis(h, i, space++, out);
+    int is_known = h->has_origin && !isnan(h->origin[0]);
+    for (int r = 0; r < 3 && is_known; r++) out->matrix[r][3] = h->origin[r];
+    if (h->has_origin && !is_known && !h->request->has_origin)
+        volume_notice(out, "the space origin is not known (NaN), it is taken for 0");
+    for (; space < 3; space++) complete_matrix(out->matrix, space);
+    return world_place(h->request, h->path, out->matrix);
 }

@@ -8,6 +8,7 @@
 #include "mapping.h"
 #include "readers.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,10 +194,21 @@ static int wrap_image(dataset *d) {
     memcpy(b->dims, v->dims, sizeof b->dims);
     memcpy(b->first, v->first, sizeof b->first);
     memcpy(b->matrix, v->matrix, sizeof b->matrix);
-    *f = (dataset_field){.name = "", .components = 1, .type = v->type, .values = v->samples};
+    *f = (dataset_field){.name = "", .components = v->components, .type = v->type, .values = v->samples};
     memcpy(d->format, v->format, sizeof d->format);
     memcpy(d->space, v->space, sizeof d->space);
     if (v->notice[0]) dataset_notice(d, "%s", v->notice);
+    return 0;
+}
+
+/* Points of other grids lie where their coordinates say. */
+static int check_placement(const read_request *request, const dataset *d) {
+    const char *option = request->has_spacing ? "--spacing" : request->has_origin ? "--origin" : NULL;
+    for (int n = 0; option && n < d->block_count; n++)
+        if (d->blocks[n].kind != GRID_UNIFORM)
+            return fail(STATUS_USAGE,
+                        "%s: its points have coordinates of their own, and %s is for uniform grids: leave it out",
+                        request->path, option);
     return 0;
 }
 
@@ -204,7 +216,8 @@ static int wrap_image(dataset *d) {
 static int read_grid(int (*reader)(const read_request *request, const mapping *file, dataset *out),
                      const read_request *request, const mapping *file, dataset *out) {
     if (request->frame > 0) return fail(STATUS_INPUT, "%s: has one frame; leave out --frame", request->path);
-    return reader(request, file, out);
+    int status = reader(request, file, out);
+    return status ? status : check_placement(request, out);
 }
 
 /* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. What begins as NIfTI may be
@@ -241,6 +254,17 @@ int dataset_read(const read_request *request, dataset *out) {
         status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
     if (status) dataset_release(out);
     return status;
+}
+
+void volume_notice(volume *v, const char *format, ...) {
+    char text[sizeof v->notice];
+    size_t used = strlen(v->notice);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (used + strlen(text) + 3 > sizeof v->notice) return;
+    stpcpy(stpcpy(v->notice + used, used ? "; " : ""), text);
 }
 
 void volume_release(volume *v) {

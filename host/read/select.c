@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "magnitude.h"
 #include "nodata.h"
 
 #include <math.h>
@@ -128,28 +129,39 @@ static uint64_t tuple_count(const dataset_block *b, const dataset_field *f) {
 }
 
 static int check_component(const dataset *d, const char *path, const dataset_field *f, int component) {
-    if (component < 0 && f->components > 1)
-        return fail(STATUS_USAGE, "%s: field '%s' has %d components: choose by --component C one, from 0 to %d", path,
-                    f->name, f->components, f->components - 1);
+    if (component == COMPONENT_OPEN && f->components > 1)
+        return fail(STATUS_USAGE,
+                    "%s: field '%s' has %d components: choose by --component C one, from 0 to %d, or their length by "
+                    "--component magnitude",
+                    path, f->name, f->components, f->components - 1);
+    if (component == COMPONENT_MAGNITUDE && f->components == 1)
+        return fail(STATUS_USAGE, "%s: field '%s' has 1 component, no vectors: leave out --component magnitude", path,
+                    f->name);
     if (component >= f->components && !d->image.samples) /* the readers of images have looked at it themselves */
         return fail(STATUS_USAGE, "%s: field '%s' has %d component%s, counted from 0: there is no --component %d", path,
                     f->name, f->components, f->components > 1 ? "s" : "", component);
     return 0;
 }
 
-/* One component in contiguous memory; the field's own where it has no other. */
+/* One component in contiguous memory, or the length of all; the field's own where it has no other. */
 static int take_component(dataset *d, const dataset_block *b, const dataset_field *f, int component,
                           dataset_field *out) {
-    size_t bytes = element_bytes((int)f->type), stride = bytes * (size_t)f->components;
     *out = *f;
     if (f->components == 1) return 0;
+    int is_length = component == COMPONENT_MAGNITUDE;
+    out->type = is_length ? magnitude_type(f->type) : f->type;
+    out->components = 1;
+    size_t bytes = element_bytes((int)out->type), stride = bytes * (size_t)f->components;
     uint64_t count = tuple_count(b, f);
     unsigned char *values = dataset_allocate(d, count * bytes);
     if (!values) return STATUS_FAILED;
+    out->values = values;
+    if (is_length) {
+        magnitude_of(f->type, f->values, f->components, count, values);
+        return 0;
+    }
     const unsigned char *from = (const unsigned char *)f->values + bytes * (size_t)component;
     for (uint64_t n = 0; n < count; n++) memcpy(values + n * bytes, from + n * stride, bytes);
-    out->components = 1;
-    out->values = values;
     return 0;
 }
 
@@ -228,6 +240,19 @@ int scalar_select(dataset *d, const char *path, const field_request *request, sc
         out->is_averaged |= f->on_cells;
     }
     return status;
+}
+
+int scalar_components(const dataset *d, const char *path, const field_request *request, int *components) {
+    const char **names;
+    int status, count = common_field_names(d, &names);
+    choice chosen;
+    *components = 0;
+    if (count < 0) return STATUS_FAILED;
+    free(names);
+    if (!request->name && count != 1) return 0;
+    if ((status = choose(d, path, "--field takes", request->name, &chosen))) return status;
+    *components = chosen_field(d->blocks, chosen)->components;
+    return 0;
 }
 
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out) {

@@ -13,7 +13,7 @@
 /* What the command line says about the field. */
 typedef struct field_request {
     const char *name; /* NULL: the only one there is */
-    int component;    /* of a field with several, from 0; -1 where not given */
+    int component;    /* of a field with several, from 0; COMPONENT_OPEN where not given, or COMPONENT_MAGNITUDE */
     int has_nodata;   /* values equal to nodata (nodata.h) are missing, as are those that are not finite */
     double nodata;
 } field_request;
@@ -30,7 +30,7 @@ typedef struct scalar_block {
 
 typedef struct scalar {
     const char *name;
-    int component;   /* -1 of a field that has one */
+    int component;   /* -1 of a field that has one; or COMPONENT_MAGNITUDE */
     int is_averaged; /* of cells */
     int has_nodata;  /* some value equals the request's nodata */
     scalar_block *blocks;
@@ -48,6 +48,10 @@ typedef struct point_field {
  * request leaves a choice open or names what is not there (the text lists what is), STATUS_INPUT where there is no
  * field, or STATUS_FAILED. */
 int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out);
+
+/* *components: of the field that is named, or the only one; 0 where that choice is open, or there is none. Returns as
+ * scalar_select where a name is not there. */
+int scalar_components(const dataset *d, const char *path, const field_request *request, int *components);
 
 /* The field of that name with all its components. Returns as scalar_select; STATUS_INPUT too where blocks differ in
  * the number of components. */

@@ -8,6 +8,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,13 +16,14 @@
 /* Where the data starts in a mapped file, after skips. */
 static int find_start(const source *from, const char *path, const mapping *m, uint64_t bytes, uint64_t *start) {
     uint64_t at = from->files.count ? 0 : from->start;
-    if (from->byte_skip == SKIP_FROM_END && from->encoding == ENCODING_RAW) {
-        if (m->size < at || m->size - at < bytes)
+    if (from->byte_skip < 0 && from->encoding == ENCODING_RAW) {
+        uint64_t behind = (uint64_t)(SKIP_FROM_END - from->byte_skip), held = m->size < at ? 0 : m->size - at;
+        if (held < bytes || held - bytes < behind)
             return fail(STATUS_INPUT,
-                        "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64
-                        "; the header is wrong or the file is cut",
-                        path, m->size < at ? 0 : m->size - at, bytes);
-        *start = m->size - bytes;
+                        "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64 " and %" PRIu64
+                        " behind them; the header is wrong or the file is cut",
+                        path, held, bytes, behind);
+        *start = m->size - behind - bytes;
         return 0;
     }
     if (from->byte_skip < 0)
@@ -44,26 +46,57 @@ static int find_start(const source *from, const char *path, const mapping *m, ui
     return 0;
 }
 
-/* Whether `available` stored bytes can hold what the header declares for this file. */
+/* Whether `available` stored bytes, which are not packed, can hold what the header declares for this file. */
 static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element) {
-    uint64_t needed;
     switch (from->encoding) {
-    case ENCODING_RAW:
-        if (available >= bytes) return 0;
-        return fail(STATUS_INPUT,
-                    "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64
-                    "; the header is wrong or the file is cut",
-                    path, available, bytes);
     case ENCODING_TEXT: /* a digit each and a space between */
         if (available >= 2 * (bytes / element) - 1) return 0;
         return fail(STATUS_INPUT,
                     "%s: holds %" PRIu64 " characters of text, too few for %" PRIu64
                     " numbers; the header is wrong or the file is cut",
                     path, available, bytes / element);
+    case ENCODING_HEX:
+        if (available / 2 >= bytes) return 0;
+        return fail(STATUS_INPUT,
+                    "%s: holds %" PRIu64 " hexadecimal digits, but its header asks for %" PRIu64
+                    " bytes; the header is wrong or the file is cut",
+                    path, available, bytes);
     default:
-        if (__builtin_add_overflow(bytes, from->stream_skip, &needed)) needed = UINT64_MAX;
-        return unpack_check(path, from->encoding, (size_t)available, needed);
+        if (available >= bytes) return 0;
+        return fail(STATUS_INPUT,
+                    "%s: holds %" PRIu64 " bytes of data, but its header asks for %" PRIu64
+                    "; the header is wrong or the file is cut",
+                    path, available, bytes);
     }
+}
+
+/* Whether the stream can hold what the header declares for this file, before memory is taken for it. */
+static int check_stream(const source *from, const char *path, const unsigned char *in, size_t in_bytes,
+                        uint64_t bytes) {
+    uint64_t needed, skip = (uint64_t)(from->stream_skip < 0 ? SKIP_FROM_END - from->stream_skip : from->stream_skip);
+    if (__builtin_add_overflow(bytes, skip, &needed)) needed = UINT64_MAX;
+    return unpack_prove(path, from->encoding, in, in_bytes, needed);
+}
+
+/* How many bytes to skip of what the stream gives; where the data ends it, it is counted first. */
+static int find_stream_skip(const source *from, const char *path, const unsigned char *in, size_t in_bytes,
+                            uint64_t bytes, uint64_t *skip) {
+    enum { BEFORE_MOST = 256 << 20 }; /* a file of a few bytes may unpack for hours */
+    *skip = (uint64_t)from->stream_skip;
+    if (from->stream_skip >= 0) return 0;
+    uint64_t total = 0, needed = bytes + (uint64_t)(SKIP_FROM_END - from->stream_skip), most = needed + BEFORE_MOST;
+    int status = unpack_count(path, from->encoding, in, in_bytes, most, &total);
+    if (status) return status;
+    if (total == most)
+        return fail(STATUS_INPUT, "%s: unpacks to more than %d MiB before its data; say how many bytes to skip", path,
+                    BEFORE_MOST >> 20);
+    if (total < needed)
+        return fail(STATUS_INPUT,
+                    "%s: unpacks to %" PRIu64 " bytes, but its header asks for %" PRIu64
+                    "; the header is wrong or the file is cut",
+                    path, total, needed);
+    *skip = total - needed;
+    return 0;
 }
 
 enum { WORD_BYTES = 1152 }; /* of a number: a double to its last decimal, 1,075 digits, and more */
@@ -86,7 +119,12 @@ static int store_number(const char *word, int element, unsigned char *to) {
         return end != word && !*end && !errno && *word != '-';
     }
     long long value = strtoll(word, &end, 10);
-    if (end == word || *end || errno) return 0;
+    if (end == word || errno) return 0;
+    if (*end) { /* 12.0 and 1e3 are whole numbers too */
+        double whole = strtod(word, &end);
+        if (*end || !(fabs(whole) <= 0x1p53) || whole != floor(whole)) return 0;
+        value = (long long)whole;
+    }
     if (element < TC_F32 && (value < low[element] || value > high[element])) return 0;
     size_t bytes = element_bytes(element);
     uint64_t bits = (uint64_t)value;
@@ -129,38 +167,81 @@ static int read_text(const char *path, const unsigned char *text, size_t size, i
     return 0;
 }
 
-/* Notes, once, that a file ("it": the input itself) holds more than was used. */
-static void notice_rest(const char *name, uint64_t rest, volume *out) {
-    if (rest && !*out->notice)
-        snprintf(out->notice, sizeof out->notice,
-                 "%.160s holds more data than its header asks for; the rest is not used", name);
+static int hex_digit(unsigned char c) {
+    int letter = c | 0x20;
+    return isdigit(c) ? c - '0' : letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
+}
+
+/* Two digits a byte, white space anywhere. *more: whether digits follow. */
+static int read_hex(const char *path, const unsigned char *text, size_t size, unsigned char *to, uint64_t bytes,
+                    int *more) {
+    size_t at = 0;
+    for (uint64_t digit = 0;; at++) {
+        while (at < size && isspace(text[at])) at++;
+        *more = at < size;
+        if (digit == 2 * bytes) return 0;
+        int value = at < size ? hex_digit(text[at]) : -1;
+        if (at == size)
+            return fail(STATUS_INPUT, "%s: has %" PRIu64 " hexadecimal digits, but its header asks for %" PRIu64, path,
+                        digit, 2 * bytes);
+        if (value < 0) return fail(STATUS_INPUT, "%s: byte %zu of its data is no hexadecimal digit", path, at + 1);
+        unsigned char *byte = to + digit / 2;
+        *byte = (unsigned char)(digit++ & 1 ? *byte | value : value << 4);
+    }
+}
+
+/* Notes, once, that a file holds more than was used. */
+static void notice_rest(const source *from, const char *path, uint64_t rest, volume *out) {
+    if (!rest || strstr(out->notice, "more data than its header")) return;
+    volume_notice(out, "%.160s holds more data than its header asks for; the rest is not used",
+                  from->files.count ? path : "it");
 }
 
 static int open_part(const source *from, const char *path, mapping *m) {
     return from->files.count ? data_names_open(from->header_path, path, m) : mapping_open(path, m);
 }
 
-/* Checks one file and, where `to` is given, brings its part of the stored array. */
+/* Brings one file's part of the stored array; *more: whether more follows it. */
+static int take_part(const source *from, const char *path, const unsigned char *in, size_t in_bytes, int element,
+                     unsigned char *to, uint64_t bytes, int *more) {
+    uint64_t skip;
+    int status;
+    switch (from->encoding) {
+    case ENCODING_RAW:
+        memcpy(to, in, (size_t)bytes);
+        *more = in_bytes > bytes && from->byte_skip >= 0;
+        return 0;
+    case ENCODING_TEXT:
+        return read_text(path, in, in_bytes, element, to, bytes / element_bytes(element), more);
+    case ENCODING_HEX:
+        return read_hex(path, in, in_bytes, to, bytes, more);
+    default:
+        status = find_stream_skip(from, path, in, in_bytes, bytes, &skip);
+        if (!status) status = unpack(path, from->encoding, in, in_bytes, skip, to, bytes, more);
+        if (from->stream_skip < 0) *more = 0;
+        return status;
+    }
+}
+
+static int is_packed(const source *from) {
+    return from->encoding == ENCODING_DEFLATE || from->encoding == ENCODING_BZIP2;
+}
+
+/* Checks one file or, where `to` is given, brings its part of the stored array. */
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
                      volume *out) {
     mapping m;
     uint64_t start = 0;
-    int status = open_part(from, path, &m);
+    int more = 0, status = open_part(from, path, &m);
     if (status) return status;
-    if ((status = find_start(from, path, &m, bytes, &start)) ||
-        (status = check_size(from, path, m.size - start, bytes, element_bytes(l->element))) || !to)
-        goto cleanup;
-    size_t available = m.size - (size_t)start;
-    int more = 0;
-    if (from->encoding == ENCODING_RAW)
-        memcpy(to, m.bytes + start, (size_t)bytes);
-    else if (from->encoding == ENCODING_TEXT)
-        status = read_text(path, m.bytes + start, available, l->element, to, bytes / element_bytes(l->element), &more);
-    else
-        status = unpack(path, from->encoding, m.bytes + start, available, from->stream_skip, to, bytes, &more);
-    if (!status)
-        notice_rest(from->files.count ? path : "it",
-                    from->encoding == ENCODING_RAW ? available - bytes : (uint64_t)more, out);
+    if ((status = find_start(from, path, &m, bytes, &start))) goto cleanup;
+    const unsigned char *in = m.bytes ? m.bytes + start : m.bytes;
+    size_t in_bytes = m.size - (size_t)start;
+    if (!is_packed(from)) status = check_size(from, path, in_bytes, bytes, element_bytes(l->element));
+    if (is_packed(from) && !to) status = check_stream(from, path, in, in_bytes, bytes);
+    if (status || !to) goto cleanup;
+    status = take_part(from, path, in, in_bytes, l->element, to, bytes, &more);
+    if (!status) notice_rest(from, path, (uint64_t)more, out);
 cleanup:
     mapping_close(&m);
     return status;
@@ -174,6 +255,7 @@ static int no_memory(const char *path, uint64_t bytes) {
 /* Gathers the volume from the stored array into memory of its own. */
 static int gather(const source *from, const layout *l, const unsigned char *stored, volume *out) {
     uint64_t bytes = 0, count = (uint64_t)l->dims[0] * (uint64_t)l->dims[1] * (uint64_t)l->dims[2];
+    count *= (uint64_t)l->components; /* all of them elements stored */
     if (__builtin_mul_overflow(count, element_bytes((int)layout_type(l)), &bytes)) bytes = UINT64_MAX;
     void *samples = samples_allocate(bytes);
     if (!samples) return no_memory(from->header_path, bytes);
@@ -195,7 +277,7 @@ static int load_raw(const source *from, const char *path, const layout *l, volum
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
         goto cleanup;
-    notice_rest(from->files.count ? path : "it", m.size - start - l->bytes, out);
+    if (from->byte_skip >= 0) notice_rest(from, path, m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
         out->samples = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;
@@ -234,6 +316,9 @@ int source_load(const source *from, const layout *l, volume *out) {
     if (status) return status;
     for (int i = 0; i < 3; i++) out->dims[i] = l->dims[i];
     out->type = layout_type(l);
+    out->components = l->components;
+    out->frames = l->frames;
+    snprintf(out->meaning, sizeof out->meaning, "%s", from->axes->meaning ? from->axes->meaning : "");
     if (parts == 1 && from->encoding == ENCODING_RAW)
         return load_raw(from, from->files.count ? from->files.paths[0] : from->header_path, l, out);
 

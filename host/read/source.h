@@ -1,5 +1,5 @@
 /*
- * source.h - where a header's samples lie: attached or in files of their own, raw, text or compressed
+ * source.h - where a header's samples lie: attached or in files of their own, raw, text, hexadecimal or compressed
  *
  * source_load compares what the header declares with what the files hold, then brings the samples: used in place in
  * the mapped file where they are one native, aligned, raw volume; else gathered into memory.
@@ -11,17 +11,17 @@
 #include "layout.h"
 #include "unpack.h"
 
-enum { SKIP_FROM_END = -1 };
+enum { SKIP_FROM_END = -1 }; /* less by n: n bytes follow the data */
 
 typedef struct source {
     const char *header_path;
     encoding encoding;
-    data_names files;     /* none: the data follows the header, in the same file, */
-    uint64_t start;       /* here */
-    int64_t line_skip;    /* lines to skip, in each file, then */
-    int64_t byte_skip;    /* bytes; SKIP_FROM_END: the data ends the file (raw only) */
-    uint64_t stream_skip; /* bytes to skip of what a compressed stream unpacks to */
-    const axes *axes;     /* with several files: each holds the first axes_per_file axes, or a part of the last */
+    data_names files;    /* none: the data follows the header, in the same file, */
+    uint64_t start;      /* here */
+    int64_t line_skip;   /* lines to skip, in each file, then */
+    int64_t byte_skip;   /* bytes; SKIP_FROM_END and below: the data ends the file (raw only) */
+    int64_t stream_skip; /* the same of what a compressed stream unpacks to */
+    const axes *axes;    /* with several files: each holds the first axes_per_file axes, or a part of the last */
     int64_t axes_per_file;
 } source;
 

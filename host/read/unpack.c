@@ -13,7 +13,7 @@
 #include <bzlib.h>
 #endif
 
-enum { DEFLATE_LIMIT = 1100, BZIP2_LIMIT = 50000, CHUNK = 1 << 30 };
+enum { DEFLATE_LIMIT = 1032, BZIP2_LIMIT = 2000000, DOUBTFUL_FROM = 50000, CHUNK = 1 << 30 };
 
 #if !defined(HAVE_ZLIB) || !defined(HAVE_BZIP2)
 static int missing(const char *path, const char *what, const char *option) {
@@ -37,7 +37,15 @@ int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_
                 path, unpacked_bytes, packed_bytes, limit);
 }
 
-#if defined(HAVE_ZLIB) || defined(HAVE_BZIP2)
+/* Where the next unpacked bytes go: first into a scratch buffer, then into the result, then one more byte of scratch,
+ * so that the end of the stream, with its check sum, is seen. */
+typedef struct target {
+    unsigned char scratch[65536];
+    unsigned char *out;
+    uint64_t skip, bytes; /* still wanted */
+    int more;             /* whether more came than was wanted */
+    int is_counted;       /* the stream may end before what is wanted */
+} target;
 
 static int damaged(const char *path, const char *detail) {
     return fail(STATUS_INPUT, "%s: its compressed data is damaged (%s); get the file again", path, detail);
@@ -51,14 +59,7 @@ static int ends_early(const char *path, uint64_t got, uint64_t wanted) {
                 path, got, wanted);
 }
 
-/* Where the next unpacked bytes go: first into a scratch buffer, then into the result, then one more byte of scratch,
- * so that the end of the stream, with its check sum, is seen. */
-typedef struct target {
-    unsigned char scratch[65536];
-    unsigned char *out;
-    uint64_t skip, bytes; /* still wanted */
-    int more;             /* whether more came than was wanted */
-} target;
+#if defined(HAVE_ZLIB) || defined(HAVE_BZIP2)
 
 static unsigned char *target_room(target *t, uint64_t *room) {
     unsigned char *at = t->skip || !t->bytes ? t->scratch : t->out;
@@ -66,6 +67,11 @@ static unsigned char *target_room(target *t, uint64_t *room) {
     uint64_t limit = at == t->scratch ? sizeof t->scratch : CHUNK;
     if (*room > limit) *room = limit;
     return at;
+}
+
+/* The stream has ended where it should. */
+static int stream_ended(const char *path, const target *t, uint64_t wanted) {
+    return t->is_counted ? 0 : ends_early(path, wanted - t->bytes - t->skip, wanted);
 }
 
 /* Returns 1 where more came than was wanted. */
@@ -103,7 +109,7 @@ static int inflate_stream(const char *path, const unsigned char *in, size_t in_b
             if (!t->skip && !t->bytes) break;
             int another = left > 2 && stream.next_in[0] == 0x1f && stream.next_in[1] == 0x8b;
             if (another && inflateReset(&stream) == Z_OK) continue;
-            status = ends_early(path, wanted - t->bytes - t->skip, wanted);
+            status = stream_ended(path, t, wanted);
             break;
         }
         if (code == Z_MEM_ERROR)
@@ -142,7 +148,7 @@ static int bunzip_stream(const char *path, const unsigned char *in, size_t in_by
             char *rest = stream.next_in;
             BZ2_bzDecompressEnd(&stream);
             stream = (bz_stream){0};
-            if (left < 4) return ends_early(path, wanted - t->bytes - t->skip, wanted);
+            if (left < 4) return stream_ended(path, t, wanted);
             if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return fail(STATUS_FAILED, "bzip2: out of memory");
             stream.next_in = rest;
             continue;
@@ -160,6 +166,21 @@ static int bunzip_stream(const char *path, const unsigned char *in, size_t in_by
 }
 #endif
 
+/* Through the library of the encoding, which is there, as unpack_check has found. */
+static int unpack_to(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, target *t,
+                     uint64_t wanted) {
+#ifdef HAVE_ZLIB
+    if (packed == ENCODING_DEFLATE) return inflate_stream(path, in, in_bytes, t, wanted);
+#endif
+#ifdef HAVE_BZIP2
+    if (packed == ENCODING_BZIP2) return bunzip_stream(path, in, in_bytes, t, wanted);
+#endif
+    (void)in;
+    (void)in_bytes;
+    (void)t;
+    return fail(STATUS_INPUT, "%s: encoding %d does not pack its %" PRIu64 " bytes", path, (int)packed, wanted);
+}
+
 int unpack(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t skip, void *out,
            uint64_t bytes, int *more) {
     uint64_t wanted;
@@ -168,22 +189,36 @@ int unpack(const char *path, encoding packed, const unsigned char *in, size_t in
         return fail(STATUS_INPUT, "%s: asks to skip %" PRIu64 " bytes; the header is damaged", path, skip);
     int status = unpack_check(path, packed, in_bytes, wanted);
     if (status) return status;
-#if defined(HAVE_ZLIB) || defined(HAVE_BZIP2)
     target t;
     t.out = out;
     t.skip = skip;
     t.bytes = bytes;
-    t.more = 0;
-#ifdef HAVE_ZLIB
-    if (packed == ENCODING_DEFLATE) status = inflate_stream(path, in, in_bytes, &t, wanted);
-#endif
-#ifdef HAVE_BZIP2
-    if (packed == ENCODING_BZIP2) status = bunzip_stream(path, in, in_bytes, &t, wanted);
-#endif
+    t.more = t.is_counted = 0;
+    status = unpack_to(path, packed, in, in_bytes, &t, wanted);
     if (more) *more = t.more;
-#else
-    (void)in;
-    (void)out;
-#endif
     return status;
+}
+
+int unpack_count(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t most,
+                 uint64_t *unpacked) {
+    int status = unpack_check(path, packed, in_bytes, 0);
+    if (status) return status;
+    target t;
+    t.out = NULL;
+    t.skip = most;
+    t.bytes = 0;
+    t.more = 0;
+    t.is_counted = 1;
+    status = unpack_to(path, packed, in, in_bytes, &t, most);
+    *unpacked = most - t.skip;
+    return status;
+}
+
+int unpack_prove(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t unpacked_bytes) {
+    uint64_t gives = 0;
+    int status = unpack_check(path, packed, in_bytes, unpacked_bytes);
+    if (status || unpacked_bytes / DOUBTFUL_FROM <= in_bytes) return status;
+    status = unpack_count(path, packed, in, in_bytes, unpacked_bytes, &gives);
+    if (status || gives == unpacked_bytes) return status;
+    return ends_early(path, gives, unpacked_bytes);
 }

@@ -1,9 +1,10 @@
 /*
  * unpack.h - gzip, zlib and bzip2 streams whose unpacked size is known from a header
  *
- * Before memory is taken, the size that the header declares is compared with what so many packed bytes can hold.
- * Deflate cannot pack better than 1,032 : 1. bzip2 packs constant data almost without bound, so its limit, 50,000 : 1,
- * is a choice: far above any measured volume, low enough that a small file cannot ask for much memory.
+ * Before memory is taken, the size that the header declares is compared with what so many packed bytes can hold. Of
+ * deflate that is 1,032 : 1, as two bits give at most 258 bytes. Of bzip2 it is 2,000,000 : 1: a block gives at most
+ * 51 x 900,000 bytes, of 193 bits at least; libbz2 itself packs a constant volume 1,368,000 : 1. So a small file may
+ * ask for much memory with every right: what is packed better than 50,000 : 1 is unpacked once to be counted alone.
  */
 #ifndef UNPACK_H
 #define UNPACK_H
@@ -11,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum encoding { ENCODING_RAW, ENCODING_TEXT, ENCODING_DEFLATE, ENCODING_BZIP2 } encoding;
+typedef enum encoding { ENCODING_RAW, ENCODING_TEXT, ENCODING_HEX, ENCODING_DEFLATE, ENCODING_BZIP2 } encoding;
 
 /* STATUS_INPUT where so many packed bytes cannot hold so many unpacked ones, or this program lacks the library. */
 int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_t unpacked_bytes);
@@ -21,5 +22,13 @@ int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_
  * or ends early. */
 int unpack(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t skip, void *out,
            uint64_t bytes, int *more);
+
+/* *unpacked: how many bytes the stream gives; no more than `most` are counted. STATUS_INPUT where it is damaged or cut
+ * before that. */
+int unpack_count(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t most,
+                 uint64_t *unpacked);
+
+/* unpack_check, and where the ratio is doubtful the stream is counted: STATUS_INPUT where it gives less. */
+int unpack_prove(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t unpacked_bytes);
 
 #endif

@@ -11,6 +11,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "world.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -237,7 +238,7 @@ static int check_geometry(legacy *r) {
     if (r->blanking_count && r->blanking_count != b->point_count)
         return legacy_fail(r, "has BLANKING of %" PRId64 " points, but %" PRId64 " points", r->blanking_count,
                            b->point_count);
-    return b->kind == GRID_UNIFORM ? matrix_check(r->path, b->matrix) : 0;
+    return b->kind == GRID_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
 }
 
 /* POINT_DATA and CELL_DATA, which end the geometry. */
@@ -271,7 +272,7 @@ static int read_keyword(legacy *r, const char *keyword) {
 }
 
 int vtk_legacy_read(const read_request *request, const mapping *file, dataset *out) {
-    legacy r = {.path = request->path, .bytes = file->bytes, .size = file->size, .out = out, .spacing = {1, 1, 1}};
+    legacy r = {.request = request, .path = request->path, .bytes = file->bytes, .size = file->size, .out = out, .spacing = {1, 1, 1}};
     char keyword[LEGACY_WORD];
     int status = dataset_block_add(out, &r.block);
     if (status || (status = read_header(&r))) return status;

@@ -21,6 +21,7 @@ enum { LEGACY_BIT = ELEMENT_U64 + 1, LEGACY_STRING, LEGACY_VARIANT };
 enum legacy_section { SECTION_GEOMETRY, SECTION_POINTS, SECTION_CELLS };
 
 typedef struct legacy {
+    const read_request *request;
     const char *path;
     const unsigned char *bytes;
     size_t size, at; /* at: the next byte to be read */

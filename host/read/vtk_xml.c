@@ -13,6 +13,7 @@
 #include "failure.h"
 #include "layout.h"
 #include "readers.h"
+#include "world.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -28,6 +29,7 @@ enum { HIDDEN_POINT = 2, DUPLICATE_CELL = 1, HIDDEN_CELL = 32 };
 enum { CHUNK_BYTES = 128 << 10, ALIGNMENT = 64 };
 
 typedef struct xml_reader {
+    const read_request *request;
     xml_document doc;
     dataset *out;
     int uses_file;        /* whether any values are used in the mapped file */
@@ -190,8 +192,9 @@ static int set_matrix(const xml_reader *r, dataset_block *block) {
         for (int a = 0; a < 3; a++) matrix[row][a] = doc->direction[3 * row + a] * doc->spacing[a];
         matrix[row][3] = doc->origin[row];
     }
+    int status = world_place(r->request, doc->path, matrix);
     memcpy(block->matrix, matrix, sizeof matrix);
-    return matrix_check(doc->path, matrix);
+    return status;
 }
 
 static int load_axes(xml_reader *r, const xml_piece *piece, dataset_block *block) {
@@ -464,7 +467,7 @@ static int load_blocks(xml_reader *r) {
 }
 
 int vtk_xml_read(const read_request *request, const mapping *file, dataset *out) {
-    xml_reader r = {.out = out};
+    xml_reader r = {.request = request, .out = out};
     mapping own; /* the caller closes its own; this one lives as long as values in it are used */
     (void)file;
     int status = mapping_open(request->path, &own);

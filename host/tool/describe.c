@@ -170,6 +170,18 @@ void describe_place_text(const dataset *d, const dataset_block *b) {
                report_number(b->matrix[r][2]).text, report_number(b->matrix[r][3]).text);
 }
 
+void describe_values_text(const dataset *d, const dataset_block *b) {
+    const dataset_field *f = b->fields;
+    if (f->components == 1) return;
+    printf("values        %d per sample%s%s%s\n", f->components, *d->image.meaning ? " (" : "", d->image.meaning,
+           *d->image.meaning ? ")" : "");
+    for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
+        double range[2];
+        if (range_of(b, f, c, range))
+            printf("  %-11d %s to %s\n", c, report_number(range[0]).text, report_number(range[1]).text);
+    }
+}
+
 static void block_text(const dataset *d, const dataset_block *b) {
     bounds all = bounds_of(b);
     uint64_t points = count_set(b->blanked_points, b->point_count), cells = count_set(b->blanked_cells, b->cell_count);

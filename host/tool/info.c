@@ -1,4 +1,5 @@
 /* info.c - what an input holds: blocks and fields; range, histogram and isovalues worth trying of the chosen one */
+#include "choices.h"
 #include "commands.h"
 #include "describe.h"
 #include "exit_status.h"
@@ -20,7 +21,8 @@
 typedef struct facts {
     const char *path;
     const dataset *d;
-    const scalar *field; /* NULL where there is a choice that was not made */
+    const scalar *field; /* NULL where there is a choice that was not made, of fields or components */
+    choices open;
     statistics s;
 } facts;
 
@@ -80,6 +82,7 @@ static int print_json(const facts *f) {
     json_object_set_new(object, "notice", report_string(f->d->notice));
     add_field(object, f);
     json_object_set_new(object, "blocks", describe_blocks_json(f->d));
+    json_object_set_new(object, "choices", choices_json(&f->open));
     report_add_notices(object);
     return report_print(object, 15);
 }
@@ -114,14 +117,15 @@ static void print_image(const facts *f) {
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     describe_place_text(f->d, b);
+    describe_values_text(f->d, b);
 }
 
 static void print_field(const facts *f) {
     const statistics *s = &f->s;
+    choices_text(&f->open);
     if (!f->field) {
-        printf("isovalues     %s\n", f->d->block_count && f->d->blocks->field_count
-                                         ? "choose a field by --field NAME, a component by --component C"
-                                         : "none: there is no field");
+        printf("isovalues     %s\n", f->d->block_count && f->d->blocks->field_count ? "none before that is chosen"
+                                                                                    : "none: there is no field");
         return;
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
@@ -157,28 +161,34 @@ static int find_statistics(facts *f) {
     return 0;
 }
 
-int info_run(const options *o) {
+/* Reads what is there, whatever is left open, and the field's samples where nothing is. */
+static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     read_request request;
+    int status = input_request(o, &request);
+    request.describe = 1;
+    if (!status) status = dataset_read(&request, d);
+    if (!status) status = progress_status();
+    if (!status) status = choices_find(o, d, &f->open);
+    if (!status && f->open.can_select) {
+        status = input_select(o, d, field);
+        f->field = field;
+    }
+    if (!status) status = find_statistics(f);
+    return status ? status : progress_status();
+}
+
+int info_run(const options *o) {
     dataset d = {0};
     scalar field;
-    facts f = {.d = &d};
-    int has_choice = 0, status = input_request(o, &request);
-    if (!status) status = dataset_read(&request, &d);
-    if (!status) status = progress_status();
-    if (!status) status = input_has_choice(o, &d, &has_choice);
-    if (!status && has_choice) {
-        status = input_select(o, &d, &field);
-        f.field = &field;
-    }
-    f.path = request.path;
-    if (!status) status = find_statistics(&f);
-    if (!status) status = progress_status();
+    facts f = {.path = o->operand_count ? o->operands[0] : "", .d = &d};
+    int status = read_facts(o, &d, &field, &f);
     if (status) goto cleanup;
     if (o->json)
         status = print_json(&f);
     else
         print_text(&f);
 cleanup:
+    choices_release(&f.open);
     dataset_release(&d);
     return status;
 }

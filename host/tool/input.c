@@ -24,7 +24,7 @@ static int check_operands(const options *o) {
 }
 
 int input_request(const options *o, read_request *request) {
-    static const char *const raw[] = {"--type", "--endian", "--skip", "--spacing", "--origin"};
+    static const char *const raw[] = {"--type", "--endian", "--skip"};
     int status = check_operands(o), is_raw = options_given(o, "--dims");
     if (status) return status;
     for (size_t n = 0; n < sizeof raw / sizeof *raw; n++)
@@ -38,6 +38,8 @@ int input_request(const options *o, read_request *request) {
         request->spacing[axis] = o->spacing[axis];
         request->origin[axis] = o->origin[axis];
     }
+    request->has_spacing = options_given(o, "--spacing");
+    request->has_origin = options_given(o, "--origin");
     request->type = o->type;
     request->big_endian = o->big_endian;
     request->skip = o->skip;
@@ -99,7 +101,7 @@ int input_has_choice(const options *o, const dataset *d, int *has) {
     const char **names;
     int count = common_field_names(d, &names);
     if (count < 0) return STATUS_FAILED;
-    int is_plain = count == 1 && (o->component >= 0 || block_field(d->blocks, names[0])->components == 1);
+    int is_plain = count == 1 && (o->component != COMPONENT_OPEN || block_field(d->blocks, names[0])->components == 1);
     free(names);
     *has = o->field || is_plain;
     return 0;

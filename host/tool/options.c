@@ -9,7 +9,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
-#include "tetracubes.h"
+#include "volume.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -25,6 +25,7 @@ typedef enum value_kind {
     VALUE_ISOVALUES, /* appended to isovalues */
     VALUE_NODATA,    /* double nodata, and has_nodata */
     VALUE_INDEX,     /* int, from 0 */
+    VALUE_COMPONENT, /* the same, or COMPONENT_MAGNITUDE */
     VALUE_NUMBER,    /* uint64_t */
     VALUE_SIZE,      /* uint64_t bytes, K M G T */
     VALUE_BOUND,     /* the same, above 0 */
@@ -118,8 +119,9 @@ static const option table[] = {
     {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
      "leave out cells of types that are not cut, and polyhedra whose faces are\n"
      "not closed, with a notice, instead of refusing the input"},
-    {"--component", NULL, "C", READS, VALUE_INDEX, IN(component), NULL,
-     "which value, from 0, of data with several values per sample"},
+    {"--component", NULL, "C", READS, VALUE_COMPONENT, IN(component), NULL,
+     "which value, from 0, of data with several values per sample; or magnitude:\n"
+     "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
      "which volume, from 0, of data with a fourth axis"},
     {"--dims", NULL, "NX,NY,NZ", READS, VALUE_DIMS, IN(dims), NULL,
@@ -135,9 +137,11 @@ static const option table[] = {
     {"--skip", NULL, "BYTES", READS, VALUE_SIZE, IN(skip), NULL,
      "raw input: bytes before the first sample"},
     {"--spacing", NULL, "X,Y,Z", READS, VALUE_SPACING, IN(spacing), NULL,
-     "raw input: distance of samples, default 1,1,1"},
+     "distance of samples along the axes of a uniform grid, in place of what the\n"
+     "file says, whose directions stay; raw input without it: 1,1,1"},
     {"--origin", NULL, "X,Y,Z", READS, VALUE_POINT, IN(origin), NULL,
-     "raw input: position of the first sample, default 0,0,0"},
+     "position of the first sample of a uniform grid (of VTK's: of index 0,0,0),\n"
+     "in place of what the file says; raw input without it: 0,0,0"},
     {"--seed", NULL, "S", COMMAND_GENERATE, VALUE_NUMBER, IN(seed), NULL,
      "of noise, a whole number, default 0"},
     {"--quick", NULL, NULL, COMMAND_SELFTEST, VALUE_NONE, IN(quick), NULL,
@@ -301,6 +305,13 @@ static int parse_value(const option *spec, const char *text, options *o) {
         status = parse_number(spec, text, INT_MAX, &number);
         *(int *)place = (int)number;
         return status;
+    case VALUE_COMPONENT:
+        *(int *)place = COMPONENT_MAGNITUDE;
+        if (strcmp(text, "magnitude") == 0) return 0;
+        status = parse_number(spec, text, INT_MAX, &number);
+        *(int *)place = (int)number;
+        return status ? fail(status, "%s: '%s' is neither a whole number from 0 on nor magnitude", spec->name, text)
+                      : 0;
     case VALUE_NUMBER:
         return parse_number(spec, text, UINT64_MAX, place);
     case VALUE_SIZE:
@@ -358,7 +369,7 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
 }
 
 int options_parse(enum command_bit command, const char *name, int argc, char **argv, options *o) {
-    *o = (options){.command = name, .component = -1, .frame = -1, .type = -1, .spacing = {1.0, 1.0, 1.0}};
+    *o = (options){.command = name, .component = COMPONENT_OPEN, .frame = -1, .type = -1, .spacing = {1.0, 1.0, 1.0}};
     int only_operands = 0;
     o->operands = calloc((size_t)argc + 1, sizeof *o->operands);
     if (!o->operands) return fail(STATUS_FAILED, "out of memory for the command line");

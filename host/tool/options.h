@@ -46,7 +46,7 @@ typedef struct options {
     int skip_unsupported;
     int has_nodata;
     double nodata;
-    int component, frame; /* -1 where not given */
+    int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
     uint64_t max_memory;  /* 0 where not given */
     uint64_t seed;
 
