@@ -2,7 +2,7 @@
  * reader.c - a reader given any bytes: a status with a text, or a dataset that holds what dataset.h promises
  *
  * Compiled once per format, FORMAT being its number. The first byte of the options is the component, the second the
- * frame, both signed; the third chooses the file's ending and the field. Raw files say all else in front of their
+ * frame, both signed; the third chooses the file's ending and the field, the fourth what stands for the header's word. Raw files say all else in front of their
  * samples, in a struct raw_description; where it leaves out sizes and type, the format is found as for any file.
  */
 #include "check.h"
@@ -158,8 +158,9 @@ static void check_image(const volume *v) {
         CHECK(v->dims[a] >= 1);
         CHECK(!__builtin_mul_overflow(count, (uint64_t)v->dims[a], &count));
     }
+    CHECK(v->components >= 1 && v->frames >= 1);
     check_type(v->type, v->samples);
-    touch(v->samples, count * tc_type_bytes(v->type));
+    touch(v->samples, count * (uint64_t)v->components * tc_type_bytes(v->type));
     for (int n = 0; n < 12; n++) CHECK(isfinite(v->matrix[n / 4][n % 4]));
 }
 
@@ -212,6 +213,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     files_open(request.path, data, size, options);
     request.component = (int8_t)options[0];
     request.frame = (int8_t)options[1];
+    request.describe = options[3] & 1;
+    request.has_spacing = options[3] >> 1 & 1;
+    request.has_origin = options[3] >> 2 & 1;
     if ((FORMAT == PLOT3D && !(choice & 4)) || (FORMAT == RAW && choice & 8)) request.path2 = FILES_FOLDER "1.q";
 
     fail(0, "(no text)");
