@@ -29,7 +29,7 @@ SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
 CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges",
               "euler_characteristic", "components", "area", "volume"}
 INFO_KEYS = {"input", "format", "dims", "first", "type", "spacing", "matrix", "space", "notice", "range", "nonfinite",
-             "histogram", "isovalues", "field", "blocks", "missing", "notices"}
+             "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
 DEVICE_KEYS = {"index", "spec", "name", "platform", "version", "driver", "type", "compute_units",
                "max_work_group_size", "global_memory_bytes", "max_buffer_bytes", "local_memory_bytes",
                "shares_host_memory", "has_fp64", "rounds_division"}
