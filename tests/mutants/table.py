@@ -35,6 +35,7 @@ TESTS = {
     "test_write": test("test_write"),
     "test_dataset": test("test_dataset"),
     "test_read": test("test_read"),
+    "test_read_lenient": test("test_read_lenient"),
     "test_vtk_xml": test("test_vtk_xml"),
     "test_vtk_legacy": test("test_vtk_legacy"),
     "test_plot3d": test("test_plot3d"),
@@ -91,13 +92,14 @@ TESTS = {
     "test_cli": test("test_cli.py", "", ("reference",)),
     "test_results": test("test_results.py", "", ("reference",)),
     "test_nodata": test("test_nodata"),
+    "test_cli_images": test("test_cli_images.py"),
 }
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
 DEVICE = ["test_random, u8", "test_rare, one sample"]
-READERS = ["test_read", "test_dataset", "test_read_hostile"]
+READERS = ["test_read", "test_read_lenient", "test_dataset", "test_read_hostile"]
 
 # Tests for the faults of a file, or of all in a folder, in the order in which they are run.
 FILES = {

@@ -2,8 +2,9 @@
  * reader.c - a reader given any bytes: a status with a text, or a dataset that holds what dataset.h promises
  *
  * Compiled once per format, FORMAT being its number. The first byte of the options is the component, the second the
- * frame, both signed; the third chooses the file's ending and the field, the fourth what stands for the header's word. Raw files say all else in front of their
- * samples, in a struct raw_description; where it leaves out sizes and type, the format is found as for any file.
+ * frame, both signed; the third chooses the file's ending and the field, the fourth what stands for the header's word.
+ * Raw files say all else in front of their samples, in a struct raw_description; where it leaves out sizes and type,
+ * the format is found as for any file.
  */
 #include "check.h"
 #include "files.h"

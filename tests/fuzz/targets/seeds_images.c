@@ -4,7 +4,8 @@
 #include "read_files.h"
 
 static const char plain[4] = {-1, -1, 0, 0}, detached[4] = {-1, -1, 1, 0}, second_value[4] = {1, -1, 0, 0},
-                  second_frame[4] = {-1, 1, 0, 0}, second_of_both[4] = {1, 1, 0, 0};
+                  second_frame[4] = {-1, 1, 0, 0}, second_of_both[4] = {1, 1, 0, 0}, length[4] = {-2, -1, 0, 0},
+                  described[4] = {-1, -1, 0, 1}, placed[4] = {-1, -1, 0, 6};
 
 static void add_raw(void) {
     for (int type = TC_U8; type <= TC_F64; type++) {
@@ -90,6 +91,57 @@ static void add_nrrd_axes(void) {
     seed_file("nrrd", "time", time, strlen(time), NULL, 0, second_frame);
 }
 
+/* Headers that leave much unknown, data at the end of what they unpack to, digits, several values per sample. */
+static void add_nrrd_loose(void) {
+    static const char unknown[] = "NRRD00.01\nsizes: 2 2 2\ntype:uchar\nencoding: raw\nspacings: nan 0 inf\n"
+                                  "axis mins: nan 1 inf\ndimension: 3\n\n12345678",
+                      turned[] = "NRRD0005\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nspace: RAS\n"
+                                 "spacedirections: (nan,nan,nan) (1,0,0) (0,1,0)\nspaceorigin: (nan,nan,nan)\n"
+                                 "\n12345678",
+                      hex[] = "NRRD0005\ntype: short\ndimension: 3\nsizes: 2 2 1\nendian: big\nencoding: hex\n\n"
+                              "0123 4567 89ab cdEF",
+                      vector[] = "NRRD0005\ntype: longlong\ndimension: 4\nsizes: 3 2 1 1\nencoding: ascii\n"
+                                 "kinds: 3-vector space space space\n\n1 2 3.0 4 5e0 -6",
+                      planes[] = "NRRD0005\ntype: uchar\ndimension: 5\nsizes: 2 1 2 2 2\nencoding: raw\n"
+                                 "kinds: space space space vector time\n\n0123456789abcdef",
+                      slabs[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nbyte skip: -3\n"
+                                "data file: LIST 3\na1.raw\nsub/a1.raw\n";
+    seed_file("nrrd", "unknown", unknown, strlen(unknown), NULL, 0, placed);
+    seed_file("nrrd", "turned", turned, strlen(turned), NULL, 0, plain);
+    seed_file("nrrd", "hex", hex, strlen(hex), NULL, 0, plain);
+    seed_file("nrrd", "vector-length", vector, strlen(vector), NULL, 0, length);
+    seed_file("nrrd", "planes-described", planes, strlen(planes), NULL, 0, described);
+    seed_file("nrrd", "slabs", slabs, strlen(slabs), "x1234yz", 7, detached);
+    for (int bzip2 = 0; bzip2 < 2; bzip2++) {
+        static const char inner[] = "before 12345678 behind";
+        bytes packed = bzip2 ? bzipped((const unsigned char *)inner, sizeof inner - 1)
+                             : gzipped((const unsigned char *)inner, sizeof inner - 1, AS_GZIP),
+              file = {0};
+        bytes_text(&file, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: %s\nbyte skip: -8\n\n",
+                   bzip2 ? "bzip2" : "gzip");
+        bytes_add(&file, packed.data, packed.size);
+        seed_file("nrrd", bzip2 ? "end-of-bzip2" : "end-of-gzip", file.data, file.size, NULL, 0, plain);
+        bytes_free(&packed);
+        bytes_free(&file);
+    }
+}
+
+static void add_metaimage_loose(void) {
+    static const char colons[] = "objecttype: Image\nndims: 3\nDimSize: 2.0 2 2 7\nElementSpacing: 0 -1 nan 4\n"
+                                 "TransformMatrix: 0 1 0\n 1 0 0\n 0 0 1\nelementtype: met_uchar\n"
+                                 "ElementDataFile: local\n12345678",
+                      behind[] = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nHeaderSize =  90\n"
+                                 "ElementDataFile = LOCAL\nabcd12345678",
+                      list[] = "NDims = 3\nDimSize = 2 2 1\nElementType = MET_UCHAR\nHeaderSize = -1\n"
+                               "ElementDataFile = list\n1.raw\n1.raw\n1.raw\n",
+                      colours[] = "NDims = 4\nDimSize = 2 1 1 2\nElementNumberOfChannels = 3\n"
+                                  "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n0123456789ab";
+    seed_file("metaimage", "colons", colons, strlen(colons), NULL, 0, placed);
+    seed_file("metaimage", "behind-header", behind, strlen(behind), NULL, 0, plain);
+    seed_file("metaimage", "list-longer", list, strlen(list), "1234", 4, detached);
+    seed_file("metaimage", "colours", colours, strlen(colours), NULL, 0, described);
+}
+
 static void add_metaimage(void) {
     static const char common[] = "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementSpacing = 1 0.5 2\n"
                                  "Offset = 1 -2 1e3\nTransformMatrix = 1 0 0 0 0 1 0 -1 0\nCenterOfRotation = 0 0 0\n"
@@ -157,6 +209,36 @@ static void add_nifti(int version, int big, int packed, int is_pair) {
     }
 }
 
+/* Analyze, forms of zeros, sizes of 0, one file that says that it is a pair, CIFTI. */
+static void add_nifti_loose(void) {
+    static const char pair[4] = {-1, -1, 2, 0};
+    bytes samples = test_samples(TC_I16, 24, 0);
+    for (int n = 0; n < 4; n++) {
+        nifti_fields f = nifti_plain(n == 3 ? 2 : 1, 4, 16, 4, 3, 2);
+        char name[32];
+        f.dim[0] = 5;
+        f.dim[4] = f.dim[5] = 0;
+        f.sform = f.qform = n == 1;
+        if (n == 1) f.quatern[0] = (double)NAN;
+        if (n == 1)
+            for (int i = 0; i < 4; i++) f.pixdim[i] = 0;
+        f.vox_offset = 0;
+        if (n == 0) f.magic = "";
+        if (n == 2) f.magic = "ni";
+        bytes file = nifti_header_bytes(&f);
+        if (n == 0) memset(file.data + 344, 0, 4);
+        if (n == 3) put_at(&file, 504, 3006, 4, 0);
+        snprintf(name, sizeof name, "loose-%d", n);
+        if (n) bytes_add(&file, samples.data, samples.size);
+        if (n)
+            seed_file("nifti", name, file.data, file.size, NULL, 0, plain);
+        else
+            seed_file("nifti", name, file.data, 348, samples.data, samples.size, pair);
+        bytes_free(&file);
+    }
+    bytes_free(&samples);
+}
+
 /* Headers that ask for a thousand million bytes, of eight packed ones. */
 static void add_bombs(void) {
     bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
@@ -189,6 +271,9 @@ void seeds_images(void) {
     add_nrrd_types();
     add_nrrd_encodings();
     add_nrrd_axes();
+    add_nrrd_loose();
     add_metaimage();
+    add_metaimage_loose();
+    add_nifti_loose();
     for (int n = 0; n < 16; n++) add_nifti(1 + (n & 1), n >> 1 & 1, n >> 2 & 1, n >> 3);
 }
