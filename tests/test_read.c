@@ -304,6 +304,9 @@ static void test_metaimage_headers(void) {
         {"ElementDataFile = LIST\ns001.raw\ns002.raw\ns003.raw\n", "", 3, 0, NULL},
         {"ElementDataFile = LIST 2D\ns001.raw\ns002.raw\ns003.raw\n", "", 3, 0, NULL},
         {"CompressedData = True\nElementDataFile = s%03d.raw 1 3 1\n", "", 3, 1, NULL},
+        {"ElementDataFile = s%03d.raw 1 3\n", "", 3, 0, NULL},
+        {"ElementDataFile = s%03d.raw 1\n", "", 3, 0, NULL},
+        {"ElementDataFile = s%03d.raw\n", "", 3, 0, NULL},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char header[512];

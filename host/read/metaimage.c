@@ -85,6 +85,27 @@ static int parse_list(meta_header *h, const char *key, const char *first_choice,
     return fail(STATUS_INPUT, "%s: %s is '%.60s'; 1 to %d numbers are needed", h->path, key, text, LIST_VALUES);
 }
 
+/* Whether a name has a number in it, as "slice%03d.raw". */
+static int has_number(const char *name) {
+    const char *at = strchr(name, '%');
+    if (!at) return 0;
+    at += 1 + strspn(at + 1, "0123456789");
+    return *at && strchr("diu", *at);
+}
+
+/* A pattern whose numbers may be left out: from 1 on, as many as the last axis has samples. */
+static int parse_pattern(meta_header *h, const char *value) {
+    char whole[HEADER_LINE_BYTES + 64];
+    int name = (int)strcspn(value, " \t");
+    int64_t given[4] = {1};
+    int count = parse_integers(value + name, given, 4);
+    if (count < 0 || count > 1 || h->size.count < h->dimension)
+        return data_names_pattern(&h->from.files, h->path, value, &h->from.axes_per_file);
+    snprintf(whole, sizeof whole, "%.*s %" PRId64 " %.0f 1", name, value, given[0],
+             (double)given[0] + h->size.values[h->dimension - 1] - 1);
+    return data_names_pattern(&h->from.files, h->path, whole, &h->from.axes_per_file);
+}
+
 static int parse_data_file(meta_header *h, header_text *text, const char *value) {
     int64_t axes_per_file = h->dimension - 1;
     h->has_data_file = 1;
@@ -101,7 +122,7 @@ static int parse_data_file(meta_header *h, header_text *text, const char *value)
         h->from.axes_per_file = axes_per_file;
         return data_names_list(&h->from.files, text);
     }
-    if (data_names_is_pattern(value)) return data_names_pattern(&h->from.files, h->path, value, &h->from.axes_per_file);
+    if (data_names_is_pattern(value) || has_number(value)) return parse_pattern(h, value);
     return data_names_add(&h->from.files, h->path, value);
 }
 

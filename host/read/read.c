@@ -32,7 +32,7 @@ const char *volume_formats(void) {
            " (zlib)"
 #endif
 #ifdef HAVE_NIFTI
-           ", NIfTI"
+           ", NIfTI and Analyze 7.5"
 #ifdef HAVE_ZLIB
            " (gzip)"
 #endif
