@@ -272,7 +272,12 @@ static int read_keyword(legacy *r, const char *keyword) {
 }
 
 int vtk_legacy_read(const read_request *request, const mapping *file, dataset *out) {
-    legacy r = {.request = request, .path = request->path, .bytes = file->bytes, .size = file->size, .out = out, .spacing = {1, 1, 1}};
+    legacy r = {.request = request,
+                .path = request->path,
+                .bytes = file->bytes,
+                .size = file->size,
+                .out = out,
+                .spacing = {1, 1, 1}};
     char keyword[LEGACY_WORD];
     int status = dataset_block_add(out, &r.block);
     if (status || (status = read_header(&r))) return status;

@@ -68,7 +68,6 @@ MUTANTS = [
            ("else if (swapped && bytes > 1)", "else if (0)", "byte order: rows are never exchanged", {"sample": True}),
            ("out->offset += index * stride;", "out->offset = index;", "component and frame: their place"),
            ("out->component_stride = stride;", "out->component_stride = 1;", "components side by side: their distance"),
-           ("(values == 1 || l->component_stride == 1) &&", "", "components that lie apart are used in place"),
            ("if (from->size[a] < 1)", "if (from->size[a] < 0)", "sizes of 0 are taken"),
            ("__builtin_mul_overflow(out->count, (uint64_t)from->size[a], &out->count)",
             "(out->count *= (uint64_t)from->size[a], 0)", "sizes that overflow are taken"),
