@@ -34,7 +34,7 @@ QUICK_TESTS = ["test_read_lenient", "test_read_hostile", "test_vtk_xml", "test_v
                "test_write_vtk", "test_misuse", "test_order", "test_api"]
 SANITIZED = "address,undefined"
 LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1:use_sigaltstack=0",
-         "LSAN_OPTIONS": f"suppressions={Path(__file__).resolve().parent / 'leaks.txt'}:print_suppressions=0",
+         "LSAN_OPTIONS": f"suppressions='{Path(__file__).resolve().parent / 'leaks.txt'}':print_suppressions=0",
          "UBSAN_OPTIONS": "print_stacktrace=1"}  # use_sigaltstack: PoCL's threads have stacks of their own for signals
 FAULTS = r"(?:AddressSanitizer|LeakSanitizer|ThreadSanitizer)|runtime error:"
 
