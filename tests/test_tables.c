@@ -74,7 +74,7 @@ static void test_split_is_the_documented_one(void) {
     static const unsigned central[4] = {0, 3, 5, 6}; /* x + 2 y + 4 z of 000, 110, 101, 011 */
     for (unsigned parity = 0; parity < 2; parity++)
         for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++) {
-            unsigned corners[4], should = 0, is = 0, mirror = 0;
+            unsigned corners[4] = {0}, should = 0, is = 0, mirror = 0;
             split_tetrahedron(parity, t, corners);
             for (unsigned n = 0; n < 4; n++) {
                 should |= 1u << corners[n];

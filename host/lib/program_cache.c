@@ -21,7 +21,7 @@ typedef struct head {
     uint64_t checksum; /* of key and binary */
 } head;
 
-static const char magic[16] = "tetracubes prg 1";
+static const char magic[] = "tetracubes prg 1"; /* without its end */
 
 static uint64_t hash_of(const char *bytes, size_t count) {
     uint64_t hash = 0xcbf29ce484222325u;
@@ -77,7 +77,7 @@ static const unsigned char *binary_find(cache_text file, cache_text key, size_t 
     memcpy(&h, file.bytes, sizeof h);
     size_t rest = file.count - sizeof h;
     const char *content = file.bytes + sizeof h;
-    if (memcmp(h.magic, magic, sizeof magic) || h.key_bytes != key.count || h.key_bytes > rest ||
+    if (memcmp(h.magic, magic, sizeof h.magic) || h.key_bytes != key.count || h.key_bytes > rest ||
         h.binary_bytes != rest - h.key_bytes || memcmp(content, key.bytes, key.count) ||
         h.checksum != hash_of(content, rest))
         return NULL;
@@ -157,7 +157,7 @@ static cache_text file_make(cl_program built, place at, cache_text key) {
         free(file.bytes);
         return (cache_text){0};
     }
-    memcpy(h.magic, magic, sizeof magic);
+    memcpy(h.magic, magic, sizeof h.magic);
     h.checksum = hash_of(content, file.count - sizeof h);
     memcpy(file.bytes, &h, sizeof h);
     return file;
