@@ -1,7 +1,7 @@
 /*
  * warm_cache.c - builds the kernels once, so that tests find them in the cache of the OpenCL implementation
  *
- * Those that test_random, test_device, test_api, test_curvilinear, test_hybrid and test_complex need; a kernel that is
+ * Those that test_random, test_device, test_api, test_curvilinear, test_hybrid, test_complex and test_trial need; a kernel that is
  * not among them is built by the test itself.
  *
  * Usage: warm_cache PART PARTS: so that processes with a cache each can share the work, by kernels 1: programs that
@@ -29,6 +29,7 @@ static const struct {
     {TC_F64, 0, 0, {15, PLAIN | WITH_BOTH}, 0},
     {TC_F32, 32, 0, {WITH_NORMALS | WITH_BOTH, WITH_BOTH}, 0},
     {TC_U8, 64, 0, {PLAIN, 0}, 0},
+    {TC_U8, 32, 0, {PLAIN, 0}, 0},
     {TC_F32, 256, 0, {WITH_NORMALS | WITH_BOTH, 0}, 0},
     {TC_F32, 0, 2, {WITH_NORMALS, 0}, 0},
     {TC_F32, 0, 3, {WITH_NORMALS, 0}, 0},

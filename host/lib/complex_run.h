@@ -75,7 +75,7 @@ typedef struct complex_run {
     tc_context *context;
     complex_buffers *work;
     const program *program; /* of the kernels */
-    slab s; /* the isovalue's part */
+    slab s;                 /* the isovalue's part */
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool too_large;  /* the surface of a complex that is not cut does not fit */

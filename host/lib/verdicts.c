@@ -30,11 +30,13 @@ static void key_write(const tc_context *context, unsigned kind, char key[KEY_BYT
     snprintf(device, sizeof device, "%s, %s, %s, %s, %s, driver %s", d->name, vendor, d->platform, version, d->version,
              d->driver);
     line_end(device);
-    snprintf(key, KEY_BYTES,
-             "tetracubes verdict 1\n%s\nkernels %u of tetracubes %s, %016" PRIx64
-             ": work-items %u, division %d, fp64 %d, in place %d\n",
-             device, kind, tc_version(), kernel_sources_hash(), o->work_items, o->division, d->has_fp64,
-             context->in_place);
+    const int length = snprintf(key, KEY_BYTES, "tetracubes verdict 1\n%s\n", device), room = KEY_BYTES - length;
+    if (kind == TRIAL_KINDS)
+        snprintf(key + length, (size_t)room, "opened by tetracubes %s\n", tc_version());
+    else
+        snprintf(key + length, (size_t)room,
+                 "kernels %u of tetracubes %s, %016" PRIx64 ": work-items %u, division %d, fp64 %d, in place %d\n",
+                 kind, tc_version(), kernel_sources_hash(), o->work_items, o->division, d->has_fp64, context->in_place);
 }
 
 static void name_write(const char *key, char name[32]) {
@@ -52,7 +54,7 @@ void verdict_read(const tc_context *context, unsigned kind, kept_verdict *out) {
     name_write(key, name);
     if (!cache_read(name, &file)) return;
     const size_t length = strlen(key);
-    char *line = file.bytes + length, *end = line;
+    char *line = file.bytes + length, *end;
     if (file.count > length && !memcmp(file.bytes, key, length) && (end = memchr(line, '\n', file.count - length)) &&
         end + 1 == file.bytes + file.count) {
         *end = 0;

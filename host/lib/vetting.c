@@ -17,10 +17,10 @@ enum { OPENING = TRIAL_KINDS }; /* the number of the device itself, beside those
 
 /* ----------------------------------------------------------------------------------------------------------- driver */
 
-/* Nobody has seen it fail with the text that the context builds. */
-static bool driver_is_known(const tc_context *context) {
-    const uint32_t items = context->options.work_items; /* 0: not chosen yet */
-    return text_tried(&context->info) && (!items || text_for(items) == text_rule_of(&context->info)->text);
+/* Nobody has seen it fail, with the text that the context builds, or when it is opened. */
+static bool driver_is_known(const tc_context *context, unsigned kind) {
+    const bool usual = text_for(context->options.work_items) == text_rule_of(&context->info)->text;
+    return text_tried(&context->info) && (usual || kind == OPENING);
 }
 
 /* PoCL's devices on the host's processor run ld: without it they are not what they are known for. */
@@ -43,8 +43,9 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
     const tc_context_options *o = &context->options;
     int platform = context->info.platform_index, index = context->info.device_index;
     if (platform < 0 && !device_find(context->device, &platform, &index)) return false;
-    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, o->work_items, o->division,
-             !context->in_place, context->info.name);
+    const bool opens = kind == OPENING;
+    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0 : o->work_items,
+             opens ? 0 : o->division, !opens && !context->in_place, context->info.name);
     return true;
 }
 
@@ -63,7 +64,7 @@ static void trial_ask(const tc_context *context, unsigned kind, kept_verdict *ou
 
 static void verdict_find(const tc_context *context, unsigned kind, kept_verdict *out) {
     *out = (kept_verdict){TC_VERDICT_GOOD, ""};
-    if (driver_is_known(context) && driver_finds_linker(&context->info)) return;
+    if (driver_is_known(context, kind) && driver_finds_linker(&context->info)) return;
     verdict_read(context, kind, out);
     if (out->verdict == TC_VERDICT_NONE) trial_ask(context, kind, out);
 }
@@ -119,7 +120,7 @@ static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged
         verdict_find(context, number, &v);
         if (v.verdict == TC_VERDICT_GOOD || v.verdict == TC_VERDICT_NONE) {
             vetted_note(context, kind);
-        } else if (context->other_items && driver_finds_linker(&context->info)) {
+        } else if (v.verdict != TC_VERDICT_CANCELLED && context->other_items && driver_finds_linker(&context->info)) {
             text_exchange(context);
             *exchanged = true;
         } else {

@@ -189,7 +189,7 @@ static void stop(child *c, child_end_kind kind) {
     int status;
     kill(-c->process, SIGKILL);
     kill(c->process, SIGKILL); /* before it has become a group */
-    while (waitpid(c->process, &status, 0) < 0 && errno == EINTR) continue;
+    while (waitpid(c->process, &status, 0) < 0 && errno == EINTR) status = 0;
     c->end->kind = kind;
 }
 

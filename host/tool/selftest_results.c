@@ -11,8 +11,10 @@ void results_add(selftest_results *all, int group, const char *name, trial_end e
     if (all->count == all->room) {
         size_t room = all->room ? 2 * all->room : 64;
         trial_result *grown = realloc(all->results, room * sizeof *grown);
-        if (!grown) all->out_of_memory = 1;
-        if (!grown) return;
+        if (!grown) {
+            all->out_of_memory = 1;
+            return;
+        }
         all->results = grown;
         all->room = room;
     }

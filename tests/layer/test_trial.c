@@ -163,6 +163,7 @@ static void test_within_a_call(void) {
     for (int n = 0; n < SAMPLES; n++) values[n] = n == SAMPLES / 2 ? NAN : (float)samples[n];
     volume.type = TC_F32, volume.samples = values, volume.has_nodata = 0;
     how.isovalue = 127.5;
+    how.normals = 1;
     EXPECT(!tc_grid_create(contexts[0], &volume, &grid) && !tc_count(grid, &how, &counts), "%s", tc_message());
     EXPECT(asked == 3 && !tc_context_tuning(contexts[0], &tuning) && tuning.work_items > 1,
            "asked %d times, work-items %u", asked, tuning.work_items);
