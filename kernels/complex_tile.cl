@@ -75,7 +75,7 @@ inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missi
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
-        uint vertices = 0, triangles = 0; /* or what has their places */
+        uint vertices = 0, triangles = 0; /* of clusters: active tetrahedra for vertices */
         k.shared[1] = number;
         done = (look || k.s->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
                tile_look_back(k, number, TILE_TRIANGLES, &triangles);

@@ -40,5 +40,5 @@ inline_always uint lanes_nonzero(lanes x) {
 /* The lanes moved down by one, then row `last`. */
 inline_always lanes lanes_up(lanes x, ulong last) { return ulongs_joined(x, last); }
 
-/* All axes side by side. */
-#define for_axis(axis) _Pragma("unroll") for (uint axis = 0; axis < 3; axis++)
+/* Axes that normals are made of at once. */
+#define AXES_AT_ONCE 3

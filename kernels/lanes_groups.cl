@@ -17,5 +17,6 @@ typedef ulong lanes;
 #define lanes_any(x)            (x)
 #define lanes_sum(x)            (x)
 
-/* Axis after axis, so that what one needs is not kept beside what another does. */
-#define for_axis(axis) _Pragma("unroll 1") for (uint axis = 0; axis < 3; axis++)
+/* Axes that normals are made of at once: one after the other, so that what one needs is not kept beside what another
+ * does. */
+#define AXES_AT_ONCE 1

@@ -152,7 +152,8 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
 #if GRID
     REAL j[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 #endif
-    for_axis(axis) { /* each is entered last; after three all have their places */
+#pragma unroll AXES_AT_ONCE
+    for (uint axis = 0; axis < 3; axis++) { /* each is entered last; after three all have their places */
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
         REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
         g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);

@@ -4,7 +4,8 @@
     figures.py [--results FOLDER] [--readme FILE]
 
 Each file PART.json has `part`, `date`, `versions`, `seconds` and `figures`, a list of {`what`, `value`}. The table goes
-between README's trust:begin and trust:end comments. tests/test_readme.py compares it with the results.
+between README's trust:begin and trust:end comments; what kernels need on GPUs, from offline.json, between offline:begin
+and offline:end. tests/test_readme.py compares both with the results.
 """
 
 import argparse
@@ -12,7 +13,6 @@ import json
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- trust:begin -->", "<!-- trust:end -->"
 
 
 def shown(value):
@@ -43,9 +43,26 @@ def table(results):
     return "\n".join(lines + ["", f"With {versions(results)}."])
 
 
-def replaced(text, inner):
-    before, rest = text.split(BEGIN)
-    return f"{before}{BEGIN}\n{inner}\n{END}{rest.split(END)[1]}"
+def needs(offline):
+    """What each kernel needs on each GPU, in the program of all that needs most."""
+    if not offline:
+        return ""
+    targets = list(offline["most"])
+    lines = ["| kernel | " + " | ".join(f"{target}, {offline['most'][target]}" for target in targets) + " |",
+             "| --- |" + " --: |" * len(targets)]
+    for kernel, of in offline["worst"].items():
+        cells = []
+        for target in targets:
+            need = dict(zip(offline["fields"], of[target]))
+            cells.append(f"{need['registers']} / {need['local']:,} / **{need['resident']}**")
+        lines.append(f"| {kernel} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def replaced(text, name, inner):
+    begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+    before, rest = text.split(begin)
+    return f"{before}{begin}\n{inner}\n{end}{rest.split(end)[1]}"
 
 
 def main():
@@ -54,7 +71,9 @@ def main():
     parser.add_argument("--readme", type=Path, default=ROOT / "README.md", metavar="FILE")
     options = parser.parse_args()
     results = [json.loads(path.read_text()) for path in sorted(options.results.glob("*.json"))]
-    options.readme.write_text(replaced(options.readme.read_text(), table(results)))
+    offline = next((result for result in results if result["part"] == "offline"), None)
+    text = replaced(options.readme.read_text(), "trust", table(results))
+    options.readme.write_text(replaced(text, "offline", needs(offline)))
 
 
 if __name__ == "__main__":

@@ -53,8 +53,8 @@ typedef struct owned_edge {
 
 owned_edge edge_between(unsigned corner_a, unsigned corner_b);
 
-/* The 18 edges of a cube in the order in which the emit kernel numbers them: those owned by samples at x (rows (y, z),
- * (y + 1, z), (y, z + 1), (y + 1, z + 1)), then those owned by samples at x + 1. */
+/* The 18 edges of a cube: those owned by samples at x (rows (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1)), then those
+ * owned by samples at x + 1. */
 extern const owned_edge cube_edges[CUBE_EDGES];
 
 /* The place there of the edge between two corners. */

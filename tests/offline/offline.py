@@ -13,6 +13,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -45,12 +46,18 @@ PLANTED = [
 ]
 
 
+# Registers of kernel 2 on GPUs of NVIDIA.
+EMIT_REGISTERS = 96
+
+
 def rules_broken(target, kernel, need):
     """What no kernel may have, by any compiler."""
     if need.stack:
         yield f"{need.stack} bytes of stack"
     if need.spills:
         yield f"{need.spills} spilled"
+    if kernel == "emit" and target.vendor == "nvidia" and need.registers > EMIT_REGISTERS:
+        yield f"{need.registers} registers"
 
 
 def rises(need, known):
@@ -150,7 +157,7 @@ def targets_make(vendors, tools):
 def worst_of(needs, kernel, arch):
     """Of all programs' kernels of this name."""
     found = [kernels[kernel][arch] for kernels in needs.values() if kernel in kernels and arch in kernels[kernel]]
-    return [max(values) for values in list(zip(*found))[:4]] + [min(need[4] for need in found)]
+    return [max(values) for values in list(zip(*found))[:-1]] + [min(need.resident for need in found)]
 
 
 def table_write(path, judge, planted, seconds):
@@ -165,20 +172,25 @@ def table_write(path, judge, planted, seconds):
     figures = [("programs compiled for GPUs of NVIDIA and AMD and to SPIR-V, without a device", judge.compiled),
                ("kernels of these on GPUs", sum(len(of) for kernels in programs.values() for of in kernels.values())),
                ("bytes of stack, at most", max(need[1] for need in all_worst)),
-               ("spilled registers, at most", max(need[2] for need in all_worst)),
+               ("registers spilled to it, at most", max(need[2] for need in all_worst)),
+               ("scalar registers of a wave kept in vector registers, AMD, at most", max(need[3] for need in all_worst)),
                ("registers of emit on NVIDIA's, at most", max(worst["emit"][arch][0] for arch in arches
                                                               if KINDS[arch].vendor == "nvidia")),
                ("fused, approximate or flushing operations", 0), ("planted faults found", planted)]
     head = {"part": "offline", "date": time.strftime("%Y-%m-%d"), "versions": versions, "seconds": round(seconds),
             "figures": [{"what": what, "value": value} for what, value in figures],
-            "fields": list(Need._fields), "worst": worst}
+            "fields": list(Need._fields), "most": {target.arch: f"{target.most} {target.resident_name}"
+                                                   for target in judge.targets if target.most}, "worst": worst}
     lines = [f'  {json.dumps(name)}: {json.dumps(programs[name])}' for name in sorted(programs)]
-    text = json.dumps(head, indent=1)[:-2] + ',\n "programs": {\n' + ",\n".join(lines) + "\n }\n}\n"
+    shown = re.sub(r"\[\s+((?:\d+,\s+)*\d+)\s+\]", lambda found: f"[{' '.join(found[1].split())}]",
+                   json.dumps(head, indent=1))  # numbers of a kernel on one line
+    text = shown[:-2] + ',\n "programs": {\n' + ",\n".join(lines) + "\n }\n}\n"
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
 
 
 def needs_show(judge):
+    print("\n".join(failure for failure in judge.failures if "does not compile" in failure))
     print("program, kernel, target:", ", ".join(Need._fields))
     for name, kernels in judge.needs.items():
         for kernel, targets in kernels.items():

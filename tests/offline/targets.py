@@ -17,11 +17,13 @@ from typing import NamedTuple
 
 
 class Need(NamedTuple):
-    """What a work-item of a kernel needs: registers, bytes on a stack, registers or bytes spilled; bytes of local
-    memory of a group; warps or waves that are resident at once."""
+    """What a work-item of a kernel needs: registers; bytes on a stack; of these, bytes or registers that were spilled to
+    it; AMD: a wave's scalar registers that did not fit and are kept in vector registers, which are counted there; bytes
+    of local memory of a group; warps or waves that are resident at once."""
     registers: int
     stack: int
     spills: int
+    scalars: int
     local: int
     resident: int
 
@@ -96,7 +98,7 @@ def text_findings(text, patterns):
 
 
 class Nvidia:
-    vendor, device, registers_name, resident_name = "nvidia", "nvidia", "registers", "warps"
+    vendor, device, resident_name = "nvidia", "nvidia", "warps"
 
     # Of a multiprocessor: warps, groups, bytes of shared memory.
     LIMITS = {"sm_80": (64, 32, 164 << 10), "sm_90": (64, 32, 228 << 10)}
@@ -145,7 +147,7 @@ class Nvidia:
                 r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads", part).groups())
             registers = int(re.search(r"Used (\d+) registers", part)[1])
             local = int((re.search(r"(\d+) bytes smem", part) or [0, 0])[1])
-            needs[re.match(r"'(\w+)'", part)[1]] = Need(registers, stack, stores + loads, local,
+            needs[re.match(r"'(\w+)'", part)[1]] = Need(registers, stack, stores + loads, 0, local,
                                                        self.resident(registers, local, program.work_items))
         return needs, findings
 
@@ -158,7 +160,7 @@ IR_FORBIDDEN = [(r"call .*@llvm\.(?:fma|fmuladd)\.", "fused multiply-add"),
 
 
 class Amd:
-    vendor, device, registers_name, resident_name = "amd", "amd", "vector registers", "waves"
+    vendor, device, resident_name = "amd", "amd", "waves"
 
     # Work-items of a wave; of a SIMD waves and vector registers, and the unit that these are given in; of a unit of
     # computation SIMDs, groups with barriers, bytes of local memory.
@@ -200,13 +202,13 @@ class Amd:
                      for key, number in re.findall(r"remark: <unknown>:0:0: +([A-Z][\w ]*?)(?: \[[^]]+\])?: (\d+)", part)}
             registers = value["VGPRs"] + value.get("AGPRs", 0)
             local = value["LDS Size"]
-            needs[part.split()[0]] = Need(registers, value["ScratchSize"], value["SGPRs Spill"] + value["VGPRs Spill"],
+            needs[part.split()[0]] = Need(registers, value["ScratchSize"], value["VGPRs Spill"], value["SGPRs Spill"],
                                           local, self.resident(registers, local, program.work_items))
         return needs, findings
 
 
 class SpirV:
-    vendor, device, registers_name, resident_name = "spirv", "plain", "", ""
+    vendor, device, resident_name = "spirv", "plain", ""
 
     CAPABILITIES = {"Addresses", "Linkage", "Kernel", "Vector16", "Int64", "Int16", "Int8"}
 
