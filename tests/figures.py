@@ -4,8 +4,9 @@
     figures.py [--results FOLDER] [--readme FILE]
 
 Each file PART.json has `part`, `date`, `versions`, `seconds` and `figures`, a list of {`what`, `value`}. The table goes
-between README's trust:begin and trust:end comments; what kernels need on GPUs, from offline.json, between offline:begin
-and offline:end. tests/test_readme.py compares both with the results.
+between README's trust:begin and trust:end comments, behind it one of `drivers`, where a part has such a list (those of
+tests/systems/drivers.py, each with its system); what kernels need on GPUs, from offline.json, between offline:begin and
+offline:end. tests/test_readme.py compares both with the results.
 """
 
 import argparse
@@ -37,10 +38,21 @@ def versions(results):
                      for name in sorted(texts, key=str.lower))
 
 
+def drivers(results):
+    """A line for every driver and text of the kernels; none where nothing has been tried."""
+    found = [line for result in results for line in result.get("drivers", [])]
+    if not found:
+        return []
+    lines = ["", "Every driver, in each text of the kernels that it takes; the hash is that of all cases' hashes:", "",
+             "| driver | version | system | text | cases | hash |", "| --- | --- | --- | --- | --: | --- |"]
+    return lines + [f"| {line['driver']} | {line['version']} | {line['system']} | {line['text']} | {line['cases']} | "
+                    f"{line['hash'] if line['outcome'] == 'same bytes' else 'failed'} |" for line in found]
+
+
 def table(results):
     lines = ["| part | tried and found | on |", "| --- | --- | --- |"]
     lines += [rows(result) for result in results]
-    return "\n".join(lines + ["", f"With {versions(results)}."])
+    return "\n".join(lines + ["", f"With {versions(results)}."] + drivers(results))
 
 
 def needs(offline):

@@ -46,7 +46,7 @@ def chosen():
 def tool(*arguments, env=None, stdout=subprocess.PIPE, cwd=None):
     environment = dict(os.environ, **(env or {}))
     return subprocess.run([TOOL, *map(str, arguments)], stdout=stdout, stderr=subprocess.PIPE, text=True,
-                          env=environment, cwd=cwd, timeout=300)
+                          env=environment, cwd=cwd, timeout=1000)
 
 
 class Case(unittest.TestCase):
@@ -571,7 +571,7 @@ class Interrupts(Case):
             def limit():
                 resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
             result = subprocess.run([TOOL, *command], cwd=self.folder.name, stderr=subprocess.PIPE, text=True,
-                                    stdout=subprocess.DEVNULL, preexec_fn=limit, timeout=300)
+                                    stdout=subprocess.DEVNULL, preexec_fn=limit, timeout=1000)
             self.assertEqual(result.returncode, 1, result)
             self.assertRegex(result.stderr, "^tetracubes: big.*too large.*ulimit -f")
             self.assertEqual(self.files(), ["a.nrrd"])

@@ -74,7 +74,7 @@ def test_promises(readme, build):
     if re.search(r"^BUILD_SHARED_LIBS:\w+=(OFF|0|NO|FALSE)$", cache, re.MULTILINE | re.IGNORECASE):
         known.add("test_host_memory")  # replaces the malloc of a shared library
     promises = section(readme, "| promise |", "<!-- trust:begin -->")
-    named = re.findall(r"`((?:test|fuzz|mutants|offline)_\w+|oclgrind|memcheck)`", promises)
+    named = re.findall(r"`((?:test|fuzz|mutants|offline)_\w+|oclgrind|memcheck|kernel_warnings)`", promises)
     expect(len(named) > 20, f"README.md: only {len(named)} tests named")
     expect(set(named) <= known, f"README.md: no tests of ctest: {sorted(set(named) - known)}")
 

@@ -429,7 +429,7 @@ class Streams(DataCase):
             return file.read()
 
     def run_split(self, *more, **how):
-        return subprocess.run([*self.words, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=100, **how)
+        return subprocess.run([*self.words, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=400, **how)
 
     def test_mesh_on_standard_output(self):
         for ending in ("stl", "ply", "vtp", "obj"):
@@ -447,7 +447,7 @@ class Streams(DataCase):
         good = self.expected("ply")
         with open(self.path("out.ply"), "wb") as out:
             done = subprocess.run([*self.words, "-o", self.path("out.ply")], stdout=out, stderr=subprocess.PIPE,
-                                  timeout=100)
+                                  timeout=400)
         with open(self.path("out.ply"), "rb") as file:
             self.assertEqual((done.returncode, file.read()), (0, good))
 
@@ -455,7 +455,7 @@ class Streams(DataCase):
         good = self.expected("obj")
         for name in ("-", "/dev/stdout", "/dev/stderr"):
             done = subprocess.run([*self.words, "-o", name, "--format", "obj", "--nodata", "77.5"],
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=100)
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=400)
             self.assertEqual((done.returncode, done.stdout), (0, good))
 
     def test_mesh_on_standard_error(self):
@@ -484,7 +484,7 @@ class Streams(DataCase):
             with open(name, "rb") as file:
                 good = file.read()
             done = subprocess.run([test_cli.TOOL, *words, "-o", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  timeout=100)
+                                  timeout=400)
             self.assertEqual((done.returncode, done.stdout), (0, good))
             self.assertIn(b"-:", done.stderr)
 
@@ -504,7 +504,7 @@ class Homes(DataCase):
         drop = None if os.getuid() else lambda: os.setuid(self.NOBODY)
         try:
             return subprocess.run([test_cli.TOOL, *words], env=dict(environment, **variables), stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE, text=True, preexec_fn=drop, timeout=300)
+                                  stderr=subprocess.PIPE, text=True, preexec_fn=drop, timeout=1000)
         except PermissionError:
             self.skipTest("nobody may not run the tool here")
 

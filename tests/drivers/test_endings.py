@@ -220,7 +220,7 @@ class Places(EndCase):
         for arguments, name in self.outputs():
             try:
                 result = subprocess.run([test_cli.TOOL, *arguments, os.path.join(locked, name)], stderr=subprocess.PIPE,
-                                        text=True, preexec_fn=drop, timeout=300)
+                                        text=True, preexec_fn=drop, timeout=1000)
             except PermissionError:
                 self.skipTest("nobody may not run the tool here")
             self.assertEqual(result.returncode, 1, result)
@@ -249,7 +249,7 @@ class Places(EndCase):
                 reader, writer = os.pipe()
                 os.close(reader)
                 result = subprocess.run([test_cli.TOOL, *arguments], stdout=writer, stderr=subprocess.PIPE, text=True,
-                                        restore_signals=False, timeout=300,
+                                        restore_signals=False, timeout=1000,
                                         preexec_fn=lambda: signal.signal(signal.SIGPIPE, handling))
                 os.close(writer)
                 if os.path.islink(self.path("pipe.raw")):

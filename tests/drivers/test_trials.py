@@ -204,7 +204,7 @@ class Sound(TrialCase):
     def test_children_ignored(self):
         """A shell may have set SIGCHLD to be ignored: then nobody learns how a child ends."""
         result = subprocess.run([test_cli.TOOL, *self.arguments], env={**os.environ, **self.layer("lacks fame")},
-                                preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN), timeout=300,
+                                preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN), timeout=1000,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, b""))
 
@@ -232,7 +232,7 @@ class Interrupted(TrialCase):
         for number in (signal.SIGINT, signal.SIGTERM):
             process = self.start()
             process.send_signal(number)
-            self.assertIn("cancelled", process.communicate(timeout=60)[1])
+            self.assertIn("cancelled", process.communicate(timeout=240)[1])
             self.assertEqual(process.returncode, 1)
             self.assertTrue(self.gone(), "the trial goes on")
             self.assertFalse(os.path.exists(self.path("a.ply")))
