@@ -15,8 +15,8 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
-/* Where the processor's registers are shorter than a vector, compilers warn that others, for longer ones, would pass it to
- * functions in another way: but all functions are inlined. */
+/* Where the processor's registers are shorter than a vector, compilers warn that others, for longer ones, would pass it
+ * to functions in another way: but all functions are inlined. */
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
 #endif

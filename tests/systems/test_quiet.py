@@ -29,7 +29,7 @@ def quiet_check(tool, folder, name, settings):
 
 def main():
     tool, preloaded = sys.argv[1], sys.argv[2:]
-    listed = subprocess.run([tool, "devices"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    listed = subprocess.run([tool, "devices"], stdout=subprocess.PIPE, text=True, check=False)
     if "Portable Computing Language" not in listed.stdout:
         print("skipped: no PoCL")
         sys.exit(77)
