@@ -102,11 +102,12 @@ def digest(hashes):
     return hashlib.sha256("\n".join(f"{case} {hashes[case]}" for case in sorted(hashes)).encode()).hexdigest()[:16]
 
 
-def text_try(program, name, library, text, cases, cache):
-    """One line of the table."""
+def text_try(program, name, library, text, cases):
+    """One line of the table. Caches are its own: they know nothing of the environment."""
     what, work_items, environment = text
     start = time.time()
-    status, said = cases_run(program, library, cases, work_items, environment, cache)
+    with tempfile.TemporaryDirectory() as cache:
+        status, said = cases_run(program, library, cases, work_items, environment, cache)
     hashes = dict(re.findall(r"^case (.*): ([0-9a-f]{16})$", said, re.M))
     device = re.search(r"^device (.*), driver (.*)$", said, re.M)
     launch = re.search(r"^launched with (\d+) work-items as (\w+)", said, re.M)
@@ -141,14 +142,13 @@ def main():
     options = parser.parse_args()
     cases = QUICK if options.cases == "quick" else [""]
     lines = []
-    with tempfile.TemporaryDirectory() as cache:
-        for name, library, texts in drivers_list(options.folder, options.rusticl):
-            if not re.search(options.only, name):
-                continue
-            if not library:
-                print(f"{name}: not installed")
-                continue
-            lines += [text_try(options.program, name, library, text, cases, cache) for text in texts]
+    for name, library, texts in drivers_list(options.folder, options.rusticl):
+        if not re.search(options.only, name):
+            continue
+        if not library:
+            print(f"{name}: not installed")
+            continue
+        lines += [text_try(options.program, name, library, text, cases) for text in texts]
     wrong = list(differences(lines)) + [f"{line['driver']}, {line['text']}: {line['outcome']}" for line in lines
                                         if line["outcome"] != "same bytes"]
     if options.out:
