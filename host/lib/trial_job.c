@@ -37,6 +37,11 @@ static tc_status job_do(const job *j, tc_context *context) {
     return j->kind == TRIAL_KINDS ? TC_OK : trial_of_kind(context, kind_of_number(j->kind));
 }
 
+/* Programs that have not passed are not put into the cache; PoCL would compile for that what has not run yet. */
+static void programs_forget(tc_context *context) {
+    for (program *p = context ? context->programs : NULL; p; p = p->next) p->cached = true;
+}
+
 tc_status tc_trial_run(const char *text, tc_progress progress, void *progress_user) {
     FLOAT_ENVIRONMENT_DEFAULT;
     job j;
@@ -46,6 +51,7 @@ tc_status tc_trial_run(const char *text, tc_progress progress, void *progress_us
     j.options.progress_user = progress_user;
     tc_status status = context_create_for_trial(&j.options, &context);
     if (!status) status = job_do(&j, context);
+    if (status) programs_forget(context);
     tc_context_destroy(context);
     return status;
 }

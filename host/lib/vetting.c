@@ -49,7 +49,8 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
     return true;
 }
 
-/* A verdict that the next run may not find again is not kept. */
+/* A verdict that the next run may not find again is not kept: nor one without a linker, as a good one rests then on
+ * what the cache has. */
 static void trial_ask(const tc_context *context, unsigned kind, kept_verdict *out) {
     char job[256];
     *out = (kept_verdict){TC_VERDICT_NONE, ""};
@@ -59,7 +60,7 @@ static void trial_ask(const tc_context *context, unsigned kind, kept_verdict *ou
     float_environment_resume(lent);
     if (out->verdict < TC_VERDICT_NONE || out->verdict > TC_VERDICT_CANCELLED) out->verdict = TC_VERDICT_NONE;
     if (out->verdict == TC_VERDICT_NONE || out->verdict >= TC_VERDICT_STOPPED) return;
-    if (out->verdict == TC_VERDICT_GOOD || driver_finds_linker(&context->info)) verdict_write(context, kind, out);
+    if (driver_finds_linker(&context->info)) verdict_write(context, kind, out);
 }
 
 static void verdict_find(const tc_context *context, unsigned kind, kept_verdict *out) {
@@ -90,8 +91,7 @@ static tc_status verdict_fail(const tc_context *context, unsigned kind, const ke
         driver_finds_linker(d) ? "" : ". It links kernels with ld, which no folder of PATH has: set PATH", kept_in);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- texts
- */
+/* ------------------------------------------------------------------------------------------------------------ texts */
 
 /* From here on nothing of the text before is left. */
 static void text_exchange(tc_context *context) {

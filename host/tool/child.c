@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -88,8 +89,7 @@ static int lift(int file) {
 }
 
 static int spawn(char *const arguments[], int report, int chatter, pid_t *process) {
-    char path[4096];
-    char *all[ARGUMENTS_MOST + 2] = {"tetracubes"};
+    char path[PATH_MAX], *all[ARGUMENTS_MOST + 2] = {"tetracubes"};
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_t files;
     for (int n = 0; n < ARGUMENTS_MOST && arguments[n]; n++) all[n + 1] = arguments[n];
