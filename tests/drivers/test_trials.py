@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_trials.py TOOL LAYER - drivers that crash, hang, refuse or compute wrongly, found out in a process of their own
+"""test_trials.py TOOL LAYER [long] - drivers that crash, hang, refuse or compute wrongly, found out in a process of their own
 
 The layer (tests/layer) gives PoCL the version of a driver that nobody knows, and makes it abort, hang, end the process,
 fail or compute wrongly, when it opens the device, builds kernels, runs them, or when the process ends. Whatever it
@@ -19,6 +19,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import test_cli  # noqa: E402
 
 LAYER = None
+FIGURES = {"planted": 0, "told": 0, "reference": 0}
 COMMAND = "--trial-of-a-driver"
 NO_TIME = {"TETRACUBES_TRIAL_SECONDS": "0.001"}
 ALONE, GROUPS = "-DWORK_ITEMS=1", "-DWORK_ITEMS=32"
@@ -90,10 +91,13 @@ class TrialCase(test_cli.Case):
     def found_out(self, command, says, **more):
         """First run, second run without time for a trial, --engine auto."""
         env = self.layer(command, **more)
+        FIGURES["planted"] += 1
         self.fails(env, says)
+        FIGURES["told"] += 1
         kept = self.verdicts()
         self.fails({**env, **NO_TIME}, says)
         self.falls_back({**env, **NO_TIME})
+        FIGURES["reference"] += 1
         self.assertEqual(self.verdicts(), kept)
         for path in kept:
             os.unlink(path)
@@ -244,6 +248,25 @@ class Interrupted(TrialCase):
         self.assertTrue(self.gone(), "the trial outlives what started it")
 
 
+def write_figures(seconds):
+    folder = os.environ.get("TETRACUBES_RESULTS")
+    if not folder or "long" not in sys.argv[3:]:
+        return
+    devices = json.loads(test_cli.tool("devices", "--json", env={"OPENCL_LAYERS": ""}).stdout)["devices"]
+    names = {"planted": "drivers planted that crash, hang, refuse or compute wrongly",
+             "told": "of these ended in a sentence", "reference": "of these done by the reference, --engine auto"}
+    with open(os.path.join(folder, "trials.json"), "w", encoding="utf-8") as file:
+        json.dump({"part": "trials", "date": time.strftime("%Y-%m-%d"),
+                   "versions": {device["platform"]: device["driver"] for device in devices},
+                   "seconds": round(seconds),
+                   "figures": [{"what": names[key], "value": FIGURES[key]} for key in names]}, file, indent=1)
+        file.write("\n")
+
+
 if __name__ == "__main__":
     test_cli.TOOL, LAYER = (os.path.abspath(path) for path in sys.argv[1:3])
-    unittest.main(argv=sys.argv[:1] + test_cli.chosen())
+    begin = time.monotonic()
+    result = unittest.main(argv=sys.argv[:1] + test_cli.chosen(), exit=False).result
+    if result.wasSuccessful():
+        write_figures(time.monotonic() - begin)
+    sys.exit(not result.wasSuccessful())
