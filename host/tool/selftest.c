@@ -152,7 +152,7 @@ static json_t *group_json(const selftest_results *all, int group) {
     for (size_t n = 0; n < all->count; n++) ms += all->results[n].group == group ? all->results[n].ms : 0;
     return json_pack("{s:s, s:i, s:i, s:s, s:i, s:i, s:o}", "name", group_name(group), "trials", v.trial_count,
                      "failed", v.failed_count, "message", text, "crashed", v.crashed_count, "skipped", v.skipped_count,
-                     "seconds", report_real(1e-3 * round(ms)));
+                     "seconds", report_real(round(ms) / 1000));
 }
 
 /* With the trial of its opening, as the driver may end this process too. */

@@ -158,8 +158,8 @@ static const launch chained[] = {
 static const launch divided[] = {{.division = 1}, {.division = 2}, {.division = 3}};
 
 static const launch tight[] = {
-    {.max_memory_bytes = 8u << 20},
     {.max_memory_bytes = 4u << 20},
+    {.max_memory_bytes = 8u << 20},
 };
 
 #define GROUP(name, title, trials, launches, wants_slabs, quick_trials, quick_launches)                                \

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_trials.py TOOL LAYER [long] - drivers that crash, hang, refuse or compute wrongly, found out in a process of their own
+"""test_trials.py TOOL LAYER [long] - drivers that crash, hang, refuse or compute wrongly, found out in processes apart
 
 The layer (tests/layer) gives PoCL the version of a driver that nobody knows, and makes it abort, hang, end the process,
 fail or compute wrongly, when it opens the device, builds kernels, runs them, or when the process ends. Whatever it
@@ -25,7 +25,8 @@ NO_TIME = {"TETRACUBES_TRIAL_SECONDS": "0.001"}
 ALONE, GROUPS = "-DWORK_ITEMS=1", "-DWORK_ITEMS=32"
 CRASHES = {"open abort": "before kernels were built", "open exit": "before kernels were built",
            "build abort": "before kernels were built", "build exit": "exit status 0 before kernels were built",
-           "launch abort": "where kernels first ran", "read abort": "where kernels first ran", "end abort": "at its end"}
+           "launch abort": "where kernels first ran", "read abort": "where kernels first ran",
+           "end abort": "at its end"}
 HANGS = {"open hang": "before kernels were built", "launch hang": "where kernels first ran"}
 REFUSALS = {"build refuse": "does not build the kernels", "launch refuse": "CL_INVALID_PROGRAM_EXECUTABLE"}
 
