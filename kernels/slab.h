@@ -56,6 +56,9 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 /* The table of cases then names lanes: of the NUMBER_LANES numbers from the cube's first sample on of its four rows. */
 #define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
 
+/* Local memory that a group takes for every 32 of its work-items, at the most: kernel 2's table of a brick's rows. */
+enum { LOCAL_BYTES_PER_BRICK = 2816 };
+
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
 #define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))
 

@@ -2,6 +2,7 @@
 
 #include "cache.h"
 #include "failure.h"
+#include "slab.h"
 #include "text.h"
 
 #include <errno.h>
@@ -25,8 +26,11 @@ enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 static const uint32_t work_items_most = 1024; /* CPUs keep the variables of all work-items of a group on one stack */
 static const uint32_t kept_most = 1u << 16;   /* more groups, or bricks, would do nothing but fill memory */
 
+/* Groups share bricks, for each of which they need local memory. */
 static uint32_t work_items_limit(const tc_context *context) {
     uint64_t most = context->info.max_work_group_size;
+    uint64_t by_memory = context->info.local_memory_bytes / LOCAL_BYTES_PER_BRICK * BRICK_WORDS;
+    if (by_memory && by_memory < most) most = by_memory;
     return most < work_items_most ? (uint32_t)most : work_items_most;
 }
 

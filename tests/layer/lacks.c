@@ -1,6 +1,6 @@
 /*
- * The mode that lacks something: a device that says it has no double precision, or kernels that run with few
- * work-items.
+ * The mode that lacks something: a device that says it has no double precision, or little local memory, or kernels that
+ * run with few work-items.
  */
 #include "layer.h"
 
@@ -9,6 +9,7 @@
 
 static cl_icd_dispatch below;
 static bool lacks_fp64, lacks_fame;
+static cl_ulong local_bytes;              /* 0: as it is */
 static size_t items_most, items_multiple; /* 0: as they are */
 static char kernel_name[64];              /* of those limits; "*": of all kernels */
 
@@ -17,6 +18,8 @@ static cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, 
     cl_int error = below.clGetDeviceInfo(device, what, bytes, value, bytes_ret);
     if (!error && lacks_fp64 && what == CL_DEVICE_DOUBLE_FP_CONFIG && value)
         memset(value, 0, sizeof(cl_device_fp_config));
+    if (!error && local_bytes && what == CL_DEVICE_LOCAL_MEM_SIZE && value)
+        memcpy(value, &local_bytes, sizeof local_bytes);
     if (!error && lacks_fame && what == CL_DRIVER_VERSION && value && bytes) ((char *)value)[0] = '9'; /* 9.1 of 3.1 */
     return error;
 }
@@ -55,11 +58,12 @@ static void install(cl_icd_dispatch *table) {
 static bool command(char *const *words, int count) {
     lacks_fp64 = count == 2 && !strcmp(words[1], "fp64");
     lacks_fame = count == 2 && !strcmp(words[1], "fame");
+    local_bytes = count == 3 && !strcmp(words[1], "local") ? strtoul(words[2], NULL, 10) : 0;
     items_most = count == 5 && !strcmp(words[1], "items") ? strtoul(words[3], NULL, 10) : 0;
     items_multiple = items_most ? strtoul(words[4], NULL, 10) : 0;
     if (items_most && !items_multiple) return false;
     strncpy(kernel_name, count == 5 ? words[2] : "", sizeof kernel_name - 1);
-    return lacks_fp64 || lacks_fame || items_most || (count == 2 && !strcmp(words[1], "off"));
+    return lacks_fp64 || lacks_fame || local_bytes || items_most || (count == 2 && !strcmp(words[1], "off"));
 }
 
 const layer_mode lacks_mode = {"lacks", install, command};

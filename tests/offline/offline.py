@@ -46,11 +46,11 @@ PLANTED = [
 ]
 
 
-# Registers of kernel 2 on GPUs of NVIDIA.
-EMIT_REGISTERS = 96
+# Registers of kernel 2 on GPUs of NVIDIA. Local memory for every 32 work-items, as kernels/slab.h has it.
+EMIT_REGISTERS, LOCAL_BYTES_PER_BRICK = 96, 2816
 
 
-def rules_broken(target, kernel, need):
+def rules_broken(target, kernel, need, work_items):
     """What no kernel may have, by any compiler."""
     if need.stack:
         yield f"{need.stack} bytes of stack"
@@ -58,6 +58,8 @@ def rules_broken(target, kernel, need):
         yield f"{need.spills} spilled"
     if kernel == "emit" and target.vendor == "nvidia" and need.registers > EMIT_REGISTERS:
         yield f"{need.registers} registers"
+    if need.local > LOCAL_BYTES_PER_BRICK * work_items // 32:
+        yield f"{need.local} bytes of local memory"
 
 
 def rises(need, known):
@@ -101,7 +103,8 @@ class Judge:
             where = f"{program.name}, {program.work_items} work-items, {target.arch}"
             self.failures += [f"{where}: {finding}" for finding in findings]
             for kernel, need in needs.items():
-                self.failures += [f"{where}: {kernel}: {broken}" for broken in rules_broken(target, kernel, need)]
+                self.failures += [f"{where}: {kernel}: {broken}"
+                                  for broken in rules_broken(target, kernel, need, program.work_items)]
                 known = self.table["programs"].get(program.name, {}).get(kernel, {}).get(target.arch)
                 if compare and known and self.comparable(target):
                     self.failures += [f"{where}: {kernel}: {rise}" for rise in rises(need, known)]
