@@ -117,8 +117,8 @@ def programs_write(texts, device, work_items, work):
     """The library's programs for a device; work_items 0: groups of the size that it takes."""
     folder = os.path.join(work, f"{device}-{work_items}")
     os.mkdir(folder)
-    said = subprocess.run([texts, device, str(work_items), folder], stdout=subprocess.PIPE, text=True, check=True).stdout
-    size = int(said.split(" programs, ")[1].split()[0])
+    done = subprocess.run([texts, device, str(work_items), folder], stdout=subprocess.PIPE, text=True, check=True)
+    size = int(done.stdout.split(" programs, ")[1].split()[0])
     names = sorted(name[:-3] for name in os.listdir(folder) if name.endswith(".cl"))
     return [Program(name, os.path.join(folder, f"{name}.cl"), options_read(os.path.join(folder, f"{name}.options")),
                     size) for name in names]
@@ -176,7 +176,7 @@ def table_write(path, judge, planted, seconds):
                ("kernels of these on GPUs", sum(len(of) for kernels in programs.values() for of in kernels.values())),
                ("bytes of stack, at most", max(need[1] for need in all_worst)),
                ("registers spilled to it, at most", max(need[2] for need in all_worst)),
-               ("scalar registers of a wave kept in vector registers, AMD, at most", max(need[3] for need in all_worst)),
+               ("scalar registers of AMD's waves kept in vector registers, at most", max(need[3] for need in all_worst)),
                ("registers of emit on NVIDIA's, at most", max(worst["emit"][arch][0] for arch in arches
                                                               if KINDS[arch].vendor == "nvidia")),
                ("fused, approximate or flushing operations", 0), ("planted faults found", planted)]

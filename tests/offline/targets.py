@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 
 class Need(NamedTuple):
-    """What a work-item of a kernel needs: registers; bytes on a stack; of these, bytes or registers that were spilled to
-    it; AMD: a wave's scalar registers that did not fit and are kept in vector registers, which are counted there; bytes
-    of local memory of a group; warps or waves that are resident at once."""
+    """What a work-item of a kernel needs: registers; bytes on a stack; bytes or registers that were spilled to it; AMD:
+    a wave's scalar registers that did not fit and are kept in vector registers, which are counted there; bytes of local
+    memory of a group; warps or waves that are resident at once."""
     registers: int
     stack: int
     spills: int
@@ -153,7 +153,8 @@ class Nvidia:
 
 
 IR_FORBIDDEN = [(r"call .*@llvm\.(?:fma|fmuladd)\.", "fused multiply-add"),
-                (r"= f(?:add|sub|mul|div|neg) (?:fast|reassoc|nnan|ninf|nsz|arcp|contract|afn)\b", "relaxed arithmetic"),
+                (r"= f(?:add|sub|mul|div|neg) (?:fast|reassoc|nnan|ninf|nsz|arcp|contract|afn)\b",
+                 "relaxed arithmetic"),
                 (r"= fdiv .*!fpmath", "division that need not be rounded correctly"),
                 (r"call .*@llvm\.sqrt\..*!fpmath", "root that need not be rounded correctly"),
                 (r'"denormal-fp-math(?:-f32)?"="(?!ieee)', "subnormals flushed")]
@@ -198,8 +199,8 @@ class Amd:
                     f"{base}.ll"])
         needs = {}
         for part in said.split("Function Name: ")[1:]:
-            value = {key: int(number)
-                     for key, number in re.findall(r"remark: <unknown>:0:0: +([A-Z][\w ]*?)(?: \[[^]]+\])?: (\d+)", part)}
+            value = {key: int(number) for key, number in
+                     re.findall(r"remark: <unknown>:0:0: +([A-Z][\w ]*?)(?: \[[^]]+\])?: (\d+)", part)}
             registers = value["VGPRs"] + value.get("AGPRs", 0)
             local = value["LDS Size"]
             needs[part.split()[0]] = Need(registers, value["ScratchSize"], value["VGPRs Spill"], value["SGPRs Spill"],
