@@ -101,7 +101,6 @@ inline_always REAL largest_of(const REAL v[3]) {
 inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbours n, uint axis, uint row) {
     REAL weight = n.weight;
 #if GRID == 1
-    if (row != axis) return 0;
     global const float *positions = in.coordinates + OF_AXIS(axis, 0, s->nx, s->nx + s->ny);
     return weight * (REAL)positions[n.last] - weight * (REAL)positions[n.first];
 #else
@@ -157,7 +156,13 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
         REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
         g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);
-#if GRID
+#if GRID == 1
+        REAL ja = coordinate_difference(in, s, at_a, axis, axis), jb = coordinate_difference(in, s, at_b, axis, axis);
+        const REAL along = ja + (REAL)t * (jb - ja); /* positions along an axis change in that coordinate alone */
+#pragma unroll
+        for (uint row = 0; row < 3; row++)
+            j[0][row] = j[1][row], j[1][row] = j[2][row], j[2][row] = row == axis ? along : (REAL)0;
+#elif GRID == 2
 #pragma unroll
         for (uint row = 0; row < 3; row++) {
             REAL ja = coordinate_difference(in, s, at_a, axis, row), jb = coordinate_difference(in, s, at_b, axis, row);
