@@ -162,7 +162,9 @@ static bool relative_is_right(const walk *w, const int64_t a[3], const int64_t b
         long double scale = (long double)m[axis];
         long double p = (long double)(w->grid->first[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
         sum += scale * p;
-        room += fabsl(scale) * 2 * ((long double)w->grid->dims[axis] + 2);
+        /* Indices count from near the grid, too, where they are beyond both of these. */
+        long double most = fmaxl(512, 8 * (long double)w->grid->dims[axis]) + (long double)w->grid->dims[axis];
+        room += fabsl(scale) * (fminl(fabsl(p), most) + 1);
     }
     return fabsl(sum - (long double)is[row]) <= room * 0x1p-21L;
 }
