@@ -133,12 +133,13 @@ static void kept_take(tc_context *context) {
 static const uint32_t spins = 1u << 14, spins_cpu = 1u << 17;
 
 /* A work-item per tile where the text for that is taken, a work-item per row of a brick elsewhere, on CPUs of one
- * brick; groups to fill the device. */
+ * brick; groups to fill the device. One work-item too where a group has no room for a brick. */
 static void defaults_take(tc_context *context) {
     tc_context_options *o = &context->options;
     const bool cpu = !strcmp(context->info.type, "cpu");
     const bool alone = text_rule_of(&context->info)->text == TEXT_ALONE;
-    if (!o->work_items) o->work_items = alone ? 1 : cpu || context->info.max_work_group_size < 128 ? 32 : 128;
+    const uint64_t most = context->info.max_work_group_size;
+    if (!o->work_items) o->work_items = alone || most < 32 ? 1 : cpu || most < 128 ? 32 : 128;
     if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
     if (!o->spin_limit) o->spin_limit = cpu ? spins_cpu : spins;
     if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;

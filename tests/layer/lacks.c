@@ -8,8 +8,9 @@
 #include <string.h>
 
 static cl_icd_dispatch below;
-static bool lacks_fp64, lacks_fame;
+static bool lacks_fp64, lacks_fame, lacks_name;
 static cl_ulong local_bytes;              /* 0: as it is */
+static size_t group_most;                 /* of the device; 0: as it is */
 static size_t items_most, items_multiple; /* 0: as they are */
 static char kernel_name[64];              /* of those limits; "*": of all kernels */
 
@@ -21,6 +22,15 @@ static cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, 
     if (!error && local_bytes && what == CL_DEVICE_LOCAL_MEM_SIZE && value)
         memcpy(value, &local_bytes, sizeof local_bytes);
     if (!error && lacks_fame && what == CL_DRIVER_VERSION && value && bytes) ((char *)value)[0] = '9'; /* 9.1 of 3.1 */
+    if (!error && group_most && what == CL_DEVICE_MAX_WORK_GROUP_SIZE && value)
+        memcpy(value, &group_most, sizeof group_most);
+    return error;
+}
+
+static cl_int CL_API_CALL platform_info(cl_platform_id platform, cl_platform_info what, size_t bytes, void *value,
+                                        size_t *bytes_ret) {
+    cl_int error = below.clGetPlatformInfo(platform, what, bytes, value, bytes_ret);
+    if (!error && lacks_name && what == CL_PLATFORM_NAME && value && bytes) memset(value, 'x', strlen(value));
     return error;
 }
 
@@ -51,6 +61,7 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
 static void install(cl_icd_dispatch *table) {
     below = *table;
     table->clGetDeviceInfo = device_info;
+    table->clGetPlatformInfo = platform_info;
     table->clGetKernelWorkGroupInfo = work_group_info;
     table->clEnqueueNDRangeKernel = launch;
 }
@@ -59,11 +70,14 @@ static bool command(char *const *words, int count) {
     lacks_fp64 = count == 2 && !strcmp(words[1], "fp64");
     lacks_fame = count == 2 && !strcmp(words[1], "fame");
     local_bytes = count == 3 && !strcmp(words[1], "local") ? strtoul(words[2], NULL, 10) : 0;
+    lacks_name = count == 3 && !strcmp(words[1], "name");
+    group_most = lacks_name ? strtoul(words[2], NULL, 10) : 0;
     items_most = count == 5 && !strcmp(words[1], "items") ? strtoul(words[3], NULL, 10) : 0;
     items_multiple = items_most ? strtoul(words[4], NULL, 10) : 0;
     if (items_most && !items_multiple) return false;
     strncpy(kernel_name, count == 5 ? words[2] : "", sizeof kernel_name - 1);
-    return lacks_fp64 || lacks_fame || local_bytes || items_most || (count == 2 && !strcmp(words[1], "off"));
+    return lacks_fp64 || lacks_fame || lacks_name || local_bytes || items_most ||
+           (count == 2 && !strcmp(words[1], "off"));
 }
 
 const layer_mode lacks_mode = {"lacks", install, command};

@@ -19,6 +19,8 @@
  *     late hold | SLEEP | off        commands start as late as they may, or are put into queues slowly: late.c
  *     lacks fp64 | off               devices say that they have no double precision
  *     lacks fame                     devices say another version of their driver, one that nobody knows
+ *     lacks name MOST                platforms have a name that nobody knows, and devices groups of at most so many
+ *                                    work-items (0: as they are)
  *     lacks items KERNEL MOST MULTIPLE    the kernel (*: all) runs with at most so many work-items per group, and
  *                                    would like to have multiples of the other number
  *     memory PATTERN | off           new buffers are full of a byte, and have guards around them: memory.c

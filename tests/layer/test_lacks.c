@@ -152,6 +152,26 @@ static void test_local_memory(const layer_functions *layer) {
     layer->command("lacks off");
 }
 
+/* A platform that nobody knows gets the kernels for groups, and where it has none so large those for one work-item. */
+static void test_unknown_platform(const layer_functions *layer) {
+    static const struct {
+        const char *command;
+        uint32_t work_items;
+    } platforms[] = {{"lacks name 0", 32}, {"lacks name 16", 1}};
+    for (size_t n = 0; n < sizeof platforms / sizeof *platforms; n++) {
+        tc_context_options options;
+        tc_tuning tuning = {.struct_size = sizeof tuning};
+        tc_context_options_init(&options);
+        EXPECT(layer->command(platforms[n].command), "%s is not understood", platforms[n].command);
+        tc_context *context = context_open(&options);
+        EXPECT(tc_context_tuning(context, &tuning) == TC_OK && tuning.work_items == platforms[n].work_items,
+               "%s: %u work-items", platforms[n].command, tuning.work_items);
+        test_extract(context, tuning.work_items, TC_F32, TC_METHOD_TETRA, false);
+        tc_context_destroy(context);
+    }
+    EXPECT(layer->command("lacks off"), "the layer goes on");
+}
+
 int main(void) {
     random_state = 1996;
     if (!device_exists()) return SKIPPED;
@@ -175,6 +195,7 @@ int main(void) {
     }
     test_limits(layer);
     test_local_memory(layer);
+    test_unknown_platform(layer);
     tc_context_destroy(reference);
     return EXPECT_DONE();
 }
