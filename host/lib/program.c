@@ -285,9 +285,10 @@ tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method meth
     if (status) return status;
     classify_options_write(context, type, method, missing, options, sizeof options);
     status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
-    if (!status) out->classify = (sized_kernel){p->kernel, p->work_items};
-    if (!status) out->cells = (sized_kernel){p->cells, p->work_items};
-    return status;
+    if (status) return status;
+    out->classify = (sized_kernel){p->kernel, p->work_items};
+    out->cells = (sized_kernel){p->cells, p->work_items};
+    return TC_OK;
 }
 
 tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method method, bool missing, bool normals,

@@ -88,8 +88,8 @@ static int lift(int file) {
     return lifted;
 }
 
-static int spawn(char *const arguments[], int report, int chatter, pid_t *process) {
-    char path[PATH_MAX], *all[ARGUMENTS_MOST + 2] = {"tetracubes"};
+static int spawn(const char *path, char *const arguments[], int report, int chatter, pid_t *process) {
+    char *all[ARGUMENTS_MOST + 2] = {"tetracubes"};
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_t files;
     for (int n = 0; n < ARGUMENTS_MOST && arguments[n]; n++) all[n + 1] = arguments[n];
@@ -99,7 +99,7 @@ static int spawn(char *const arguments[], int report, int chatter, pid_t *proces
         return -1;
     }
     int error = set_attributes(&attributes) || set_files(&files, report, chatter);
-    if (!error) error = posix_spawn(process, program_path(path, sizeof path), &files, &attributes, all, environ);
+    if (!error) error = posix_spawn(process, path, &files, &attributes, all, environ);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     return error ? -1 : 0;
@@ -107,10 +107,12 @@ static int spawn(char *const arguments[], int report, int chatter, pid_t *proces
 
 static int start(char *const arguments[], child *c) {
     int report[2], chatter[2];
+    char path[PATH_MAX];
     if (make_pipes(report, chatter)) return -1;
     report[1] = lift(report[1]);
     chatter[1] = lift(chatter[1]);
-    int error = report[1] < 0 || chatter[1] < 0 || spawn(arguments, report[1], chatter[1], &c->process);
+    int error = report[1] < 0 || chatter[1] < 0 ||
+                spawn(program_path(path, sizeof path), arguments, report[1], chatter[1], &c->process);
     if (report[1] >= 0) close(report[1]);
     if (chatter[1] >= 0) close(chatter[1]);
     c->report.file = report[0];
