@@ -3,7 +3,8 @@
 
 demo: the first command, by a user with sudo, which installs what is missing.
 whole: that, then the second command by root, then the same bytes from every driver of OpenCL that the release has
-(drivers.py). With TETRACUBES_RESULTS in the environment, a folder, what was seen goes to systems.json in it.
+(drivers.py). With TEST_BYTES in the environment, that program, Intel's runtime is tried on this machine: it comes by
+pip. With TETRACUBES_RESULTS in it, a folder, what was seen goes to systems.json there.
 
 SUITE: bookworm (Debian 12), trixie (13), sid; without any all three. Of sid, an outlook, failures are told and are none
 of this run. Needs root, debootstrap and a mirror of Debian: the one that apt uses here, else debootstrap's own. Exit
@@ -132,9 +133,8 @@ def suite_try(tier, suite, folder):
     if tier == "whole":
         sources_copy(f"{chroot}/root/tetracubes")
         try_it("bash tests/all, by root", "cd /root/tetracubes && bash tests/all")
-        second = " --folder /root/second" if suite == "bookworm" else ""
         try_it("drivers", f"apt-get install -y --no-install-recommends {' '.join(DRIVERS)} && cd /root/tetracubes && "
-               f"python3 tests/systems/drivers.py build/tests/bytes/test_bytes --out /drivers.json{second}")
+               f"python3 tests/systems/drivers.py build/tests/bytes/test_bytes --out /drivers.json")
         if os.path.exists(f"{chroot}/drivers.json"):
             with open(f"{chroot}/drivers.json", encoding="utf-8") as file:
                 seen["drivers"] = json.load(file)
@@ -143,11 +143,20 @@ def suite_try(tier, suite, folder):
     return seen
 
 
+def machine_try(program, folder):
+    """What is no package of a release."""
+    out = os.path.join(folder, "drivers.json")
+    subprocess.run([sys.executable, os.path.join(ROOT, "tests", "systems", "drivers.py"), program, "--out", out,
+                    "--folder", os.path.join(folder, "second"), "--only", "Intel"], check=False)
+    with open(out, encoding="utf-8") as file:
+        return {"system": "this machine", "suite": "here", "commands": [], "drivers": json.load(file), "versions": {}}
+
+
 def differences(seen):
     """Drivers of any system whose hash is another one."""
     lines = [(one["system"], line) for one in seen for line in one["drivers"]]
-    return [f"{system}: {line['driver']}, {line['text']}: {line['hash']}" for system, line in lines
-            if line["hash"] != lines[0][1]["hash"]]
+    return [f"{system}: {line['driver']}, {line['text']}: {line['outcome']}, {line['hash']}" for system, line in lines
+            if line["hash"] != lines[0][1]["hash"] or line["outcome"] != "same bytes"]
 
 
 def results_write(seen, seconds):
@@ -157,9 +166,10 @@ def results_write(seen, seconds):
     lines = [dict(line, system=one["system"]) for one in seen for line in one["drivers"]]
     for line in lines:
         del line["hashes"]
+    bare = [one for one in seen if one["commands"]]
     figures = [("bare systems on which both commands pass",
-                sum(all(line["outcome"] == "passed" for line in one["commands"][:2]) for one in seen)),
-               ("of them tried", len(seen)), ("drivers and texts with the same bytes in every case",
+                sum(all(line["outcome"] == "passed" for line in one["commands"][:2]) for one in bare)),
+               ("of them tried", len(bare)), ("drivers and texts with the same bytes in every case",
                                               sum(line["outcome"] == "same bytes" for line in lines)),
                ("of them tried", len(lines))]
     versions_of = {f"{one['system']}, {name}": version for one in seen for name, version in one["versions"].items()
@@ -167,7 +177,7 @@ def results_write(seen, seconds):
     with open(os.path.join(folder, "systems.json"), "w", encoding="utf-8") as file:
         json.dump({"part": "systems", "date": datetime.date.today().isoformat(), "versions": versions_of,
                    "seconds": round(seconds), "figures": [{"what": what, "value": value} for what, value in figures],
-                   "systems": [{key: one[key] for key in ("system", "commands", "versions")} for one in seen],
+                   "systems": [{key: one[key] for key in ("system", "commands", "versions")} for one in bare],
                    "drivers": lines}, file, indent=1)
         file.write("\n")
 
@@ -185,6 +195,8 @@ def main():
                 if tier == "demo" and "debootstrap" in str(failed):
                     sys.exit(77)
                 sys.exit(1)
+        if tier == "whole" and os.environ.get("TEST_BYTES"):
+            seen.append(machine_try(os.environ["TEST_BYTES"], folder))
     wrong = [f"{one['system']}: {line['command']}: {line['outcome']}" for one in seen if one["suite"] not in OUTLOOK
              for line in one["commands"] if line["outcome"] != "passed"] + differences(seen)
     if tier == "whole":
