@@ -200,7 +200,10 @@ static int load_points(const pairing *p, int64_t n, arena *memory, dataset_block
     uint8_t *blanked = is_any_blanked(p, from) ? arena_take(memory, from->points) : NULL;
     for (uint64_t i = 0; blanked && i < from->points; i++)
         blanked[i] = (uint8_t)plot3d_is_blanked(p->grid_file, p->grid, from, i);
-    out->points = point_bytes(p) == 8 ? (coordinates){.f64 = points} : (coordinates){.f32 = points};
+    if (point_bytes(p) == 8)
+        out->points.f64 = points;
+    else
+        out->points.f32 = points;
     out->blanked_points = blanked;
     uint64_t fault = settle_points(out->points, from->points, blanked);
     if (fault == from->points) return 0;

@@ -81,6 +81,7 @@ static lzma_ret decode_lzma(lzma_stream *stream, const unsigned char *in, size_t
     stream->avail_out = 1;
     code = lzma_code(stream, LZMA_FINISH);
     int is_longer = stream->avail_out == 0;
+    stream->next_out = NULL;
     stream->avail_out = 0;
     return is_longer ? LZMA_STREAM_END : code;
 }

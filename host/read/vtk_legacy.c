@@ -102,7 +102,10 @@ static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t 
     const int is_real = type == TC_F32 || type == TC_F64; /* of integers the unfit ones are rounded */
     if (unfit && is_real)
         return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite; correct them", unfit, what);
-    *out = wanted == TC_F32 ? (coordinates){.f32 = values} : (coordinates){.f64 = values};
+    if (wanted == TC_F32)
+        out->f32 = values;
+    else
+        out->f64 = values;
     return 0;
 }
 
