@@ -230,6 +230,53 @@ class Far(GridCase):
                     self.assertAlmostEqual(min(p[axis] for p in points), near["bounds"][0][axis] + 3, delta=1e-5)
         self.refuses(2, "extract", "x.vtu", "--iso", "1", "--origin-at", "1,2", says="--origin-at")
 
+    def test_origin_at_too_far(self):
+        source = self.write("far.vtu", vtu(UTM))
+        for ending, at in (("stl", "0,0,0"), ("stl", "1e9,0,0"), ("ply", "1e300,0,0"), ("obj", "1e17,0,0")):
+            report = self.report("extract", source, "--iso", ISO, "--engine", "reference", "-o",
+                                 self.path("out." + ending), "--origin-at", at)
+            self.assertRegex(" ".join(report["notices"]), "--origin-at lies so far")
+        self.refuses(2, "extract", source, "--iso", ISO, "--engine", "reference", "-o", self.path("beyond.stl"),
+                     "--origin-at", "1e39,0,0", says="beyond float32")
+        self.assertFalse(os.path.exists(self.path("beyond.stl")))
+
+    def test_parts_far_from_each_other(self):
+        points = placed((0.0, 0.0, 0.0)) + placed((1e8, 0.0, 0.0))
+        cells = hexahedra(DIMS)
+        cells += [[n + math.prod(DIMS) for n in cell] for cell in cells]
+        arrays = (data_array("connectivity", "i32", list(itertools.chain(*cells)))
+                  + data_array("offsets", "i32", [8 * (n + 1) for n in range(len(cells))])
+                  + data_array("types", "u8", [HEXAHEDRON] * len(cells)))
+        body = (f'><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
+                f'{attributes("PointData", [("bump", "f64", 2 * field()[0][2])])}'
+                f'<Points>{data_array("Points", "f64", list(itertools.chain(*points)), 3)}</Points>'
+                f"<Cells>{arrays}</Cells></Piece>")
+        source = self.write("apart.vtu", vtk_file("UnstructuredGrid", body))
+        report = self.report("extract", source, "--iso", ISO, "--engine", "reference")
+        self.assertRegex(" ".join(report["notices"]), "so far from each other")
+        near = self.report("extract", self.write("near.vtu", vtu((0.0, 0.0, 0.0))), "--iso", ISO, "--engine",
+                           "reference")
+        self.assertEqual(near["notices"], [])
+
+    def test_separate_blocks_need_files(self):
+        source = self.write("far.vts", vts(UTM))
+        self.refuses(2, "extract", source, "--iso", ISO, "--engine", "reference", "--blocks", "separate", "-o",
+                     "/dev/null", "--format", "ply", says="/dev/null is no file")
+        self.assertFalse(os.path.exists("/dev/null_b0"))
+
+    def test_carried_values_that_float32_rounds(self):
+        count = math.prod(DIMS)
+        extra = [("large", "f64", [1e39] * count), ("fine", "f64", [4.6e6 + n / 100 for n in range(count)])]
+        more = ' Origin="0 0 0" Spacing="1 1 1"'
+        source = self.write("c.vti", structured_text("ImageData", DIMS, (0, 0, 0), "", field() + extra, more=more))
+        for name, says in (("large", "infinite"), ("fine", "carried as float32")):
+            report = self.report("extract", source, "--field", "bump", "--iso", ISO, "--engine", "reference",
+                                 "--carry", name, "-o", self.path("c.vtp"))
+            self.assertRegex(" ".join(report["notices"]), says)
+
+    def test_options_given_twice(self):
+        self.refuses(2, "extract", "x.vtu", "--iso", "1", "--nodata", "0", "--nodata", "255", says="given twice")
+
     def test_raw(self):
         raw = self.path("sphere.raw")
         self.expect(0, "generate", "sphere", "--dims", "24,22,20", "--type", "u8", "-o", raw)

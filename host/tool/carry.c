@@ -3,7 +3,9 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
+#include "notice.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,6 +79,27 @@ void carry_release(carried *c) {
     *c = (carried){0};
 }
 
+/* Carried values are float32: a notice where that shows, as more than 1/4096 of their range, or as infinity. */
+static void tell_rounded(const point_field *from, uint64_t vertex_count, const float *values) {
+    const uint64_t count = vertex_count * (uint64_t)from->components;
+    const tc_type type = from->blocks->type;
+    double low = INFINITY, high = -INFINITY;
+    int is_beyond = 0;
+    if (!notice_wanted() || tc_type_bytes(type) < sizeof(float) || type == TC_F32) return;
+    for (uint64_t n = 0; n < count; n++) {
+        is_beyond = is_beyond || isinf(values[n]);
+        if (!isfinite(values[n])) continue;
+        low = fmin(low, (double)values[n]);
+        high = fmax(high, (double)values[n]);
+    }
+    const double step = fmax(fabs(low), fabs(high)) * 0x1p-24;
+    if (is_beyond)
+        notice("field '%s': values beyond float32, as which fields are carried, are infinite", from->name);
+    else if (high > low && step * 4096 > high - low)
+        notice("field '%s' is carried as float32, which has steps of %.2g there, and its values differ by %.2g",
+               from->name, step, high - low);
+}
+
 int carry_to_mesh(carried *c, engine *e, const tc_extract_options *how, const tc_mesh_data *mesh) {
     for (int n = 0; n < c->count; n++) {
         size_t bytes = (size_t)mesh->vertex_count * (size_t)c->from[n].components * sizeof **c->values;
@@ -85,6 +108,7 @@ int carry_to_mesh(carried *c, engine *e, const tc_extract_options *how, const tc
         if (!c->values[n]) return fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
         int status = engine_carry(e, how, &c->from[n], c->values[n]);
         if (status) return status;
+        tell_rounded(&c->from[n], mesh->vertex_count, c->values[n]);
         c->fields[n].values = c->values[n];
     }
     return 0;

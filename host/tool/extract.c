@@ -12,6 +12,7 @@
  * written; the others are, and the exit status is 3.
  */
 #include "carry.h"
+#include "coarse.h"
 #include "commands.h"
 #include "drop.h"
 #include "exit_status.h"
@@ -210,6 +211,7 @@ static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_d
     if (status) return status;
     describe_mesh(j->o, &shown->mesh, s);
     status = surface_tell_empty(&j->data, &j->field, s);
+    if (!status) coarse_tell_mesh(&shown->mesh, s->summary.bounds, s->iso);
     if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, &shown->mesh, s);
     surface_tell_dropped(shown, s);
     if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);

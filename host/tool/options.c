@@ -364,7 +364,10 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
     } else {
         value = argv[++*at];
     }
-    o->given |= (uint64_t)1 << (spec - table);
+    const uint64_t bit = (uint64_t)1 << (spec - table);
+    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES)
+        return fail(STATUS_USAGE, "%s is given twice: leave one out", spec->name);
+    o->given |= bit;
     return parse_value(spec, value, o);
 }
 

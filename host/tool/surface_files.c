@@ -1,5 +1,6 @@
 #include "surface_files.h"
 
+#include "coarse.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -7,9 +8,11 @@
 #include "output.h"
 #include "report.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { ALL_BLOCKS = -1 };
 
@@ -44,6 +47,7 @@ static char *file_name(const options *o, const typed_isovalue *iso, int block) {
 /* ----------------------------------------------------------------------------------------------------------- usage */
 
 int surface_files_check(const options *o) {
+    struct stat there;
     const mesh_field some = {.name = "", .components = 1};
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
@@ -52,6 +56,8 @@ int surface_files_check(const options *o) {
     if (!o->output) return 0;
     if (o->separate_blocks && output_is_dash(o->output))
         return fail(STATUS_USAGE, "--blocks separate writes several files: -o - is one stream; name files");
+    if (o->separate_blocks && stat(o->output, &there) == 0 && !S_ISREG(there.st_mode))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: %s is no file; name files", o->output);
     if (o->isovalue_count > 1 && !strchr(o->output, '%'))
         return fail(STATUS_USAGE, "-o %s: with several isovalues the name needs a %%, which stands for the isovalue",
                     o->output);
@@ -146,6 +152,11 @@ int surface_files_write(const options *o, const typed_isovalue *iso, const shown
         notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %s,%s,%s "
                "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
                report_number(origin[0]).text, report_number(origin[1]).text, report_number(origin[2]).text);
+    if (how.origin_at) {
+        const int digits = mesh_write_has_doubles(o->output, &how) ? DBL_MANT_DIG : FLT_MANT_DIG;
+        int status = coarse_check_file(&shown->mesh, how.origin_at, digits);
+        if (status) return status;
+    }
     *written = o->separate_blocks ? describe_files(o, iso, shown->part_count) : file_name(o, iso, ALL_BLOCKS);
     if (!*written) return STATUS_FAILED;
     return o->separate_blocks ? write_parts(o, iso, shown, &how) : mesh_write(*written, &shown->mesh, &how);

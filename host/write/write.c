@@ -88,6 +88,11 @@ static int is_far(const tc_mesh_data *mesh) {
     return mesh->origin[0] != 0 || mesh->origin[1] != 0 || mesh->origin[2] != 0;
 }
 
+int mesh_write_has_doubles(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return !choose_format(path, options, &f) && f->has_doubles;
+}
+
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     if (choose_format(path, options, &f)) return 0;
