@@ -512,10 +512,11 @@ class Homes(DataCase):
         os.chmod(self.folder.name, 0o755)
         volume = self.generate("sphere", "s.nrrd", "12,11,10")
         os.chmod(volume, 0o644)
-        devices = self.as_nobody("devices", POCL_CACHE_DIR=self.path("made"), HOME="/nonexistent")
+        os.mkdir(self.path("locked"), 0o555)  # for whoever runs this, unless that is root, who becomes nobody
+        devices = self.as_nobody("devices", POCL_CACHE_DIR=self.path("locked/made"), HOME="/nonexistent")
         if not test_cli.HAS_DEVICE or "Portable Computing" not in tool_platforms():
             self.skipTest("no PoCL")
-        self.assertIn("cache folder " + self.path("made"), devices.stderr)
+        self.assertIn("cache folder " + self.path("locked/made"), devices.stderr)
         os.makedirs(self.path("home/.cache/pocl/kcache"), 0o555)
         for variables, folder in (({"HOME": "/nonexistent"}, "/nonexistent/.cache/pocl/kcache"),
                                   ({"HOME": "/", "XDG_CACHE_HOME": "/nonexistent"}, "/nonexistent/pocl/kcache"),
