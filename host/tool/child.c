@@ -158,7 +158,7 @@ static void read_lines(child *c, line_reader *r) {
     ssize_t got;
     while (r->file >= 0 && (got = read(r->file, bytes, sizeof bytes)) != 0) {
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return; /* nothing for now */
+        if (got < 0) return; /* nothing to read yet */
         for (ssize_t n = 0; n < got; n++)
             if (bytes[n] == '\n')
                 line_done(c, r);
