@@ -43,10 +43,9 @@ void coarse_tell_mesh(const tc_mesh_data *mesh, const double bounds[2][3], const
         for (int end = 0; end < 2; end++) reach = fmax(reach, fabs(bounds[end][axis] - mesh->origin[axis]));
     const double edge = mean_edge(mesh), step = reach * 0x1p-24;
     if (!(step * STEPS_MOST > edge)) return;
-    notice(
-        "isovalue %s: parts of the surface lie so far from each other that float32 has steps of %.2g there, and edges "
-        "of triangles are %.2g long: shapes are lost; extract parts that lie together from files of their own",
-        iso->text, step, edge);
+    notice("isovalue %s: edges of triangles are about %.2g long, and float32 has steps of %.2g where the surface lies: "
+           "shapes are coarse; parts that lie far from each other are finer from files of their own",
+           iso->text, edge, step);
 }
 
 int coarse_check_file(const tc_mesh_data *mesh, const double origin_at[3], int digits) {
