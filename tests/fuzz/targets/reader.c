@@ -1,8 +1,9 @@
 /*
  * reader.c - a reader given any bytes: a status with a text, or a dataset that holds what dataset.h promises
  *
- * Compiled once per format, FORMAT being its number. The first byte of the options is the component, the second the
- * frame, both signed; the third chooses the file's ending and the field, the fourth what stands for the header's word.
+ * Compiled once per format, FORMAT being its number. The first byte of the options is the component, as read_request
+ * has it, the second the frame; the third chooses the file's ending and the field, the fourth what stands for the
+ * header's word.
  * Raw files say all else in front of their samples, in a struct raw_description; where it leaves out sizes and type,
  * the format is found as for any file.
  */
@@ -212,7 +213,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     uint8_t choice = size > 1 ? data[size - 2] : 0;
     request.path = formats[FORMAT].paths[choice & 3];
     files_open(request.path, data, size, options);
-    request.component = (int8_t)options[0];
+    request.component = (int8_t)options[0] < COMPONENT_MAGNITUDE ? COMPONENT_OPEN : (int8_t)options[0];
     request.frame = (int8_t)options[1];
     request.describe = options[3] & 1;
     request.has_spacing = options[3] >> 1 & 1;
