@@ -26,7 +26,7 @@ FAULT_LIBRARY = None
 EXTRACT_KEYS = {"input", "device", "engine", "method", "dims", "cells", "tetrahedra", "timings_ms", "surfaces", "notices"}
 COUNT_KEYS = {"iso", "vertices", "triangles", "active_cells", "timings_ms"}
 SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
-CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges",
+CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges", "coarse_vertices",
               "euler_characteristic", "components", "area", "volume"}
 INFO_KEYS = {"input", "format", "dims", "first", "type", "spacing", "matrix", "space", "notice", "range", "nonfinite",
              "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}

@@ -34,16 +34,25 @@ def field(first=(0, 0, 0), dims=DIMS):
     return [("bump", "f64", [bump(p) for p in lattice(dims, first)])]
 
 
-def vtu(at, extra=()):
-    points, cells = placed(at) + list(extra), hexahedra(DIMS)
-    values = [("bump", "f64", field()[0][2] + [0.0] * len(extra))]
-    flat = list(itertools.chain(*points))
+def vtu_piece(points, cells, values):
     arrays = (data_array("connectivity", "i32", list(itertools.chain(*cells)))
               + data_array("offsets", "i32", [8 * (n + 1) for n in range(len(cells))])
               + data_array("types", "u8", [HEXAHEDRON] * len(cells)))
-    return vtk_file("UnstructuredGrid", f'><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
-                    f'{attributes("PointData", values)}<Points>{data_array("Points", "f64", flat, 3)}</Points>'
-                    f"<Cells>{arrays}</Cells></Piece>")
+    return (f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
+            f'{attributes("PointData", [("bump", "f64", values)])}'
+            f'<Points>{data_array("Points", "f64", list(itertools.chain(*points)), 3)}</Points>'
+            f"<Cells>{arrays}</Cells></Piece>")
+
+
+def vtu(at, extra=()):
+    points, values = placed(at) + list(extra), field()[0][2] + [0.0] * len(extra)
+    return vtk_file("UnstructuredGrid", ">" + vtu_piece(points, hexahedra(DIMS), values))
+
+
+def vtu_pieces(*places, dims=DIMS):
+    """A piece, and so a block, at each place: where it lies and its first index."""
+    return vtk_file("UnstructuredGrid", ">" + "".join(
+        vtu_piece(placed(at, dims, first), hexahedra(dims), field(first, dims)[0][2]) for at, first in places))
 
 
 def vts_piece(at, first, dims):
@@ -241,22 +250,100 @@ class Far(GridCase):
         self.assertFalse(os.path.exists(self.path("beyond.stl")))
 
     def test_parts_far_from_each_other(self):
+        """Of one block: they share its origin, and no check passes what is left of them."""
         points = placed((0.0, 0.0, 0.0)) + placed((1e8, 0.0, 0.0))
         cells = hexahedra(DIMS)
         cells += [[n + math.prod(DIMS) for n in cell] for cell in cells]
-        arrays = (data_array("connectivity", "i32", list(itertools.chain(*cells)))
-                  + data_array("offsets", "i32", [8 * (n + 1) for n in range(len(cells))])
-                  + data_array("types", "u8", [HEXAHEDRON] * len(cells)))
-        body = (f'><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
-                f'{attributes("PointData", [("bump", "f64", 2 * field()[0][2])])}'
-                f'<Points>{data_array("Points", "f64", list(itertools.chain(*points)), 3)}</Points>'
-                f"<Cells>{arrays}</Cells></Piece>")
-        source = self.write("apart.vtu", vtk_file("UnstructuredGrid", body))
-        report = self.report("extract", source, "--iso", ISO, "--engine", "reference")
-        self.assertRegex(" ".join(report["notices"]), "shapes are coarse.*far from each other")
+        source = self.write("apart.vtu", vtk_file("UnstructuredGrid", ">" + vtu_piece(points, cells,
+                                                                                      2 * field()[0][2])))
+        self.fails_check(source, ISO)
         near = self.report("extract", self.write("near.vtu", vtu((0.0, 0.0, 0.0))), "--iso", ISO, "--engine",
-                           "reference")
+                           "reference", "--check")
         self.assertEqual(near["notices"], [])
+        self.assertEqual(near["surfaces"][0]["coarse_vertices"], 0)
+
+    def fails_check(self, source, iso):
+        out = self.path("coarse.ply")
+        result = self.expect(3, "extract", source, "--iso", iso, "--engine", "reference", "--check", "-o", out)
+        self.assertRegex(result.stderr, "float32 is coarse: it has steps of .* far from each other")
+        self.assertRegex(result.stderr, "check failed: .* fewer than 8 steps across a cell")
+        self.assertFalse(os.path.exists(out))
+        report = self.report("extract", source, "--iso", iso, "--engine", "reference", "--check", status=3)
+        self.assertGreater(report["surfaces"][0]["coarse_vertices"], 0)
+
+    def test_cells_too_small_for_the_axis(self):
+        """Rectilinear: 2 mm cells at 4,000 km, on an axis that begins at 0."""
+        dims = (13, 4, 4)
+        axes = [[0.0, 1.0, 2.0, 1e6, 3e6] + [4e6 + 0.002 * n for n in range(8)], [0.0, 1.0, 2.0, 3.0],
+                [0.0, 1.0, 2.0, 3.0]]
+        places = lattice(dims, (0, 0, 0))
+        text = "".join(data_array("xyz"[axis], "f64", axes[axis]) for axis in range(3))
+        for at, fails in ((9, True), (1, False)):
+            values = [float(x == at and y in (1, 2) and z in (1, 2)) for x, y, z in places]
+            source = self.write("long.vtr", structured_text("RectilinearGrid", dims, (0, 0, 0),
+                                                            f"<Coordinates>{text}</Coordinates>",
+                                                            [("f", "f64", values)]))
+            if fails:
+                self.fails_check(source, "0.5")
+            else:
+                self.expect(0, "extract", source, "--iso", "0.5", "--engine", "reference", "--check")
+
+    def test_small_triangles_are_not_coarse(self):
+        """Just beside values of samples all triangles are tiny, and the cells are not."""
+        values = [float((x, y, z) == (4, 4, 4)) for x, y, z in lattice(DIMS, (0, 0, 0))]
+        source = self.write("tie.vti", structured_text("ImageData", DIMS, (0, 0, 0), "", [("f", "f64", values)],
+                                                       more=' Origin="0 0 0" Spacing="1 1 1"'))
+        report = self.report("extract", source, "--iso", "0.999999", "--engine", "reference", "--check")
+        self.assertEqual(report["surfaces"][0]["coarse_vertices"], 0)
+        self.assertNotIn("coarse", " ".join(report["notices"]))
+
+    def test_blocks_far_from_each_other(self):
+        """Each has an origin of its own, and every file full coordinates."""
+        near = self.surface(self.write("near.vtu", vtu((0.0, 0.0, 0.0))), "--iso", ISO)[1]
+        places = [(0.0, 0.0, 0.0), UTM, (1e8, 0.0, 0.0)]
+        source = self.write("apart.vtu", vtu_pieces(*((at, (0, 0, 0)) for at in places)))
+        for more in ((), ("--drop-degenerate",)):
+            both = self.surface(source, "--iso", ISO, *more)[1]
+            self.assertLess(abs(both["area"] / near["area"] - 3), 1e-5)
+            self.assertIsNone(both["origin"])
+            self.assertEqual(both["coarse_vertices"], 0)
+            for axis in range(3):
+                self.assertAlmostEqual(both["bounds"][0][axis], near["bounds"][0][axis], delta=1e-5)
+                self.assertAlmostEqual(both["bounds"][1][axis], near["bounds"][1][axis] + max(p[axis] for p in places),
+                                       delta=1e-5)
+            for ending, soup in itertools.product(("ply", "vtp", "obj"), ((), ("--soup",))):
+                with self.subTest(written=ending, soup=soup, more=more):
+                    out = self.path("out." + ending)
+                    self.expect(0, "extract", source, "--iso", ISO, "-o", out, "--engine", "reference", *more, *soup)
+                    points, faces, layout = READERS[ending](out)
+                    self.assertEqual(layout, "ddd")
+                    parts = [[f for f in faces if math.dist(points[f[0]], at) < 100] for at in places]
+                    self.assertEqual(sum(map(len, parts)), len(faces))
+                    for part in parts:
+                        self.assertLess(abs(measures(points, part)[0] / near["area"] - 1), 1e-5)
+
+    def test_stl_of_blocks_far_from_each_other(self):
+        near = self.surface(self.write("near.vtu", vtu((0.0, 0.0, 0.0))), "--iso", ISO)[1]
+        source = self.write("apart.vtu", vtu_pieces((UTM, (0, 0, 0)), ((1e8, 0.0, 0.0), (0, 0, 0))))
+        for name, more, says in (("all.stl", (), "blocks lie so far from each other"),
+                                 ("one.stl", ("--blocks", "separate"), "relative to each block's origin"),
+                                 ("at.stl", ("--blocks", "separate", "--origin-at", "0,0,0"), "--origin-at")):
+            report = self.report("extract", source, "--iso", ISO, "-o", self.path(name), "--engine", "reference", *more)
+            self.assertRegex(" ".join(report["notices"]), says)
+        for block in range(2):
+            points, faces, _ = read_stl(self.path(f"one_b{block}.stl"))
+            self.assertLess(abs(measures(points, faces)[0] / near["area"] - 1), 1e-5)
+
+    def test_blocks_that_meet_share_an_origin(self):
+        dims = (5, 8, 9)
+        source = self.write("meet.vtu", vtu_pieces((UTM, (0, 0, 0)), (UTM, (4, 0, 0)), dims=dims))
+        out = self.path("meet.ply")
+        report = self.report("extract", source, "--iso", ISO, "-o", out, "--engine", "reference")
+        self.assertIsNotNone(report["surfaces"][0]["origin"])
+        points, _, _ = read_ply(out)
+        seam = [p for p in points if p[0] == UTM[0] + 4 * CELL or p[0] == UTM[0] + 4 * CELL + CELL / 8]
+        self.assertGreater(len(seam), 20)
+        self.assertEqual(2 * len(set(seam)), len(seam))
 
     def test_separate_blocks_need_files(self):
         source = self.write("far.vts", vts(UTM))

@@ -28,6 +28,7 @@ static int divide(shown_surface *shown) {
     mesh_part *parts = calloc((size_t)shown->part_count + 1, sizeof *parts);
     if (!parts) return fail(STATUS_FAILED, "out of memory for %d blocks", shown->part_count);
     for (int n = 0; n < shown->part_count; n++) {
+        memcpy(parts[n].origin, shown->parts[n].origin, sizeof parts[n].origin);
         end += shown->parts[n].vertex_count;
         for (; vertex < c->vertex_count && c->sources[vertex] < end; vertex++) parts[n].vertex_count++;
         for (; triangle < c->triangle_count && c->triangles[3 * triangle] < vertex; triangle++)

@@ -1,5 +1,6 @@
 #include "engine.h"
 
+#include "cell_sizes.h"
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
@@ -36,43 +37,54 @@ void engine_close(engine *e) {
     *e = (engine){0};
 }
 
-static int make_grids(const options *o, const block_list *blocks, const double *origin, engine *e) {
-    int status = 0;
-    for (int n = 0; n < blocks->count && !status; n++) {
-        tc_grid_destroy(e->grids[n]);
-        e->grids[n] = NULL;
-        status = block_grid(o, blocks, n, e->context, origin, &e->grids[n]);
+/* Whether positions relative to that point keep the shapes of the cells in float32: they are no farther away than 512
+ * times the smallest of them, or 8 times the size of all. So the library has it of 0 (tc_grid_options). */
+static int origin_suits(const cell_range *cells, const double origin[3]) {
+    enum { CELLS = 512, SIZES = 8 };
+    for (int axis = 0; axis < 3; axis++) {
+        const double size = cells->high[axis] - cells->low[axis];
+        const double reach = fmax(fabs(cells->low[axis] - origin[axis]), fabs(cells->high[axis] - origin[axis]));
+        if (size > 0 && reach > SIZES * size && reach > CELLS * cells->least[axis]) return 0;
     }
-    return status;
+    return 1;
 }
 
-/* Where blocks have chosen origins of their own, one mesh needs one: the middle of them. Whether they differ. */
-static int common_origin(const engine *e, double origin[3]) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    int differ = 0;
-    for (int n = 0; n < e->block_count; n++) {
-        double own[3];
-        if (!e->grids[n] || tc_grid_origin(e->grids[n], own)) continue;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = fmin(low[axis], own[axis]);
-            high[axis] = fmax(high[axis], own[axis]);
-        }
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        origin[axis] = low[axis] + (high[axis] - low[axis]) / 2;
-        differ = differ || low[axis] < high[axis];
-    }
-    return differ;
+/* The origin of block n, which has chosen its own: that of the first block before it whose origin suits it too. */
+static int share_origin(const options *o, const block_list *blocks, int n, engine *e) {
+    double *own = e->parts[n].origin;
+    cell_range cells;
+    int first = 0;
+    cell_range_find(&blocks->blocks[n], 0, &cells);
+    while (first < n && (!e->grids[first] || !origin_suits(&cells, e->parts[first].origin))) first++;
+    if (memcmp(own, e->parts[first].origin, sizeof e->parts[first].origin) == 0) return 0;
+    memcpy(own, e->parts[first].origin, sizeof e->parts[first].origin);
+    tc_grid_destroy(e->grids[n]);
+    e->grids[n] = NULL;
+    return block_grid(o, blocks, n, e->context, own, &e->grids[n]);
 }
 
 int engine_upload(const options *o, const block_list *blocks, engine *e) {
-    double origin[3];
     e->grids = calloc((size_t)blocks->count + 1, sizeof *e->grids);
     e->parts = calloc((size_t)blocks->count + 1, sizeof *e->parts);
     if (!e->grids || !e->parts) return fail(STATUS_FAILED, "out of memory for %d blocks", blocks->count);
     e->block_count = blocks->count;
-    int status = make_grids(o, blocks, NULL, e);
-    return status || !common_origin(e, origin) ? status : make_grids(o, blocks, origin, e);
+    for (int n = 0; n < blocks->count; n++) {
+        int status = block_grid(o, blocks, n, e->context, NULL, &e->grids[n]);
+        if (!status && e->grids[n]) status = library_status(tc_grid_origin(e->grids[n], e->parts[n].origin));
+        if (!status && e->grids[n] && n) status = share_origin(o, blocks, n, e);
+        if (status) return status;
+    }
+    return 0;
+}
+
+int engine_origins_differ(const engine *e) {
+    const mesh_part *first = NULL;
+    for (int n = 0; n < e->block_count; n++) {
+        if (!e->parts[n].vertex_count) continue;
+        if (first && memcmp(first->origin, e->parts[n].origin, sizeof first->origin) != 0) return 1;
+        first = &e->parts[n];
+    }
+    return 0;
 }
 
 int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
@@ -132,7 +144,7 @@ static int join(joined_mesh *j, const tc_mesh_data *part, int normals, tc_mesh_d
         memcpy(j->normals + 3 * sum->vertex_count, part->normals, 3 * part->vertex_count * sizeof *j->normals);
     uint32_t first = (uint32_t)sum->vertex_count, *to = j->triangles + 3 * sum->triangle_count;
     for (uint64_t n = 0; n < 3 * part->triangle_count; n++) to[n] = part->triangles[n] + first;
-    memcpy(sum->origin, part->origin, sizeof sum->origin); /* every part's */
+    if (!sum->vertex_count) memcpy(sum->origin, part->origin, sizeof sum->origin);
     sum->vertex_count = vertices;
     sum->triangle_count = triangles;
     sum->active_cell_count += part->active_cell_count;
@@ -149,7 +161,8 @@ static int extract_block(engine *e, int n, const tc_extract_options *how, tc_mes
     tc_status status = e->grids[n] ? tc_extract(e->grids[n], how, &e->mesh) : TC_OK;
     if (!status && e->grids[n]) status = tc_mesh_get(e->mesh, data);
     e->fails_alike = status == TC_ERROR_LIMIT;
-    e->parts[n] = (mesh_part){data->vertex_count, data->triangle_count};
+    e->parts[n].vertex_count = data->vertex_count;
+    e->parts[n].triangle_count = data->triangle_count;
     return library_status(status);
 }
 

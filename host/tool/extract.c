@@ -26,6 +26,7 @@
 #include "surface_files.h"
 #include "surface_notices.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -175,7 +176,28 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
     return status ? status : progress_status();
 }
 
-static void describe_mesh(const options *o, const tc_mesh_data *m, surface_report *s) {
+/* The box of the surface in world space. */
+static void find_bounds(const shown_surface *shown, double bounds[2][3]) {
+    const float *positions = shown->mesh.positions;
+    for (int axis = 0; axis < 3; axis++) {
+        bounds[0][axis] = INFINITY;
+        bounds[1][axis] = -INFINITY;
+    }
+    for (int n = 0; n < shown->part_count; n++) {
+        const mesh_part *part = &shown->parts[n];
+        mesh_summary own;
+        mesh_summarize(positions, part->vertex_count, NULL, 0, &own);
+        positions += 3 * part->vertex_count;
+        if (part->vertex_count <= own.nonfinite_vertices) continue;
+        for (int axis = 0; axis < 3; axis++) {
+            bounds[0][axis] = fmin(bounds[0][axis], own.bounds[0][axis] + part->origin[axis]);
+            bounds[1][axis] = fmax(bounds[1][axis], own.bounds[1][axis] + part->origin[axis]);
+        }
+    }
+}
+
+static void describe_mesh(const job *j, const shown_surface *shown, surface_report *s) {
+    const tc_mesh_data *m = &shown->mesh;
     s->has_mesh = 1;
     s->vertex_count = m->vertex_count;
     s->triangle_count = m->triangle_count;
@@ -184,21 +206,22 @@ static void describe_mesh(const options *o, const tc_mesh_data *m, surface_repor
     s->emit_ms = m->timings.emit_ms;
     s->readback_ms = m->timings.readback_ms;
     s->slab_count = m->slab_count;
-    if (o->quiet && !o->json) return; /* nobody will read it */
+    if (j->o->quiet && !j->o->json) return; /* nobody will read it */
     mesh_summarize(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->summary);
+    s->has_origin = !engine_origins_differ(&j->main);
     for (int axis = 0; axis < 3; axis++) {
         s->origin[axis] = m->origin[axis];
         for (int end = 0; end < 2; end++) s->summary.bounds[end][axis] += m->origin[axis];
     }
+    if (!s->has_origin) find_bounds(shown, s->summary.bounds);
     s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
 }
 
-static int write_surface(job *j, const tc_extract_options *how, const tc_mesh_data *m, const shown_surface *shown,
-                         surface_report *s) {
+static int write_surface(job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
     double begin = now_ms();
-    int status = carry_to_mesh(&j->carried, &j->main, how, m);
+    int status = carry_to_mesh(&j->carried, &j->main, source->how, source->mesh);
     if (!status) status = surface_carry(shown, &j->carried);
-    if (!status) status = surface_files_write(j->o, s->iso, shown, j->carried.fields, j->carried.count, &s->path);
+    if (!status) status = surface_files_write(j->o, source, shown, j->carried.fields, j->carried.count, &s->path);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
@@ -206,12 +229,13 @@ static int write_surface(job *j, const tc_extract_options *how, const tc_mesh_da
 /* The surface that is made of the engine's mesh: told, checked, written. */
 static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_data *mesh, shown_surface *shown,
                           surface_report *s) {
+    const coarse_surface source = {&j->main, &j->blocks, how, mesh, s->iso};
     int good = 1, status = j->o->verify ? surface_verify(&j->reference, how, mesh, s) : 0;
     if (!status && j->o->drop_degenerate) status = surface_drop_degenerate(shown, s);
     if (status) return status;
-    describe_mesh(j->o, &shown->mesh, s);
+    describe_mesh(j, shown, s);
     status = surface_tell_empty(&j->data, &j->field, s);
-    if (!status) coarse_tell_mesh(&shown->mesh, s->summary.bounds, s->iso);
+    if (!status) status = coarse_tell_mesh(&source, j->o->check, &s->coarse_vertices);
     if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, &shown->mesh, s);
     surface_tell_dropped(shown, s);
     if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);
@@ -220,7 +244,7 @@ static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_d
         j->failed_count++;
         return 0;
     }
-    return j->o->output ? write_surface(j, how, mesh, shown, s) : 0;
+    return j->o->output ? write_surface(j, &source, shown, s) : 0;
 }
 
 static int make_surface(job *j, surface_report *s) {

@@ -125,7 +125,7 @@ static void add_mesh(json_t *object, const surface_report *s) {
                         has_bounds(s) ? json_pack("[o, o]", report_reals(s->summary.bounds[0], 3),
                                                   report_reals(s->summary.bounds[1], 3))
                                       : json_null());
-    json_object_set_new(object, "origin", report_reals(s->origin, 3));
+    json_object_set_new(object, "origin", s->has_origin ? report_reals(s->origin, 3) : json_null());
     json_object_set_new(object, "hash", json_string(hash));
 }
 
@@ -144,6 +144,7 @@ static json_t *surface_json(const surface_report *s) {
     }
     json_object_set_new(object, "timings_ms", timings);
     if (s->has_topology) add_topology(object, &s->topology);
+    if (s->has_topology) json_object_set_new(object, "coarse_vertices", count_json(s->coarse_vertices));
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
     return object;
 }
@@ -211,7 +212,8 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
     if (s->has_mesh) {
         bounds_text(s);
-        if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0)
+        if (!s->has_origin) printf("  origin      of each block its own\n");
+        if (s->has_origin && (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0))
             printf("  origin      %s %s %s\n", report_number(s->origin[0]).text, report_number(s->origin[1]).text,
                    report_number(s->origin[2]).text);
         printf("  hash        %016" PRIx64 "\n", s->hash);

@@ -23,11 +23,13 @@ typedef struct surface_report {
     int has_mesh;         /* 0: counted only; then the rest is not filled */
     mesh_summary summary; /* bounds in world space. This and the hash: not where no report is printed */
     uint64_t hash;
+    int has_origin;   /* 0: blocks that lie far from each other have origins of their own */
     double origin[3]; /* that positions in memory, and so hash and volume of an open surface, are relative to */
     int has_dropped;
     uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
     int has_topology;
     mesh_topology topology;
+    uint64_t coarse_vertices; /* with has_topology: where cells are only few steps of float32 wide (coarse.h) */
     int has_verdict;
     int verified;
     char *path; /* of the file, or files, written, or NULL; from malloc */

@@ -1,5 +1,6 @@
 #include "surface_check.h"
 
+#include "coarse.h"
 #include "commands.h"
 #include "faces.h"
 #include "mesh_check.h"
@@ -53,5 +54,10 @@ int surface_check(const block_list *blocks, const tc_mesh_data *m, surface_repor
                 s->iso->text, (unsigned long long)t->nonmanifold_edges, (unsigned long long)t->nonmanifold_vertices,
                 (unsigned long long)t->misoriented_edges, (unsigned long long)t->orphan_vertices,
                 (unsigned long long)t->invalid_triangles);
+    if (!s->coarse_vertices) return 0;
+    *good = 0;
+    message("isovalue %s: check failed: %llu vertices lie where float32 has fewer than %d steps across a cell: shapes "
+            "are lost there; contour parts that lie far from each other from files of their own",
+            s->iso->text, (unsigned long long)s->coarse_vertices, COARSE_STEPS_LEAST);
     return 0;
 }

@@ -1,6 +1,5 @@
 #include "surface_files.h"
 
-#include "coarse.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -92,6 +91,7 @@ static int write_part(const options *o, const char *path, const tc_mesh_data *me
     tc_mesh_data part = *mesh;
     part.vertex_count = size.vertex_count;
     part.triangle_count = size.triangle_count;
+    memcpy(part.origin, size.origin, sizeof part.origin);
     part.positions += 3 * vertex;
     if (part.normals) part.normals += 3 * vertex;
     for (uint64_t n = 0; triangles && n < 3 * size.triangle_count; n++)
@@ -140,24 +140,40 @@ static char *describe_files(const options *o, const typed_isovalue *iso, int blo
     return text;
 }
 
-int surface_files_write(const options *o, const typed_isovalue *iso, const shown_surface *shown,
-                        const mesh_field *fields, int field_count, char **written) {
-    const mesh_write_options how = {.format = o->format,
-                                    .soup = o->soup,
-                                    .fields = fields,
-                                    .field_count = field_count,
-                                    .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+/* Tells which point the file's coordinates count from where that is no matter of course, and where they are coarse. */
+static int tell_origin(const options *o, const coarse_surface *source, const shown_surface *shown,
+                       const mesh_write_options *how) {
     const double *origin = shown->mesh.origin;
-    if (mesh_write_is_relative(o->output, &shown->mesh, &how))
+    const int digits = mesh_write_has_doubles(o->output, how) ? DBL_MANT_DIG : FLT_MANT_DIG;
+    if (how->origin_at) return coarse_check_file(source, how->origin_at, digits);
+    if (!mesh_write_is_relative(o->output, &shown->mesh, how)) return 0;
+    if (o->separate_blocks && shown->part_count > 1) {
+        notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to each block's "
+               "origin (--origin-at chooses one point; PLY, VTP and OBJ hold full coordinates)");
+        return 0;
+    }
+    if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
         notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %s,%s,%s "
                "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
                report_number(origin[0]).text, report_number(origin[1]).text, report_number(origin[2]).text);
-    if (how.origin_at) {
-        const int digits = mesh_write_has_doubles(o->output, &how) ? DBL_MANT_DIG : FLT_MANT_DIG;
-        int status = coarse_check_file(&shown->mesh, how.origin_at, digits);
-        if (status) return status;
-    }
+    return engine_origins_differ(source->engine) ? coarse_check_file(source, origin, digits) : 0;
+}
+
+int surface_files_write(const options *o, const coarse_surface *source, const shown_surface *shown,
+                        const mesh_field *fields, int field_count, char **written) {
+    const typed_isovalue *iso = source->iso;
+    mesh_write_options how = {.format = o->format,
+                              .soup = o->soup,
+                              .fields = fields,
+                              .field_count = field_count,
+                              .parts = shown->parts,
+                              .part_count = shown->part_count,
+                              .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+    int status = tell_origin(o, source, shown, &how);
+    if (status) return status;
     *written = o->separate_blocks ? describe_files(o, iso, shown->part_count) : file_name(o, iso, ALL_BLOCKS);
     if (!*written) return STATUS_FAILED;
-    return o->separate_blocks ? write_parts(o, iso, shown, &how) : mesh_write(*written, &shown->mesh, &how);
+    if (!o->separate_blocks) return mesh_write(*written, &shown->mesh, &how);
+    how.part_count = 0; /* each file has one */
+    return write_parts(o, iso, shown, &how);
 }

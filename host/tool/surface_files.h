@@ -7,13 +7,14 @@
 #ifndef SURFACE_FILES_H
 #define SURFACE_FILES_H
 
-#include "drop.h"
+#include "coarse.h"
 
 /* STATUS_USAGE where -o, --format, --blocks and --carry do not fit together, or would overwrite an input. */
 int surface_files_check(const options *o);
 
-/* Writes the surface of all blocks; fields may be NULL. *written, from malloc, names the files for people. */
-int surface_files_write(const options *o, const typed_isovalue *iso, const shown_surface *shown,
+/* Writes the surface of all blocks, made from source; fields may be NULL. *written, from malloc, names the files for
+ * people. */
+int surface_files_write(const options *o, const coarse_surface *source, const shown_surface *shown,
                         const mesh_field *fields, int field_count, char **written);
 
 #endif

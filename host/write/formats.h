@@ -15,14 +15,21 @@
 
 #define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY, OBJ or VTP file, triangles in an STL file */
 
+/* Vertices that follow each other and whose coordinates in the file differ from those of the mesh alike. */
+typedef struct shown_part {
+    uint64_t vertex_end; /* the first vertex behind them */
+    double offset[3];    /* coordinates of the file minus those of the mesh */
+} shown_part;
+
 /* A mesh as the file shows it; what encoders take their records from. */
 typedef struct shown_mesh {
     const tc_mesh_data *mesh;
     int soup; /* vertices of the file are the triangles' corners, one after the other */
     const mesh_field *fields;
-    int field_count;  /* 0 where the format takes none */
-    double offset[3]; /* coordinates of the file minus those of the mesh */
-    int is_moved;     /* the offset is not 0: coordinates are doubles where the format has them */
+    int field_count; /* 0 where the format takes none */
+    const shown_part *parts;
+    int part_count; /* at least 1 */
+    int is_moved;   /* some offset is not 0: coordinates are doubles where the format has them */
 } shown_mesh;
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are written as numbers lie in memory");
@@ -44,10 +51,22 @@ static inline uint64_t file_vertex_count(const shown_mesh *s) {
     return s->soup ? 3 * s->mesh->triangle_count : s->mesh->vertex_count;
 }
 
+static inline const double *shown_offset(const shown_mesh *s, uint64_t vertex) {
+    int low = 0, high = s->part_count - 1;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (vertex < s->parts[middle].vertex_end)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return s->parts[low].offset;
+}
+
 /* The coordinates of a vertex of the mesh in the file. */
 static inline void shown_position(const shown_mesh *s, uint64_t vertex, double out[3]) {
-    for (uint64_t axis = 0; axis < 3; axis++)
-        out[axis] = s->offset[axis] + (double)s->mesh->positions[3 * vertex + axis];
+    const double *offset = shown_offset(s, vertex);
+    for (uint64_t axis = 0; axis < 3; axis++) out[axis] = offset[axis] + (double)s->mesh->positions[3 * vertex + axis];
 }
 
 /* Copies to an address of any alignment; returns the address behind. */

@@ -19,11 +19,19 @@ typedef struct mesh_field {
     const float *values; /* tuple by tuple */
 } mesh_field;
 
+/* Vertices, and triangles of them alone, that follow each other in a mesh: one block's. */
+typedef struct mesh_part {
+    uint64_t vertex_count, triangle_count;
+    double origin[3]; /* that their positions are relative to */
+} mesh_part;
+
 typedef struct mesh_write_options {
     const char *format; /* "ply", "stl", "obj" or "vtp", in any case; NULL: the file's ending */
     int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
     const mesh_field *fields;
     int field_count;
+    const mesh_part *parts; /* of all vertices, in turn; with part_count 0 the mesh is one, with the mesh's origin */
+    int part_count;
     const double *origin_at; /* three world coordinates that become 0, 0, 0 in the file; NULL: world coordinates, of
                                 STL, which holds float32 alone, those relative to the mesh's origin */
 } mesh_write_options;

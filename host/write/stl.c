@@ -28,14 +28,16 @@ static unsigned char *encode_triangles(const void *source, uint64_t first, uint6
     const shown_mesh *s = source;
     const tc_mesh_data *mesh = s->mesh;
     for (uint64_t t = first; t < end; t++) {
+        const uint32_t *vertices = mesh->triangles + 3 * t;
+        const double *offset = shown_offset(s, vertices[0]);
         const float *corners[3];
         float vectors[4][3];
-        for (int k = 0; k < 3; k++) corners[k] = mesh->positions + 3 * (uint64_t)mesh->triangles[3 * t + (uint64_t)k];
+        for (int k = 0; k < 3; k++) corners[k] = mesh->positions + 3 * (uint64_t)vertices[k];
         facet_normal(corners[0], corners[1], corners[2], vectors[0]);
         for (int k = 0; k < 3; k++)
             for (int axis = 0; axis < 3; axis++)
                 vectors[1 + k][axis] =
-                    s->is_moved ? (float)(s->offset[axis] + (double)corners[k][axis]) : corners[k][axis];
+                    s->is_moved ? (float)(offset[axis] + (double)corners[k][axis]) : corners[k][axis];
         to = put_bytes(to, vectors, sizeof vectors);
         to = put_bytes(to, &(uint16_t){0}, 2);
     }

@@ -8,6 +8,7 @@
 #include "formats.h"
 #include "output.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -84,8 +85,12 @@ int mesh_write_check(const char *path, const mesh_write_options *options) {
     return choose_format(path, options, &f);
 }
 
-static int is_far(const tc_mesh_data *mesh) {
-    return mesh->origin[0] != 0 || mesh->origin[1] != 0 || mesh->origin[2] != 0;
+static int is_zero(const double point[3]) { return point[0] == 0 && point[1] == 0 && point[2] == 0; }
+
+static int is_far(const tc_mesh_data *mesh, const mesh_write_options *options) {
+    for (int n = 0; options && n < options->part_count; n++)
+        if (!is_zero(options->parts[n].origin)) return 1;
+    return !is_zero(mesh->origin);
 }
 
 int mesh_write_has_doubles(const char *path, const mesh_write_options *options) {
@@ -96,21 +101,34 @@ int mesh_write_has_doubles(const char *path, const mesh_write_options *options) 
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     if (choose_format(path, options, &f)) return 0;
-    return is_far(mesh) && !f->has_doubles && !(options && options->origin_at);
+    return is_far(mesh, options) && !f->has_doubles && !(options && options->origin_at);
 }
 
-static void set_offset(shown_mesh *s, const mesh_write_options *options, const format *f) {
+/* What is added to the positions of each part; *parts from malloc, also where it fails. */
+static int set_offsets(shown_mesh *s, const mesh_write_options *options, const format *f, shown_part **parts) {
+    const mesh_part whole = {.vertex_count = s->mesh->vertex_count,
+                             .origin = {s->mesh->origin[0], s->mesh->origin[1], s->mesh->origin[2]}};
+    const int count = options ? options->part_count : 0;
+    const mesh_part *from = count ? options->parts : &whole;
     const double *at = options ? options->origin_at : NULL;
-    if (!at && !f->has_doubles) return;
-    for (int axis = 0; axis < 3; axis++) {
-        s->offset[axis] = s->mesh->origin[axis] - (at ? at[axis] : 0);
-        if (s->offset[axis] != 0) s->is_moved = 1;
+    const double *zero = at ? at : f->has_doubles ? (double[3]){0} : s->mesh->origin;
+    uint64_t end = 0;
+    s->parts = *parts = calloc((size_t)count + 1, sizeof **parts);
+    s->part_count = count ? count : 1;
+    if (!*parts) return fail(STATUS_FAILED, "out of memory for the parts of the surface");
+    for (int n = 0; n < s->part_count; n++) {
+        shown_part *part = &(*parts)[n];
+        part->vertex_end = end += from[n].vertex_count;
+        for (int axis = 0; axis < 3; axis++) part->offset[axis] = from[n].origin[axis] - zero[axis];
+        if (!is_zero(part->offset) && from[n].vertex_count) s->is_moved = 1;
     }
+    return 0;
 }
 
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
+    shown_part *parts = NULL;
     shown_mesh shown = {.mesh = mesh, .soup = options && options->soup};
     if (options) {
         shown.fields = options->fields;
@@ -118,9 +136,12 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     }
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
+    if (!status) status = set_offsets(&shown, options, f, &parts);
     if (!status) status = output_open(&o, path);
-    if (status) return status;
-    set_offset(&shown, options, f);
-    f->write(&o, &shown);
-    return output_close(&o);
+    if (!status) {
+        f->write(&o, &shown);
+        status = output_close(&o);
+    }
+    free(parts);
+    return status;
 }
