@@ -5,6 +5,7 @@
 #include "failure.h"
 #include "float_environment.h"
 #include "reference.h"
+#include "structs.h"
 
 void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t) {
     const int components = c->field->components;

@@ -32,6 +32,12 @@ typedef struct complex_grid {
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
 } complex_grid;
 
+/* As tc_complex_create; the options are complete. */
+tc_status complex_create(tc_context *context, const tc_complex_options *options, scan_parameters scan, tc_grid **out);
+
+/* What its kernels are: one program, tried with emission or without. */
+kernel_kind complex_kind(const tc_grid *grid, bool emits);
+
 /* As tc_count, tc_extract and tc_carry; the struct of options is complete. */
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);

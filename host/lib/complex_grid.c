@@ -2,6 +2,7 @@
 
 #include "failure.h"
 #include "float_environment.h"
+#include "structs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,6 +80,24 @@ static tc_status complex_describe(tc_grid *grid, const tc_complex_options *o) {
     return points_take(grid, o);
 }
 
+tc_status complex_create(tc_context *context, const tc_complex_options *o, scan_parameters scan, tc_grid **out) {
+    *out = NULL;
+    tc_status status = options_check(o);
+    if (status) return status;
+    tc_grid *grid = calloc(1, sizeof *grid);
+    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    grid->context = context;
+    grid->scan = scan;
+    status = complex_describe(grid, o);
+    if (!status && context->options.engine == TC_ENGINE_OPENCL && o->tetrahedron_count && o->point_count)
+        status = complex_device_create(grid);
+    if (!status)
+        *out = grid;
+    else
+        tc_grid_destroy(grid);
+    return status;
+}
+
 tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_complex_options o;
@@ -88,20 +107,7 @@ tc_status tc_complex_create(tc_context *context, const tc_complex_options *optio
     tc_complex_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "complex options");
     if (!status) status = context_check(context);
-    if (!status) status = options_check(&o);
-    if (status) return status;
-    tc_grid *grid = calloc(1, sizeof *grid);
-    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
-    grid->context = context;
-    status = complex_describe(grid, &o);
-    if (!status && context->options.engine == TC_ENGINE_OPENCL && o.tetrahedron_count && o.point_count)
-        status = complex_device_create(grid);
-    if (status) {
-        tc_grid_destroy(grid);
-        return status;
-    }
-    *out = grid;
-    return TC_OK;
+    return status ? status : complex_create(context, &o, context->launch.scan, out);
 }
 
 void complex_grid_destroy(tc_grid *grid) {
@@ -128,6 +134,10 @@ static tc_status complex_request_check(const tc_extract_options *options) {
     if (options->method != TC_METHOD_TETRA)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "complexes have no cubes: use TC_METHOD_TETRA");
     return TC_OK;
+}
+
+kernel_kind complex_kind(const tc_grid *grid, bool emits) {
+    return (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type, .emits = emits};
 }
 
 static bool surface_possible(const tc_grid *grid, double isovalue) {

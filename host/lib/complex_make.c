@@ -1,9 +1,9 @@
 /*
  * The two passes of tetrahedralize.h, and the memory of a complex.
  */
+#include "structs.h"
 #include "tetrahedralize.h"
 
-#include "context.h"
 #include "failure.h"
 #include "parallel.h"
 

@@ -29,15 +29,14 @@ uint32_t complex_cluster_count(uint64_t tetrahedron_count) {
     return (uint32_t)((tetrahedron_count + CLUSTER_TETRAHEDRA - 1) / CLUSTER_TETRAHEDRA);
 }
 
-uint32_t complex_tile_clusters(const tc_context *context) {
-    const tc_context_options *o = &context->options;
-    const uint32_t tile = o->tile_bricks ? o->tile_bricks : o->work_items == 1 ? 1024 : 64;
-    return o->work_items > tile ? o->work_items : tile;
+uint32_t complex_tile_clusters(const tc_grid *grid) {
+    const uint32_t work_items = grid->context->launch.work_items, given = grid->scan.tile_bricks;
+    const uint32_t tile = given ? given : work_items == 1 ? 1024 : 64;
+    return work_items > tile ? work_items : tile;
 }
 
-uint32_t complex_tile_actives(const tc_context *context) {
-    const tc_context_options *o = &context->options;
-    return o->work_items == 1 && !o->tile_bricks ? 1024 : complex_tile_clusters(context);
+uint32_t complex_tile_actives(const tc_grid *grid) {
+    return grid->context->launch.work_items == 1 && !grid->scan.tile_bricks ? 1024 : complex_tile_clusters(grid);
 }
 
 uint64_t complex_budget(const tc_context *context) {
@@ -49,7 +48,7 @@ uint64_t complex_budget(const tc_context *context) {
 static device_need part_need(const tc_grid *grid, uint64_t points, uint64_t tetrahedra) {
     const tc_context *context = grid->context;
     const uint64_t clusters = complex_cluster_count(tetrahedra), page = context->in_place ? PAGE_BYTES : 0;
-    const uint64_t tiles = clusters / complex_tile_clusters(context) + 1;
+    const uint64_t tiles = clusters / complex_tile_clusters(grid) + 1;
     device_need need = {0, 0};
     need_add(&need, page + 16 * tetrahedra);
     need_add(&need, page + 12 * points);
@@ -63,12 +62,12 @@ static device_need part_need(const tc_grid *grid, uint64_t points, uint64_t tetr
 }
 
 /* The largest surface, with its mesh. */
-static void surface_add(const tc_context *context, uint64_t tetrahedra, device_need *need) {
+static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
     uint64_t entries = 64;
     while (entries < 8 * tetrahedra) entries *= 2;
     need_add(need, sizeof(active_tetrahedron) * tetrahedra);
     need_add(need, 16 * tetrahedra); /* entries of its edges */
-    need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(context) + 1));
+    need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
     need_add(need, 4 * entries);
     need_add(need, 4 * MESH_BYTES_PER_VERTEX * tetrahedra);
     need_add(need, 2 * MESH_BYTES_PER_TRIANGLE * tetrahedra);
@@ -90,7 +89,7 @@ static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points
     if (tetrahedra > c->tetrahedron_count) tetrahedra = c->tetrahedron_count;
     if (!points_whole && 4 * tetrahedra < points) points = 4 * tetrahedra;
     device_need need = part_need(grid, points, tetrahedra);
-    surface_add(grid->context, tetrahedra, &need);
+    surface_add(grid, tetrahedra, &need);
     return need;
 }
 

@@ -12,6 +12,7 @@
 #define COMPLEX_RUN_H
 
 #include "complex.h"
+#include "kernels.h"
 
 /* How a complex is cut, and what is known of its clusters; the host has the ranges that the device has of a slab. */
 struct complex_slabs {
@@ -26,8 +27,8 @@ struct complex_slabs {
 uint32_t complex_cluster_count(uint64_t tetrahedron_count);
 
 /* Clusters per tile of kernel 1, active tetrahedra per tile of the numbering. */
-uint32_t complex_tile_clusters(const tc_context *context);
-uint32_t complex_tile_actives(const tc_context *context);
+uint32_t complex_tile_clusters(const tc_grid *grid);
+uint32_t complex_tile_actives(const tc_grid *grid);
 
 /* What device buffers may have together, in bytes. */
 uint64_t complex_budget(const tc_context *context);
@@ -74,8 +75,8 @@ typedef struct complex_run {
     complex_part *part;
     tc_context *context;
     complex_buffers *work;
-    const program *program; /* of the kernels */
-    slab s;                 /* the isovalue's part */
+    sized_kernel kernels[COMPLEX_KERNELS];
+    slab s; /* the isovalue's part */
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool too_large;  /* the surface of a complex that is not cut does not fit */

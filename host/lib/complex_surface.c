@@ -64,25 +64,6 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
 
 /* --------------------------------------------------------------------------------------------------------- commands */
 
-typedef struct kernel_argument {
-    size_t bytes;
-    const void *value;
-} kernel_argument;
-
-#define ARGUMENT(x)                                                                                                    \
-    { sizeof(x), &(x) }
-
-static tc_status kernel_run(const complex_run *r, int kernel, const char *name, const kernel_argument *arguments,
-                            cl_uint count) {
-    const size_t local = r->program->work_items, global = local * r->context->options.work_groups;
-    cl_kernel launched = r->program->complex[kernel];
-    cl_int error = CL_SUCCESS;
-    for (cl_uint n = 0; n < count && !error; n++)
-        error = cl->SetKernelArg(launched, n, arguments[n].bytes, arguments[n].value);
-    if (!error) error = cl->EnqueueNDRangeKernel(r->context->queue, launched, 1, NULL, &global, &local, 0, NULL, NULL);
-    return error ? context_fail(r->context, name, error) : TC_OK;
-}
-
 static tc_status buffer_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
                              uint64_t bytes) {
     cl_int error =
@@ -105,7 +86,7 @@ static void isovalue_describe(complex_run *r, double isovalue) {
     r->s.key_flip = inside.key_flip;
     r->s.key_inside = inside.key_inside;
     r->s.key_outside = inside.key_outside;
-    r->s.spin_limit = r->context->options.spin_limit;
+    r->s.spin_limit = r->grid->scan.spin_limit;
     r->s.isovalue32 = (float)isovalue;
     memcpy(&r->s.isovalue64, &isovalue, sizeof isovalue);
 }
@@ -119,8 +100,8 @@ static void part_describe(complex_run *r) {
                            .point_count = part->point_count,
                            .tetrahedron_count = part->tetrahedron_count,
                            .cluster_count = complex_cluster_count(part->tetrahedron_count),
-                           .tile_clusters = complex_tile_clusters(r->context),
-                           .tile_actives = complex_tile_actives(r->context)};
+                           .tile_clusters = complex_tile_clusters(r->grid),
+                           .tile_actives = complex_tile_actives(r->grid)};
     r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
 }
 
@@ -130,7 +111,7 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     r->work = &context->work.complex;
     isovalue_describe(r, isovalue);
     context->counted = NULL;
-    tc_status status = complex_kernels_get(context, grid, &r->program);
+    tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
     if (context->served != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
@@ -163,7 +144,7 @@ tc_status surface_classify(complex_run *r) {
                                          ARGUMENT(w->clusters.memory),
                                          ARGUMENT(w->active_clusters.memory),
                                          ARGUMENT(w->state.memory)};
-    status = kernel_run(r, KERNEL_CLASSIFY, "kernel complex_classify", arguments, 8);
+    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments, 8);
     if (!status) status = head_read(r);
     if (!status && r->head[HEAD_INVALID]) status = complex_point_fail(r->complex);
     if (status) return status;
@@ -189,7 +170,7 @@ static tc_status active_list(complex_run *r) {
                                          ARGUMENT(w->active.memory),
                                          ARGUMENT(w->table.memory),
                                          ARGUMENT(w->tiles.memory)};
-    return status ? status : kernel_run(r, KERNEL_LIST, "kernel complex_list", arguments, 9);
+    return status ? status : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments, 9);
 }
 
 static tc_status table_reserve(complex_run *r, uint64_t entries) {
@@ -220,8 +201,8 @@ static tc_status edges_join(complex_run *r) {
                                       ARGUMENT(w->tiles.memory),
                                       ARGUMENT(w->table.memory),
                                       ARGUMENT(w->entries.memory)};
-    tc_status status = kernel_run(r, KERNEL_JOIN, "kernel complex_join", join, 6);
-    if (!status) status = kernel_run(r, KERNEL_NUMBER, "kernel complex_number", number, 8);
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, 6);
+    if (!status) status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number, 8);
     return status ? status : head_read(r);
 }
 
@@ -259,7 +240,7 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
                                          ARGUMENT(w->entries.memory),
                                          ARGUMENT(positions->memory),
                                          ARGUMENT(triangles->memory)};
-    tc_status status = kernel_run(r, KERNEL_EMIT, "kernel complex_emit", arguments, 12);
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments, 12);
     cl_int error = cl->Finish(r->context->queue);
     return !status && error ? context_fail(r->context, "kernel complex_emit", error) : status;
 }

@@ -6,8 +6,10 @@
 
 #include "complex_job.h"
 #include "host_block.h"
+#include "kernel_kind.h"
 #include "opencl.h"
 #include "tetracubes.h"
+#include "tuning.h"
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -19,28 +21,19 @@ typedef struct device_buffer {
     host_block block; /* where it lies, on devices that work in place */
 } device_buffer;
 
-/* One of the two kernels as built with some options; with missing samples, kernel 1 has cells_mark beside it. */
+enum { KERNELS_MOST = COMPLEX_KERNELS, PROGRAM_OPTIONS_BYTES = 512 };
+
+/* Kernels as built with some options: one of the two, or those of complexes. */
 typedef struct program {
-    char asked[512];     /* its options but for the work-items, which a kernel may allow fewer of */
-    char options[512];   /* those that it was built with */
-    uint32_t work_items; /* per group: what its kernels are launched with */
+    char asked[PROGRAM_OPTIONS_BYTES];   /* its options but for the work-items, which a kernel may allow fewer of */
+    char options[PROGRAM_OPTIONS_BYTES]; /* those that it was built with */
+    uint32_t work_items;                 /* per group: what its kernels are launched with */
     const char *const *sources;
     bool cached; /* it came from the cache of built programs */
     cl_program program;
-    cl_kernel kernel, cells;
-    cl_kernel complex[COMPLEX_KERNELS];
+    cl_kernel kernels[KERNELS_MOST];
     struct program *next;
 } program;
-
-/* A kernel, and the work-items per group that it was built for. */
-typedef struct sized_kernel {
-    cl_kernel kernel;
-    uint32_t work_items;
-} sized_kernel;
-
-typedef struct kernels {
-    sized_kernel classify, cells, emit;
-} kernels;
 
 /* What kernel 1 leaves for kernel 2, per word or brick of the window of sign words. */
 typedef struct word_buffers {
@@ -72,11 +65,9 @@ typedef struct workspace {
     device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
-/* Kinds of kernels that are tried apart: of grid, type, method, missing samples, normals, of kernel 1 or both. */
-enum { TRIAL_KINDS = 4 * 8 * 2 * 2 * 2 * 2 };
-
 struct tc_context {
-    tc_context_options options; /* strings and OpenCL objects cleared */
+    tc_context_options options; /* the caller's; strings and OpenCL objects cleared */
+    launch_parameters launch;
     tc_device_info info;
     pid_t process; /* that made it */
     bool in_place; /* the device works in the host's memory: nothing is copied */
@@ -86,12 +77,12 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
-    uint32_t other_items;          /* work-items of the other text of kernels; 0: there is none to take (vetting.c) */
     bool is_trial;                 /* kernels are built without asking what is known of them */
+    bool tries;                    /* a trial is under way: progress is not told (trial.c) */
     bool text_changed;             /* the other text was taken within a call, which starts again */
-    bool vetted[TRIAL_KINDS + 1];  /* kernels that may be built, and the device itself (vetting.c) */
+    bool vetted[KERNEL_KINDS + 1]; /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *served;  /* the grid that the workspace was last used for */
-    bool passed[TRIAL_KINDS];      /* kernels that were tried (trial.c) */
+    bool passed[KERNEL_KINDS];     /* kernels that were tried (trial.c) */
     const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
@@ -111,13 +102,6 @@ void context_finish(const tc_context *context);
 
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
-
-/* The kernels for a grid, built when first asked for, owned by the context (program.c). */
-tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out);
-tc_status emit_kernel_get(tc_context *context, const struct tc_grid *grid, tc_method method, bool missing, bool normals,
-                          kernels *out);
-tc_status complex_kernels_get(tc_context *context, const struct tc_grid *grid, const program **out);
-void programs_release(tc_context *context);
 
 /* u32, i32 and f64 samples: vertices are made in double. */
 bool type_is_wide(tc_type type);
@@ -140,26 +124,10 @@ void buffer_release(tc_context *context, device_buffer *buffer);
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
 
-/* As tc_context_create; its kernels are built without asking what is known of them. */
-tc_status context_create_for_trial(const tc_context_options *options, tc_context **context);
-
-/* All sources of kernels, for a key: the same text, the same number. */
-uint64_t kernel_sources_hash(void);
-
 /* Gives the buffers back that are kept between extractions. */
 void workspace_release(tc_context *context);
 
 /* Milliseconds of a clock that only runs forward. */
 double clock_ms(void);
-
-/* Copies a struct of any older size over defaults already in *to; TC_ERROR_ARGUMENT, naming what, for NULL, for one
- * that was never initialised and for one of a newer library. */
-tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what);
-
-/* The other way: zeroes a struct of the caller's, of any older size, but for its size; fails like options_take. */
-tc_status result_begin(void *out, size_t known_bytes, const char *what);
-
-/* Copies as much of *from as the struct of the caller's has, but for its size. */
-void result_give(void *out, const void *from);
 
 #endif

@@ -1,9 +1,9 @@
 #include "device.h"
 
-#include "context.h"
 #include "failure.h"
 #include "float_environment.h"
 #include "pocl_cache.h"
+#include "structs.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -5,8 +5,9 @@
 #include "context.h"
 #include "failure.h"
 #include "float_environment.h"
-#include "reference.h"
+#include "structs.h"
 #include "structured.h"
+#include "surface.h"
 #include "trial.h"
 #include "vetting.h"
 
@@ -19,6 +20,23 @@ void tc_extract_options_init(tc_extract_options *options) {
     *options = (tc_extract_options){.struct_size = sizeof *options};
 }
 
+tc_status grid_create(tc_context *context, const tc_grid_options *o, scan_parameters scan, tc_grid **out) {
+    *out = NULL;
+    tc_grid *grid = malloc(sizeof *grid);
+    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    tc_status status = grid_describe(o, grid);
+    grid->context = context;
+    grid->scan = scan;
+    if (!status && o->cl_samples && context->options.engine != TC_ENGINE_OPENCL)
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine takes samples, not cl_samples");
+    if (!status && context->options.engine == TC_ENGINE_OPENCL) status = structured_grid_create(grid);
+    if (!status)
+        *out = grid;
+    else
+        tc_grid_destroy(grid);
+    return status;
+}
+
 tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_grid_options o;
@@ -28,20 +46,7 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
     tc_grid_options_init(&o);
     tc_status status = options_take(&o, sizeof o, options, "grid options");
     if (!status) status = context_check(context);
-    if (status) return status;
-    tc_grid *grid = malloc(sizeof *grid);
-    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
-    status = grid_describe(&o, grid);
-    grid->context = context;
-    if (!status && o.cl_samples && context->options.engine != TC_ENGINE_OPENCL)
-        status = (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine takes samples, not cl_samples");
-    if (!status && context->options.engine == TC_ENGINE_OPENCL) status = structured_grid_create(grid);
-    if (status) {
-        tc_grid_destroy(grid);
-        return status;
-    }
-    *out = grid;
-    return TC_OK;
+    return status ? status : grid_create(context, &o, context->launch.scan, out);
 }
 
 void tc_grid_destroy(tc_grid *grid) {
@@ -63,14 +68,12 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
-static tc_status grid_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
-    if (grid->complex) return complex_count(grid, options, counts);
-    return grid->device ? structured_count(grid, options, counts) : reference_count(grid, options, counts);
-}
-
-static tc_status grid_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
-    if (grid->complex) return complex_extract(grid, options, mesh);
-    return grid->device ? structured_extract(grid, options, mesh) : reference_extract(grid, options, mesh);
+/* At the start of a call: kernels that are not known to be good are vetted, and perhaps the other text is taken. */
+static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
+    if (!surface_needs_kernels(grid, options)) return TC_OK;
+    tc_status status = call_vet(grid->context, surface_kind(grid, options, emits));
+    if (!status && grid->device) structured_reshape(grid);
+    return status;
 }
 
 tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
@@ -86,7 +89,7 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
         found = (tc_counts){.struct_size = sizeof found};
         status = grid_vet(grid, &o, false);
         if (!status) status = trial_run(grid, &o, false);
-        if (!status) status = grid_count(grid, &o, &found);
+        if (!status) status = surface_count(grid, &o, &found);
     } while (vetting_restarts(grid->context) || (!status && trial_pending(grid, &o, false)));
     if (status) return status;
     found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
@@ -116,7 +119,7 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
 static tc_status vetted_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = grid_vet(grid, options, true);
     if (!status) status = trial_run(grid, options, true);
-    if (!status) status = grid_extract(grid, options, mesh);
+    if (!status) status = surface_extract(grid, options, mesh);
     if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);
     return status ? status : trial_run(grid, options, true); /* of other kernels, where missing samples were met */
 }

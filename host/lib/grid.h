@@ -6,6 +6,7 @@
 
 #include "origin.h"
 #include "tetracubes.h"
+#include "tuning.h"
 
 #include <math.h>
 
@@ -19,6 +20,7 @@ typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEA
 
 struct tc_grid {
     tc_context *context;
+    scan_parameters scan; /* those of the context, but in a trial */
     int64_t dims[3];
     int64_t first[3];
     tc_type type;
@@ -43,6 +45,9 @@ struct tc_grid {
 
 /* The caller's options, complete and checked. */
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
+
+/* As tc_grid_create; the options are complete. */
+tc_status grid_create(tc_context *context, const tc_grid_options *options, scan_parameters scan, tc_grid **out);
 
 /* Checks the options and fills *grid but for context and device; to be released in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);

@@ -2,6 +2,7 @@
 
 #include "context.h"
 #include "failure.h"
+#include "structs.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,15 +3,13 @@
  * cache of built programs where that has them. What was built here is put there at the end of the context, when the
  * kernels have run.
  */
-#include "context.h"
+#include "program.h"
 
 #include "failure.h"
-#include "pocl_cache.h"
-#include "grid.h"
 #include "kernel_sources.h"
+#include "pocl_cache.h"
 #include "program_cache.h"
 #include "text.h"
-#include "vetting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,27 +30,38 @@ static const type_text type_texts[] = {
 };
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
-static void classify_options_write(const tc_context *context, tc_type type, tc_method method, bool missing, char *out,
-                                   size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d",
-             type_texts[type].bits, type_texts[type].floating, missing, context->options.work_items,
-             method == TC_METHOD_HYBRID);
+static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    const type_text *type = &type_texts[kind.type];
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d", type->bits,
+             type->floating, kind.missing, context->launch.work_items, kind.hybrid);
 }
 
-static void emit_options_write(const tc_context *context, const tc_grid *grid, tc_method method, bool missing,
-                               bool normals, char *out, size_t bytes) {
+static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {
     char common[128];
-    const tc_type type = grid->type;
-    bool wide = type_is_wide(type), vertices = device_makes_vertices(context, type);
-    classify_options_write(context, type, method, missing, common, sizeof common);
-    snprintf(out, bytes, "%s %s-DWIDE=%d %s%s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%d%s", common,
-             context->options.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
-             vertices ? "-DREAL=" : "",
-             !vertices ? ""
-             : wide    ? "double"
-                       : "float",
-             type_texts[type].value, normals, context->options.division, (int)grid->kind,
+    const bool wide = type_is_wide(kind.type), vertices = device_makes_vertices(context, kind.type);
+    const char *real = !vertices ? "" : wide ? "-DREAL=double" : "-DREAL=float";
+    classify_options_write(context, kind, common, sizeof common);
+    snprintf(out, bytes, "%s %s-DWIDE=%d %s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%u%s", common,
+             context->launch.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide, real,
+             type_texts[kind.type].value, kind.normals, context->launch.division, grid,
              context->info.has_fp64 ? " -DFP64=1" : "");
+}
+
+/* Complexes have points, and no cells: what is missing has no tetrahedra. */
+static void complex_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    const kernel_kind built = {.type = kind.type, .missing = true};
+    char common[PROGRAM_OPTIONS_BYTES - 16];
+    emit_options_write(context, built, 0, common, sizeof common);
+    snprintf(out, bytes, "%s -DCOMPLEX=1", common);
+}
+
+static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
+    if (name == PROGRAM_CLASSIFY)
+        classify_options_write(context, kind, out, bytes);
+    else if (name == PROGRAM_EMIT)
+        emit_options_write(context, kind, kind.grid, out, bytes);
+    else
+        complex_options_write(context, kind, out, bytes);
 }
 
 static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
@@ -74,59 +83,73 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-/* Sources of each text, in order; the rest of a list is NULL. */
+/* Sources in order; the rest of a list is NULL. */
 enum { SOURCES_MOST = 24 };
 
-static const char *const classify_sources[][SOURCES_MOST] = {
-    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
-                    kernel_source_words, kernel_source_words_alone, kernel_source_tetrahedra, kernel_source_cells,
-                    kernel_source_ranges, kernel_source_ranges_alone, kernel_source_sign, kernel_source_sign_alone,
-                    kernel_source_count, kernel_source_count_alone, kernel_source_scan, kernel_source_classify},
-    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_words_groups, kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
-                     kernel_source_sign, kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups,
-                     kernel_source_scan, kernel_source_classify},
-};
-static const char *const emit_sources[][SOURCES_MOST] = {
-    [TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions, kernel_source_lanes_alone,
-                    kernel_source_words, kernel_source_words_alone, kernel_source_tetrahedra, kernel_source_cells,
-                    kernel_source_crossing, kernel_source_vertex, kernel_source_mesh, kernel_source_emit_numbers,
-                    kernel_source_emit_brick, kernel_source_emit},
-    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_words_groups, kernel_source_tetrahedra, kernel_source_cells, kernel_source_crossing,
-                     kernel_source_vertex, kernel_source_mesh, kernel_source_emit_rows, kernel_source_emit},
-};
-static const char *const complex_sources[][SOURCES_MOST] = {
-    [TEXT_ALONE] = {kernel_source_slab,
-                    kernel_source_common,
-                    kernel_source_extensions,
-                    kernel_source_lanes_alone,
-                    kernel_source_words,
-                    kernel_source_words_alone,
-                    kernel_source_ranges,
-                    kernel_source_ranges_alone,
-                    kernel_source_scan,
-                    kernel_source_crossing,
-                    kernel_source_complex_job,
-                    kernel_source_complex_cluster,
-                    kernel_source_complex_cluster_alone,
-                    kernel_source_complex_tile,
-                    kernel_source_complex_count,
-                    kernel_source_complex_count_alone,
-                    kernel_source_complex_classify,
-                    kernel_source_complex_join,
-                    kernel_source_complex_join_alone,
-                    kernel_source_complex_number,
-                    kernel_source_complex_emit},
-    [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups, kernel_source_words,
-                     kernel_source_words_groups, kernel_source_ranges, kernel_source_scan, kernel_source_crossing,
-                     kernel_source_complex_job, kernel_source_complex_cluster, kernel_source_complex_cluster_groups,
-                     kernel_source_complex_tile, kernel_source_complex_count, kernel_source_complex_count_groups,
-                     kernel_source_complex_classify, kernel_source_complex_join, kernel_source_complex_join_groups,
-                     kernel_source_complex_number, kernel_source_complex_emit},
-};
+/* A program in both texts, and its kernels in order. */
+typedef struct program_text {
+    const char *kernels[KERNELS_MOST];
+    const char *sources[2][SOURCES_MOST];
+} program_text;
 
-static kernel_text text_of(const tc_context *context) { return text_for(context->options.work_items); }
+static const program_text programs[PROGRAM_COUNT] = {
+    [PROGRAM_CLASSIFY] =
+        {.kernels = {"classify", "cells_mark"},
+         .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
+                                     kernel_source_lanes_alone, kernel_source_words, kernel_source_words_alone,
+                                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
+                                     kernel_source_ranges_alone, kernel_source_sign, kernel_source_sign_alone,
+                                     kernel_source_count, kernel_source_count_alone, kernel_source_scan,
+                                     kernel_source_classify},
+                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                      kernel_source_words, kernel_source_words_groups, kernel_source_tetrahedra,
+                                      kernel_source_cells, kernel_source_ranges, kernel_source_sign,
+                                      kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups,
+                                      kernel_source_scan, kernel_source_classify}}},
+    [PROGRAM_EMIT] = {.kernels = {"emit"},
+                      .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
+                                                  kernel_source_lanes_alone, kernel_source_words,
+                                                  kernel_source_words_alone, kernel_source_tetrahedra,
+                                                  kernel_source_cells, kernel_source_crossing, kernel_source_vertex,
+                                                  kernel_source_mesh, kernel_source_emit_numbers,
+                                                  kernel_source_emit_brick, kernel_source_emit},
+                                  [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                                   kernel_source_words, kernel_source_words_groups,
+                                                   kernel_source_tetrahedra, kernel_source_cells,
+                                                   kernel_source_crossing, kernel_source_vertex, kernel_source_mesh,
+                                                   kernel_source_emit_rows, kernel_source_emit}}},
+    [PROGRAM_COMPLEX] =
+        {.kernels = {"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
+         .sources = {[TEXT_ALONE] = {kernel_source_slab,
+                                     kernel_source_common,
+                                     kernel_source_extensions,
+                                     kernel_source_lanes_alone,
+                                     kernel_source_words,
+                                     kernel_source_words_alone,
+                                     kernel_source_ranges,
+                                     kernel_source_ranges_alone,
+                                     kernel_source_scan,
+                                     kernel_source_crossing,
+                                     kernel_source_complex_job,
+                                     kernel_source_complex_cluster,
+                                     kernel_source_complex_cluster_alone,
+                                     kernel_source_complex_tile,
+                                     kernel_source_complex_count,
+                                     kernel_source_complex_count_alone,
+                                     kernel_source_complex_classify,
+                                     kernel_source_complex_join,
+                                     kernel_source_complex_join_alone,
+                                     kernel_source_complex_number,
+                                     kernel_source_complex_emit},
+                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                      kernel_source_words, kernel_source_words_groups, kernel_source_ranges,
+                                      kernel_source_scan, kernel_source_crossing, kernel_source_complex_job,
+                                      kernel_source_complex_cluster, kernel_source_complex_cluster_groups,
+                                      kernel_source_complex_tile, kernel_source_complex_count,
+                                      kernel_source_complex_count_groups, kernel_source_complex_classify,
+                                      kernel_source_complex_join, kernel_source_complex_join_groups,
+                                      kernel_source_complex_number, kernel_source_complex_emit}}},
+};
 
 static program_recipe recipe_of(const program *p) {
     program_recipe recipe = {p->sources, 0, p->options};
@@ -136,12 +159,12 @@ static program_recipe recipe_of(const program *p) {
 
 uint64_t kernel_sources_hash(void) {
     uint64_t hash = 0xcbf29ce484222325u;
-    for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++) {
-        const char *const *const lists[] = {classify_sources[text], emit_sources[text], complex_sources[text]};
-        for (int n = 0; n < 3; n++)
-            for (int s = 0; s < SOURCES_MOST && lists[n][s]; s++)
-                for (const char *c = lists[n][s]; *c; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
-    }
+    for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++)
+        for (int name = 0; name < PROGRAM_COUNT; name++) {
+            const char *const *sources = programs[name].sources[text];
+            for (int n = 0; n < SOURCES_MOST && sources[n]; n++)
+                for (const char *c = sources[n]; *c; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+        }
     return hash;
 }
 
@@ -185,28 +208,20 @@ static tc_status kernel_create(const tc_context *context, const program *p, cons
     return TC_OK;
 }
 
-static tc_status kernels_create(const tc_context *context, program *p, const char *name, bool cells,
-                                group_limit *limit) {
-    static const char *const of_complexes[COMPLEX_KERNELS] = {"complex_classify", "complex_list", "complex_join",
-                                                              "complex_number", "complex_emit"};
+static tc_status kernels_create(const tc_context *context, program *p, const char *const *names, group_limit *limit) {
     tc_status status = TC_OK;
     *limit = (group_limit){NULL, SIZE_MAX, 0};
-    if (name) status = kernel_create(context, p, name, &p->kernel, limit);
-    if (!status && cells) status = kernel_create(context, p, "cells_mark", &p->cells, limit);
-    for (int n = 0; n < COMPLEX_KERNELS && !name && !status; n++)
-        status = kernel_create(context, p, of_complexes[n], &p->complex[n], limit);
+    for (int n = 0; n < KERNELS_MOST && names[n] && !status; n++)
+        status = kernel_create(context, p, names[n], &p->kernels[n], limit);
     return status;
 }
 
 /* Gives back what was built, not the program's place. */
 static void program_clear(program *p) {
-    if (p->kernel) cl->ReleaseKernel(p->kernel);
-    if (p->cells) cl->ReleaseKernel(p->cells);
-    for (int n = 0; n < COMPLEX_KERNELS; n++)
-        if (p->complex[n]) cl->ReleaseKernel(p->complex[n]);
+    for (int n = 0; n < KERNELS_MOST; n++)
+        if (p->kernels[n]) cl->ReleaseKernel(p->kernels[n]);
     if (p->program) cl->ReleaseProgram(p->program);
-    p->kernel = p->cells = NULL;
-    memset(p->complex, 0, sizeof p->complex);
+    memset(p->kernels, 0, sizeof p->kernels);
     p->program = NULL;
 }
 
@@ -239,12 +254,12 @@ static void program_options_write(program *p) {
 }
 
 /* Builds the program, and again, smaller, where one of its kernels allows fewer work-items. */
-static tc_status program_make(const tc_context *context, program *p, const char *name, bool cells) {
+static tc_status program_make(const tc_context *context, program *p, const char *const *names) {
     group_limit limit;
-    for (p->work_items = context->options.work_items;; p->work_items = work_items_below(&limit)) {
+    for (p->work_items = context->launch.work_items;; p->work_items = work_items_below(&limit)) {
         program_options_write(p);
         tc_status status = program_build(context, p);
-        if (!status) status = kernels_create(context, p, name, cells, &limit);
+        if (!status) status = kernels_create(context, p, names, &limit);
         if (status || p->work_items <= limit.most) return status;
         if (!work_items_below(&limit))
             return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
@@ -254,10 +269,11 @@ static tc_status program_make(const tc_context *context, program *p, const char 
     }
 }
 
-/* The program with these options, built, and progress told, when first asked for. name: of its main kernel; NULL: those
- * of complexes. */
-static tc_status program_get(tc_context *context, const char *options, const char *const sources[SOURCES_MOST],
-                             const char *name, bool cells, program **out) {
+tc_status program_get(tc_context *context, program_name name, kernel_kind kind, const program **out) {
+    const program_text *text = &programs[name];
+    const char *kernels[KERNELS_MOST];
+    char options[PROGRAM_OPTIONS_BYTES];
+    options_write(context, name, kind, options, sizeof options);
     for (program *p = context->programs; p; p = p->next)
         if (!strcmp(p->asked, options)) {
             *out = p;
@@ -266,8 +282,10 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
     snprintf(p->asked, sizeof p->asked, "%s", options);
-    p->sources = sources;
-    tc_status status = program_make(context, p, name, cells);
+    p->sources = text->sources[text_for(context->launch.work_items)];
+    memcpy(kernels, text->kernels, sizeof kernels);
+    if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
+    tc_status status = program_make(context, p, kernels);
     if (status) {
         program_release(p);
         return status;
@@ -275,45 +293,6 @@ static tc_status program_get(tc_context *context, const char *options, const cha
     p->next = context->programs;
     *out = context->programs = p;
     return context_progress(context, "build", 0);
-}
-
-tc_status classify_kernels_get(tc_context *context, tc_type type, tc_method method, bool missing, kernels *out) {
-    char options[sizeof context->programs->options];
-    program *p;
-    const kernel_kind kind = {.type = type, .hybrid = method == TC_METHOD_HYBRID, .missing = missing};
-    tc_status status = kernels_vet(context, kind);
-    if (status) return status;
-    classify_options_write(context, type, method, missing, options, sizeof options);
-    status = program_get(context, options, classify_sources[text_of(context)], "classify", missing, &p);
-    if (status) return status;
-    out->classify = (sized_kernel){p->kernel, p->work_items};
-    out->cells = (sized_kernel){p->cells, p->work_items};
-    return TC_OK;
-}
-
-tc_status emit_kernel_get(tc_context *context, const tc_grid *grid, tc_method method, bool missing, bool normals,
-                          kernels *out) {
-    char options[sizeof context->programs->options];
-    program *p;
-    const kernel_kind kind = {grid->kind, grid->type, method == TC_METHOD_HYBRID, missing, normals, true};
-    tc_status status = kernels_vet(context, kind);
-    if (status) return status;
-    emit_options_write(context, grid, method, missing, normals, options, sizeof options);
-    status = program_get(context, options, emit_sources[text_of(context)], "emit", false, &p);
-    if (!status) out->emit = (sized_kernel){p->kernel, p->work_items};
-    return status;
-}
-
-tc_status complex_kernels_get(tc_context *context, const tc_grid *grid, const program **out) {
-    char options[sizeof context->programs->options];
-    program *p = NULL;
-    tc_status status = kernels_vet(context, (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type});
-    if (status) return status;
-    emit_options_write(context, grid, TC_METHOD_TETRA, true, false, options, sizeof options);
-    strncat(options, " -DCOMPLEX=1", sizeof options - strlen(options) - 1);
-    status = program_get(context, options, complex_sources[text_of(context)], NULL, false, &p);
-    if (!status) *out = p;
-    return status;
 }
 
 void programs_release(tc_context *context) {

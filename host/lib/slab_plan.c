@@ -43,11 +43,11 @@ uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->w
 
 /* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
  * samples. Never so large that groups run out of tiles. */
-static void tiles_shape(const tc_context *context, slab_plan *plan) {
+static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
-    uint64_t wanted = (context->options.tile_bricks + plan->words_x - 1ull) / plan->words_x;
-    if (!context->options.tile_bricks)
-        wanted = context->options.work_items == 1 ? rows / (16ull * context->options.work_groups) : 8 / plan->words_x;
+    uint64_t wanted = (grid->scan.tile_bricks + plan->words_x - 1ull) / plan->words_x;
+    if (!grid->scan.tile_bricks)
+        wanted = context->launch.work_items == 1 ? rows / (16ull * context->launch.work_groups) : 8 / plan->words_x;
     if (wanted == 0) wanted = 1;
     plan->tile_rows = (uint32_t)min_u64(wanted, plan->bricks_y);
     /* A grid has rows of bricks. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
@@ -80,7 +80,7 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
     uint64_t arrays = 0, windows = plan_window_count(plan);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
-    uint64_t scratch = 8ull * plan->scratch_words * context->options.work_groups;
+    uint64_t scratch = 8ull * plan->scratch_words * context->launch.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
     uint64_t fixed = 4 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
     *largest = words;
@@ -99,9 +99,9 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
                       uint64_t budget, uint64_t *bytes) {
     uint64_t largest;
     plan->slab_layers = slab_layers;
-    plan->work_items = context->options.work_items;
+    plan->work_items = context->launch.work_items;
     plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
-    tiles_shape(context, plan);
+    tiles_shape(context, grid, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
     uint64_t words = BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
     return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
@@ -109,7 +109,7 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
 
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t bytes;
-    if (plan->work_items != context->options.work_items) plan_fits(context, grid, plan, plan->slab_layers, 0, &bytes);
+    if (plan->work_items != context->launch.work_items) plan_fits(context, grid, plan, plan->slab_layers, 0, &bytes);
 }
 
 /* Most layers per slab that fit, by bisection; 0 where not even one does. */

@@ -24,8 +24,8 @@ typedef struct slab_plan {
     uint64_t mesh_bytes;                         /* bound on the mesh, or all windows of it */
 } slab_plan;
 
-/* The least budget from which on a grid can be extracted from whatever its samples are, normals included; and whole, for
- * tc_emit, without its mesh. As far as the device's limit on buffers allows. */
+/* The least budget from which on a grid can be extracted from whatever its samples are, normals included; and whole,
+ * for tc_emit, without its mesh. As far as the device's limit on buffers allows. */
 uint64_t plan_budget(const tc_context *context, const tc_grid *grid);
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid);
 

@@ -32,7 +32,7 @@ static void base_fill(run *r, inside_range inside, double isovalue) {
     for (int axis = 0; axis < 3; axis++) s->first[axis] = (int32_t)grid->first[axis];
     s->tile_rows = r->plan->tile_rows;
     s->tile_layers = r->plan->tile_layers;
-    s->spin_limit = r->context->options.spin_limit;
+    s->spin_limit = r->grid->scan.spin_limit;
     s->isovalue32 = (float)isovalue;
     memcpy(&s->isovalue64, &isovalue, sizeof isovalue);
     memcpy(s->matrix, grid->matrix, sizeof s->matrix);
@@ -96,10 +96,9 @@ static tc_status workspace_reserve(run *r) {
     workspace *w = &r->context->work;
     const slab_plan *plan = r->plan;
     uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
-    const reservation buffers[] = {
-        {&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
-        {&w->state, state_bytes(r), "the scan"},
-        {&w->scratch, 8ull * plan->scratch_words * r->context->options.work_groups, "halos"}};
+    const reservation buffers[] = {{&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
+                                   {&w->state, state_bytes(r), "the scan"},
+                                   {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
     if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
@@ -112,6 +111,18 @@ static tc_status workspace_reserve(run *r) {
     return status;
 }
 
+void structured_reshape(tc_grid *grid) { slab_plan_reshape(grid->context, grid, &grid->device->plan); }
+
+kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
+    const kernel_kind kind = {.grid = (unsigned)grid->kind,
+                              .type = grid->type,
+                              .hybrid = options->method == TC_METHOD_HYBRID,
+                              .missing = grid->device && grid->device->missing,
+                              .normals = options->normals != 0,
+                              .emits = true};
+    return emits ? kind : kind_of_classify(kind);
+}
+
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
     *r = (run){.grid = grid,
                .context = grid->context,
@@ -121,9 +132,7 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
     r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
     r->classify_share = emits ? 0.5 : 1;
-    tc_status status = classify_kernels_get(r->context, grid->type, r->method, grid->device->missing, &r->kernels);
-    if (!status && emits)
-        status = emit_kernel_get(r->context, grid, r->method, grid->device->missing, r->normals, &r->kernels);
+    tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);
@@ -179,7 +188,8 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(work->scratch.memory),
                                          ARGUMENT(scratch_words)};
-    return kernel_launch(r, r->kernels.classify, "kernel classify", arguments, sizeof arguments / sizeof *arguments);
+    return kernel_launch(r->context, r->kernels.classify, "kernel classify", arguments,
+                         sizeof arguments / sizeof *arguments);
 }
 
 void totals_add(run *r) {

@@ -80,7 +80,7 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
  * to itself, by lane. */
 static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
-    if (r->context->options.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
+    if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
     return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
 }
 
@@ -146,7 +146,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(w->buffers->triangles.memory),
                                          ARGUMENT(coordinates->memory),
                                          ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
-    return kernel_launch(r, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
+    return kernel_launch(r->context, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
 /* -------------------------------------------------------------------------------------------------------- emission */

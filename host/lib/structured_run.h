@@ -7,6 +7,7 @@
 #include "context.h"
 #include "grid.h"
 #include "inside.h"
+#include "kernels.h"
 #include "mesh.h"
 #include "slab.h"
 #include "slab_plan.h"
@@ -94,17 +95,5 @@ tc_status slabs_emit_whole(run *r, mesh_buffers *buffers);
 
 /* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
 tc_status slabs_emit(run *r, tc_mesh *mesh);
-
-/* Sets one argument after the other, then launches work_groups groups of the kernel's work-items. */
-typedef struct kernel_argument {
-    size_t bytes;
-    const void *value;
-} kernel_argument;
-
-tc_status kernel_launch(const run *r, sized_kernel kernel, const char *name, const kernel_argument *arguments,
-                        cl_uint argument_count);
-
-#define ARGUMENT(x)                                                                                                    \
-    { sizeof(x), &(x) }
 
 #endif

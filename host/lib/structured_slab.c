@@ -12,17 +12,6 @@
 
 static const uintptr_t page_bytes = 4096;
 
-tc_status kernel_launch(const run *r, sized_kernel kernel, const char *name, const kernel_argument *arguments,
-                        cl_uint argument_count) {
-    const size_t local = kernel.work_items, global = local * r->context->options.work_groups;
-    cl_int error = CL_SUCCESS;
-    for (cl_uint n = 0; n < argument_count && !error; n++)
-        error = cl->SetKernelArg(kernel.kernel, n, arguments[n].bytes, arguments[n].value);
-    if (!error)
-        error = cl->EnqueueNDRangeKernel(r->context->queue, kernel.kernel, 1, NULL, &global, &local, 0, NULL, NULL);
-    return error ? context_fail(r->context, name, error) : TC_OK;
-}
-
 /* --------------------------------------------------------------------------------------------------------- arrays */
 
 static const char *const array_names[ARRAY_COUNT] = {"samples", "points", "blanked samples", "blanked cells"};
@@ -160,7 +149,8 @@ tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
                                          ARGUMENT(place_array(r, place, ARRAY_BLANKED_CELLS)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(planes)};
-    return kernel_launch(r, r->kernels.cells, "kernel cells_mark", arguments, sizeof arguments / sizeof *arguments);
+    return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
+                         sizeof arguments / sizeof *arguments);
 }
 
 tc_status slab_load(run *r, slab_place place, bool emits) {

@@ -5,10 +5,10 @@
 #include "tetrahedralize.h"
 
 #include "cell_split.h"
-#include "context.h"
 #include "failure.h"
 #include "float_environment.h"
 #include "polyhedron.h"
+#include "structs.h"
 
 #include <math.h>
 #include <string.h>

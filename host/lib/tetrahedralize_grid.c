@@ -2,9 +2,9 @@
  * A structured grid into a tetrahedral complex: the five tetrahedra of every cube that has all its corners, as the
  * structured path cuts it, and turned over where that turns its triangles over.
  */
+#include "structs.h"
 #include "tetrahedralize.h"
 
-#include "context.h"
 #include "failure.h"
 #include "float_environment.h"
 #include "grid.h"

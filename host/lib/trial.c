@@ -3,40 +3,19 @@
  */
 #include "trial.h"
 
-#include "complex.h"
+#include "context.h"
 #include "failure.h"
-#include "inside.h"
-#include "structured_run.h"
+#include "kernels.h"
+#include "mesh.h"
+#include "surface.h"
 
+#include <stdlib.h>
 #include <string.h>
-
-/* ------------------------------------------------------------------------------------------------------------ kinds */
-
-kernel_kind kind_of(const tc_grid *grid, const tc_extract_options *options, bool emits) {
-    kernel_kind kind = {.grid = grid->complex ? KIND_COMPLEX : (unsigned)grid->kind,
-                        .type = grid->type,
-                        .hybrid = options->method == TC_METHOD_HYBRID,
-                        .missing = grid->device && grid->device->missing,
-                        .normals = emits && options->normals,
-                        .emits = emits};
-    if (!emits && !grid->complex) kind.grid = 0; /* kernel 1 knows nothing of coordinates */
-    return kind;
-}
-
-unsigned kind_number(kernel_kind k) {
-    return ((((k.grid * 8 + (unsigned)k.type) * 2 + k.hybrid) * 2 + k.missing) * 2 + k.normals) * 2 + k.emits;
-}
-
-kernel_kind kind_of_number(unsigned n) {
-    return (kernel_kind){.grid = n >> 7, .type = (tc_type)(n >> 4 & 7), n >> 3 & 1, n >> 2 & 1, n >> 1 & 1, n & 1};
-}
 
 bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const tc_context *context = grid->context;
-    if (!context->options.check_device || context->options.engine != TC_ENGINE_OPENCL) return false;
-    if (grid->complex && !grid->complex->tetrahedron_count) return false;
-    return !inside_range_of(grid->type, options->isovalue).uniform &&
-           !context->passed[kind_number(kind_of(grid, options, emits))];
+    return context->options.check_device && surface_needs_kernels(grid, options) &&
+           !context->passed[kind_number(surface_kind(grid, options, emits))];
 }
 
 /* ------------------------------------------------------------------------------------------------------- comparison */
@@ -91,43 +70,52 @@ static tc_status meshes_compare(const tc_context *context, const trial_volume *v
 /* Two isovalues: one that samples have, and one that none has, so that quotients of integers have full mantissas. */
 enum { SURFACES = 2 };
 
-static tc_status reference_make(const trial_volume *v, const tc_extract_options how[SURFACES], tc_context **context,
-                                tc_grid **grid, tc_mesh *meshes[SURFACES]) {
-    tc_context_options reference;
-    tc_context_options_init(&reference);
-    reference.engine = TC_ENGINE_REFERENCE;
-    tc_status status = tc_context_create(&reference, context);
-    if (!status) status = trial_grid_create(v, *context, grid);
-    for (int n = 0; n < SURFACES && !status; n++) status = tc_extract(*grid, &how[n], &meshes[n]);
+/* On a grid of the host's alone, before the device has seen the volume: it may write where it should only read. */
+static tc_status reference_make(const trial_volume *v, const tc_extract_options how[SURFACES],
+                                tc_mesh *meshes[SURFACES]) {
+    tc_context host = {.options = {.struct_size = sizeof host.options, .engine = TC_ENGINE_REFERENCE}};
+    tc_grid *grid;
+    tc_status status = trial_grid_create(v, &host, host.launch.scan, &grid);
+    for (int n = 0; n < SURFACES && !status; n++) {
+        meshes[n] = calloc(1, sizeof *meshes[n]);
+        if (meshes[n])
+            status = surface_extract(grid, &how[n], meshes[n]);
+        else
+            status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
+    }
+    tc_grid_destroy(grid);
     return status;
 }
 
 static tc_status count_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
                            const tc_mesh *expected) {
     tc_counts counts = {.struct_size = sizeof counts};
-    tc_status status = tc_count(grid, how, &counts);
+    tc_status status = surface_count(grid, how, &counts);
     return status ? status : counts_compare(context, v, &counts, expected);
 }
 
 static tc_status extract_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
                              const tc_mesh *expected) {
-    tc_mesh *mesh = NULL;
-    tc_status status = tc_extract(grid, how, &mesh);
+    tc_mesh *mesh = calloc(1, sizeof *mesh);
+    if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
+    mesh_clear(mesh);
+    tc_status status = surface_extract(grid, how, mesh);
     if (!status) status = meshes_compare(context, v, mesh, expected);
     tc_mesh_destroy(mesh);
     return status;
 }
 
-/* One mesh only: a launch that does nothing must not find another's results. */
+/* The second surface is made by the fallback of the scan: every tile recomputes the one before it. Its grid was counted
+ * before, and has ranges. One mesh at a time: a launch that does nothing must not find another's results. */
 static tc_status device_try(tc_context *context, const trial_volume *v, const tc_extract_options how[SURFACES],
                             bool emits, tc_mesh *const expected[SURFACES]) {
     tc_grid *counted = NULL, *grid = NULL;
-    context->options.tile_bricks = 1;
-    tc_status status = trial_grid_create(v, context, &counted);
+    const scan_parameters usual = {.tile_bricks = 1, .spin_limit = context->launch.scan.spin_limit};
+    tc_status status = trial_grid_create(v, context, usual, &counted);
     if (!status) status = count_try(context, v, counted, &how[0], expected[0]);
-    if (!status) status = trial_grid_create(v, context, &grid);
+    if (!status) status = trial_grid_create(v, context, usual, &grid);
     if (!status && emits) status = extract_try(context, v, grid, &how[0], expected[0]);
-    context->options.spin_limit = 1; /* every tile recomputes the one before it */
+    if (!status) grid->scan.spin_limit = 1;
     if (!status) status = count_try(context, v, grid, &how[1], expected[1]);
     if (!status && emits) status = extract_try(context, v, grid, &how[1], expected[1]);
     tc_grid_destroy(grid);
@@ -136,26 +124,17 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
 }
 
 /* So that it is known which of the two failed, building or running. */
-static tc_status kernels_build(tc_context *context, const trial_volume *v, kernel_kind kind) {
-    const tc_method method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
-    const program *of_complexes;
+static tc_status kernels_build(tc_context *context, kernel_kind kind) {
+    sized_kernel of_complexes[COMPLEX_KERNELS];
     kernels k;
-    tc_grid *grid = NULL;
-    tc_status status = trial_grid_create(v, context, &grid);
-    if (!status && grid->complex) status = complex_kernels_get(context, grid, &of_complexes);
-    if (!status && !grid->complex) status = classify_kernels_get(context, kind.type, method, kind.missing, &k);
-    if (!status && !grid->complex && kind.emits)
-        status = emit_kernel_get(context, grid, method, kind.missing, kind.normals, &k);
-    tc_grid_destroy(grid);
+    tc_status status =
+        kind.grid == KIND_COMPLEX ? complex_kernels_get(context, kind, of_complexes) : kernels_get(context, kind, &k);
     return status ? status : context_progress(context, "run", 0);
 }
 
 static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind kind) {
     tc_extract_options how[SURFACES];
-    tc_context *reference = NULL;
-    tc_grid *grid = NULL;
     tc_mesh *meshes[SURFACES] = {NULL, NULL};
-    const tc_context_options kept = context->options;
     tc_status status = trial_volume_make(v);
     for (int n = 0; n < SURFACES; n++) {
         tc_extract_options_init(&how[n]);
@@ -163,15 +142,9 @@ static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind ki
         how[n].method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
         how[n].normals = kind.normals;
     }
-    if (!status && context->is_trial) status = kernels_build(context, v, kind);
-    if (!status) status = reference_make(v, how, &reference, &grid, meshes);
-    context->options.check_device = 0;
-    context->options.progress = NULL;
+    if (!status) status = reference_make(v, how, meshes);
     if (!status) status = device_try(context, v, how, kind.emits, meshes);
-    context->options = kept;
     for (int n = 0; n < SURFACES; n++) tc_mesh_destroy(meshes[n]);
-    tc_grid_destroy(grid);
-    tc_context_destroy(reference);
     return status;
 }
 
@@ -181,14 +154,17 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
                       .unstructured = kind.grid == KIND_COMPLEX,
                       .missing = kind.missing,
                       .plain = kind.normals};
-    tc_status status = volume_try(context, &v, kind);
+    tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;
+    context->tries = true;
+    if (!status) status = volume_try(context, &v, kind);
+    context->tries = false;
     trial_volume_release(&v);
     return status;
 }
 
 tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!trial_pending(grid, options, emits)) return TC_OK;
-    const kernel_kind kind = kind_of(grid, options, emits);
+    const kernel_kind kind = surface_kind(grid, options, emits);
     tc_status status = trial_of_kind(grid->context, kind);
     if (status) return status;
     grid->context->passed[kind_number(kind)] = true;

@@ -14,20 +14,7 @@
 #define TRIAL_H
 
 #include "grid.h"
-
-/* What decides on the kernels: grid as grid_kind, or KIND_COMPLEX. */
-typedef struct kernel_kind {
-    unsigned grid;
-    tc_type type;
-    bool hybrid, missing, normals, emits; /* emits: kernel 2 too */
-} kernel_kind;
-
-enum { KIND_COMPLEX = 3 };
-
-/* A number below TRIAL_KINDS, and back. */
-unsigned kind_number(kernel_kind kind);
-kernel_kind kind_of_number(unsigned number);
-kernel_kind kind_of(const tc_grid *grid, const tc_extract_options *options, bool emits);
+#include "kernel_kind.h"
 
 /* Tries the kernels of a kind, whether they have passed or not; progress is told "run" when they are built. */
 tc_status trial_of_kind(tc_context *context, kernel_kind kind);
@@ -57,6 +44,6 @@ tc_status trial_volume_make(trial_volume *v);
 void trial_volume_release(trial_volume *v);
 
 /* A grid over it, in a context of either engine. */
-tc_status trial_grid_create(const trial_volume *v, tc_context *context, tc_grid **grid);
+tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_parameters scan, tc_grid **grid);
 
 #endif

@@ -1,7 +1,7 @@
 /*
  * A trial by its job: the line of text that a context has handed to its callback (vetting.c).
  */
-#include "context.h"
+#include "context_create.h"
 #include "failure.h"
 #include "float_environment.h"
 #include "trial.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 
 typedef struct job {
-    unsigned kind; /* TRIAL_KINDS: the device is opened, no more */
+    unsigned kind; /* KERNEL_KINDS: the device is opened, no more */
     tc_context_options options;
     char device[32], name[128];
 } job;
@@ -22,7 +22,7 @@ static bool job_read(const char *text, job *j) {
     if (!text ||
         sscanf(text, "tetracubes-trial-1 %d:%d %u %u %d %d %n", &platform, &index, &j->kind, &o->work_items,
                &o->division, &o->own_buffers, &name) != 6 ||
-        !name || j->kind > TRIAL_KINDS)
+        !name || j->kind > KERNEL_KINDS)
         return false;
     snprintf(j->name, sizeof j->name, "%s", text + name);
     snprintf(j->device, sizeof j->device, "%d:%d", platform, index);
@@ -34,7 +34,7 @@ static tc_status job_do(const job *j, tc_context *context) {
     if (strcmp(context->info.name, j->name))
         return (tc_status)fail(TC_ERROR_DEVICE, "device %s is %s in the process of the trial, not %s", j->device,
                                context->info.name, j->name);
-    return j->kind == TRIAL_KINDS ? TC_OK : trial_of_kind(context, kind_of_number(j->kind));
+    return j->kind == KERNEL_KINDS ? TC_OK : trial_of_kind(context, kind_of_number(j->kind));
 }
 
 /* Programs that have not passed are not put into the cache; PoCL would compile for that what has not run yet. */

@@ -3,6 +3,7 @@
  */
 #include "trial.h"
 
+#include "complex.h"
 #include "failure.h"
 
 #include <math.h>
@@ -115,9 +116,9 @@ void trial_volume_release(trial_volume *v) {
     free(v->axes);
 }
 
-tc_status trial_grid_create(const trial_volume *v, tc_context *context, tc_grid **grid) {
+tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_parameters scan, tc_grid **grid) {
     tc_complex_options complex;
-    if (!v->unstructured) return tc_grid_create(context, &v->options, grid);
+    if (!v->unstructured) return grid_create(context, &v->options, scan, grid);
     tc_complex_options_init(&complex);
     complex.point_count = SAMPLES;
     complex.points = v->points;
@@ -125,5 +126,5 @@ tc_status trial_grid_create(const trial_volume *v, tc_context *context, tc_grid 
     complex.samples = v->samples;
     complex.tetrahedron_count = v->complex.tetrahedron_count;
     complex.tetrahedra = v->complex.tetrahedra;
-    return tc_complex_create(context, &complex, grid);
+    return complex_create(context, &complex, scan, grid);
 }

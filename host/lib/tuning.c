@@ -27,23 +27,22 @@ static const uint32_t work_items_most = 1024; /* CPUs keep the variables of all 
 static const uint32_t kept_most = 1u << 16;   /* more groups, or bricks, would do nothing but fill memory */
 
 /* Groups share bricks, for each of which they need local memory. */
-static uint32_t work_items_limit(const tc_context *context) {
-    uint64_t most = context->info.max_work_group_size;
-    uint64_t by_memory = context->info.local_memory_bytes / LOCAL_BYTES_PER_BRICK * BRICK_WORDS;
+static uint32_t work_items_limit(const tc_device_info *device) {
+    uint64_t most = device->max_work_group_size;
+    uint64_t by_memory = device->local_memory_bytes / LOCAL_BYTES_PER_BRICK * BRICK_WORDS;
     if (by_memory && by_memory < most) most = by_memory;
     return most < work_items_most ? (uint32_t)most : work_items_most;
 }
 
-static bool work_items_fit(const tc_context *context, uint32_t count) {
-    if (count == 1) return text_rule_of(&context->info)->takes_alone;
-    return count % 32 == 0 && count <= work_items_limit(context);
+static bool work_items_fit(const tc_device_info *device, uint32_t count) {
+    if (count == 1) return text_rule_of(device)->takes_alone;
+    return count % 32 == 0 && count <= work_items_limit(device);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ file */
 
 /* One line. The units are part of it: cores given to a machine change, its processor's name does not. */
-static void device_text(const tc_context *context, char out[1024]) {
-    const tc_device_info *d = &context->info;
+static void device_text(const tc_device_info *d, char out[1024]) {
     snprintf(out, 1024, "device=%s, %u units, %s, %s, driver %s", d->name, d->compute_units, d->platform, d->version,
              d->driver);
     for (char *c = out; *c; c++)
@@ -66,15 +65,15 @@ static const char *parameters_parse(const char *line, tc_tuning *out) {
 }
 
 /* What the file keeps for the device, where the device can do it. */
-static bool kept_find(const tc_context *context, tc_tuning *out) {
-    char device[1024], *rest = NULL;
+static bool kept_find(const tc_device_info *device, tc_tuning *out) {
+    char name[1024], *rest = NULL;
     cache_text file;
     bool found = false;
     if (!cache_read(file_name, &file)) return false;
-    device_text(context, device);
+    device_text(device, name);
     for (char *line = strtok_r(file.bytes, "\n", &rest); line && !found; line = strtok_r(NULL, "\n", &rest)) {
         const char *of = parameters_parse(line, out);
-        found = of && !strcmp(of, device) && (!out->work_items || work_items_fit(context, out->work_items));
+        found = of && !strcmp(of, name) && (!out->work_items || work_items_fit(device, out->work_items));
     }
     free(file.bytes);
     return found;
@@ -98,17 +97,14 @@ static void others_write(FILE *out, const char *device) {
     free(file.bytes);
 }
 
-tc_status tc_context_tuning_keep(const tc_context *context) {
-    tc_tuning tuning = {.struct_size = sizeof tuning};
-    char device[1024];
+tc_status tuning_keep(const tc_device_info *device, const tc_tuning *tuning) {
+    char name[1024];
     cache_text text = {0};
-    tc_status status = tc_context_tuning(context, &tuning);
-    if (status) return status;
     FILE *out = open_memstream(&text.bytes, &text.count);
     if (!out) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the tuning file");
-    device_text(context, device);
-    line_write(out, &tuning, device);
-    others_write(out, device);
+    device_text(device, name);
+    line_write(out, tuning, name);
+    others_write(out, name);
     bool done = !ferror(out);
     done = !fclose(out) && done && cache_write(file_name, text.bytes, text.count);
     free(text.bytes);
@@ -120,13 +116,12 @@ tc_status tc_context_tuning_keep(const tc_context *context) {
 /* ---------------------------------------------------------------------------------------------------------- choice */
 
 /* All or none: they were measured together. */
-static void kept_take(tc_context *context) {
-    tc_context_options *o = &context->options;
+static void kept_take(const tc_device_info *device, launch_parameters *p) {
     tc_tuning kept = {0};
-    if (o->work_items || o->work_groups || o->tile_bricks || !kept_find(context, &kept)) return;
-    o->work_items = kept.work_items;
-    o->work_groups = kept.work_groups;
-    o->tile_bricks = kept.tile_bricks;
+    if (p->work_items || p->work_groups || p->scan.tile_bricks || !kept_find(device, &kept)) return;
+    p->work_items = kept.work_items;
+    p->work_groups = kept.work_groups;
+    p->scan.tile_bricks = kept.tile_bricks;
 }
 
 /* Polls of an unfinished tile. Recomputing one costs a CPU as long as about 2^17 polls take. */
@@ -134,47 +129,36 @@ static const uint32_t spins = 1u << 14, spins_cpu = 1u << 17;
 
 /* A work-item per tile where the text for that is taken, a work-item per row of a brick elsewhere, on CPUs of one
  * brick; groups to fill the device. One work-item too where a group has no room for a brick. */
-static void defaults_take(tc_context *context) {
-    tc_context_options *o = &context->options;
-    const bool cpu = !strcmp(context->info.type, "cpu");
-    const bool alone = text_rule_of(&context->info)->text == TEXT_ALONE;
-    const uint64_t most = context->info.max_work_group_size;
-    if (!o->work_items) o->work_items = alone || most < 32 ? 1 : cpu || most < 128 ? 32 : 128;
-    if (!o->work_groups) o->work_groups = context->info.compute_units * (cpu ? 1 : 8);
-    if (!o->spin_limit) o->spin_limit = cpu ? spins_cpu : spins;
-    if (!o->division) o->division = context->info.rounds_division ? 1 : context->info.has_fp64 ? 2 : 3;
+static void defaults_take(const tc_device_info *device, launch_parameters *p) {
+    const bool cpu = !strcmp(device->type, "cpu");
+    const bool alone = text_rule_of(device)->text == TEXT_ALONE;
+    const uint64_t most = device->max_work_group_size;
+    if (!p->work_items) p->work_items = alone || most < 32 ? 1 : cpu || most < 128 ? 32 : 128;
+    if (!p->work_groups) p->work_groups = device->compute_units * (cpu ? 1 : 8);
+    if (!p->scan.spin_limit) p->scan.spin_limit = cpu ? spins_cpu : spins;
+    if (!p->division) p->division = device->rounds_division ? 1 : device->has_fp64 ? 2 : 3;
 }
 
-tc_status tuning_choose(tc_context *context) {
-    const tc_context_options *o = &context->options;
-    const bool may_choose = !o->work_items;
-    kept_take(context);
-    defaults_take(context);
-    context->other_items = may_choose ? o->work_items > 1 ? 1 : 32 : 0;
-    if (context->other_items && !work_items_fit(context, context->other_items)) context->other_items = 0;
-    if (o->work_items == 1 && !work_items_fit(context, 1))
+tc_status tuning_choose(const tc_context_options *options, const tc_device_info *device, launch_parameters *p) {
+    *p = (launch_parameters){.work_items = options->work_items,
+                             .work_groups = options->work_groups,
+                             .scan = {options->tile_bricks, options->spin_limit},
+                             .division = options->division};
+    kept_take(device, p);
+    defaults_take(device, p);
+    if (!options->work_items) p->other_items = p->work_items > 1 ? 1 : 32;
+    if (p->other_items && !work_items_fit(device, p->other_items)) p->other_items = 0;
+    if (p->work_items == 1 && !work_items_fit(device, 1))
         return (tc_status)fail(
             TC_ERROR_ARGUMENT,
             "work_items 1: the compiler of %s is known not to take the kernels for one work-item per "
             "group; a multiple of 32, or 0 for the default",
-            context->info.platform);
-    if (!work_items_fit(context, o->work_items))
+            device->platform);
+    if (!work_items_fit(device, p->work_items))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %u on this device",
-                               o->work_items, work_items_limit(context));
-    if (o->division < 1 || o->division > 3 || (o->division == 1 && !context->info.rounds_division) ||
-        (o->division == 2 && !context->info.has_fp64))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", o->division);
-    return TC_OK;
-}
-
-tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
-    tc_status status = result_begin(tuning, sizeof *tuning, "tc_context_tuning: tuning");
-    if (status) return status;
-    if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tuning is that of a context: none given");
-    if (context->options.engine == TC_ENGINE_REFERENCE)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine launches nothing");
-    const tc_context_options *o = &context->options;
-    const tc_tuning found = {sizeof found, o->work_items, o->work_groups, o->tile_bricks};
-    result_give(tuning, &found);
+                               p->work_items, work_items_limit(device));
+    if (p->division < 1 || p->division > 3 || (p->division == 1 && !device->rounds_division) ||
+        (p->division == 2 && !device->has_fp64))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", p->division);
     return TC_OK;
 }

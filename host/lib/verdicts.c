@@ -1,6 +1,7 @@
 #include "verdicts.h"
 
 #include "cache.h"
+#include "program.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -21,7 +22,7 @@ static void line_end(char *text) {
 
 static void key_write(const tc_context *context, unsigned kind, char key[KEY_BYTES]) {
     const tc_device_info *d = &context->info;
-    const tc_context_options *o = &context->options;
+    const launch_parameters *p = &context->launch;
     cl_platform_id platform = NULL;
     char device[1500], vendor[256] = "", version[256] = "";
     cl->GetDeviceInfo(context->device, CL_DEVICE_VENDOR, sizeof vendor, vendor, NULL);
@@ -31,12 +32,12 @@ static void key_write(const tc_context *context, unsigned kind, char key[KEY_BYT
              d->driver);
     line_end(device);
     const int length = snprintf(key, KEY_BYTES, "tetracubes verdict 1\n%s\n", device), room = KEY_BYTES - length;
-    if (kind == TRIAL_KINDS)
+    if (kind == KERNEL_KINDS)
         snprintf(key + length, (size_t)room, "opened by tetracubes %s\n", tc_version());
     else
         snprintf(key + length, (size_t)room,
                  "kernels %u of tetracubes %s, %016" PRIx64 ": work-items %u, division %d, fp64 %d, in place %d\n",
-                 kind, tc_version(), kernel_sources_hash(), o->work_items, o->division, d->has_fp64, context->in_place);
+                 kind, tc_version(), kernel_sources_hash(), p->work_items, p->division, d->has_fp64, context->in_place);
 }
 
 static void name_write(const char *key, char name[32]) {

@@ -1,10 +1,9 @@
 #include "vetting.h"
 
-#include "complex.h"
 #include "device.h"
 #include "failure.h"
 #include "float_environment.h"
-#include "structured_run.h"
+#include "program.h"
 #include "text.h"
 #include "verdicts.h"
 
@@ -13,13 +12,13 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { OPENING = TRIAL_KINDS }; /* the number of the device itself, beside those of kernels */
+enum { OPENING = KERNEL_KINDS }; /* the number of the device itself, beside those of kernels */
 
 /* ----------------------------------------------------------------------------------------------------------- driver */
 
 /* Nobody has seen it fail, with the text that the context builds, or when it is opened. */
 static bool driver_is_known(const tc_context *context, unsigned kind) {
-    const bool usual = text_for(context->options.work_items) == text_rule_of(&context->info)->text;
+    const bool usual = text_for(context->launch.work_items) == text_rule_of(&context->info)->text;
     return text_tried(&context->info) && (usual || kind == OPENING);
 }
 
@@ -40,12 +39,12 @@ static bool driver_finds_linker(const tc_device_info *info) {
 
 /* What tc_trial_run reads; false where the device is none of tc_device_get's. */
 static bool job_write(const tc_context *context, unsigned kind, char *job, size_t bytes) {
-    const tc_context_options *o = &context->options;
+    const launch_parameters *p = &context->launch;
     int platform = context->info.platform_index, index = context->info.device_index;
     if (platform < 0 && !device_find(context->device, &platform, &index)) return false;
     const bool opens = kind == OPENING;
-    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0 : o->work_items,
-             opens ? 0 : o->division, !opens && !context->in_place, context->info.name);
+    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0 : p->work_items,
+             opens ? 0 : p->division, !opens && !context->in_place, context->info.name);
     return true;
 }
 
@@ -98,8 +97,8 @@ static void text_exchange(tc_context *context) {
     cl->Finish(context->queue);
     workspace_release(context);
     programs_release(context);
-    context->options.work_items = context->other_items;
-    context->other_items = 0;
+    context->launch.work_items = context->launch.other_items;
+    context->launch.other_items = 0;
     context->counted = NULL;
     memset(context->vetted, 0, sizeof context->vetted);
     memset(context->passed, 0, sizeof context->passed);
@@ -107,9 +106,7 @@ static void text_exchange(tc_context *context) {
 
 static void vetted_note(tc_context *context, kernel_kind kind) {
     context->vetted[kind_number(kind)] = true;
-    kind.emits = kind.normals = false; /* its trial has built kernel 1 too */
-    if (kind.grid != KIND_COMPLEX) kind.grid = 0;
-    context->vetted[kind_number(kind)] = true;
+    context->vetted[kind_number(kind_of_classify(kind))] = true; /* its trial has built kernel 1 too */
 }
 
 static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged) {
@@ -120,7 +117,8 @@ static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged
         verdict_find(context, number, &v);
         if (v.verdict == TC_VERDICT_GOOD || v.verdict == TC_VERDICT_NONE) {
             vetted_note(context, kind);
-        } else if (v.verdict != TC_VERDICT_CANCELLED && context->other_items && driver_finds_linker(&context->info)) {
+        } else if (v.verdict != TC_VERDICT_CANCELLED && context->launch.other_items &&
+                   driver_finds_linker(&context->info)) {
             text_exchange(context);
             *exchanged = true;
         } else {
@@ -137,14 +135,9 @@ tc_status device_vet(tc_context *context) {
     return v.verdict == TC_VERDICT_GOOD || v.verdict == TC_VERDICT_NONE ? TC_OK : verdict_fail(context, OPENING, &v);
 }
 
-tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
+tc_status call_vet(tc_context *context, kernel_kind kind) {
     bool exchanged;
-    const bool uniform = inside_range_of(grid->type, options->isovalue).uniform;
-    if (grid->context->options.engine != TC_ENGINE_OPENCL || uniform) return TC_OK;
-    if (grid->complex && !grid->complex->tetrahedron_count) return TC_OK;
-    tc_status status = kind_vet(grid->context, kind_of(grid, options, emits), &exchanged);
-    if (!status && grid->device) slab_plan_reshape(grid->context, grid, &grid->device->plan);
-    return status;
+    return kind_vet(context, kind, &exchanged);
 }
 
 tc_status kernels_vet(tc_context *context, kernel_kind kind) {

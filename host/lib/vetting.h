@@ -8,13 +8,13 @@
 #ifndef VETTING_H
 #define VETTING_H
 
-#include "trial.h"
+#include "context.h"
 
 /* Before the context of the device is made. */
 tc_status device_vet(tc_context *context);
 
 /* At the start of a call: TC_OK where the kernels may be built, perhaps with the other text. */
-tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits);
+tc_status call_vet(tc_context *context, kernel_kind kind);
 
 /* Within a call, where kernels are built: other text than at its start ends the call, which then starts again. */
 tc_status kernels_vet(tc_context *context, kernel_kind kind);

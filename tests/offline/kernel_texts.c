@@ -10,6 +10,7 @@
 #include "context.h"
 #include "grid.h"
 #include "opencl.h"
+#include "program.h"
 #include "tetracubes.h"
 
 #include <stdio.h>
@@ -214,37 +215,39 @@ static const char *const kind_names[] = {"uniform", "rectilinear", "curvilinear"
 
 /* Of types whose programs are the same, the first gives its name. */
 static void classify_programs(tc_context *context) {
-    kernels found;
+    const program *found;
     for (int type = TC_U8; type <= TC_F64; type++)
         for (int method = TC_METHOD_TETRA; method <= TC_METHOD_HYBRID; method++)
             for (int missing = 0; missing < 2; missing++) {
+                const kernel_kind kind = {
+                    .type = (tc_type)type, .hybrid = method == TC_METHOD_HYBRID, .missing = missing};
                 snprintf(name, sizeof name, "classify-%s-%s%s", type_names[type], method_names[method],
                          missing ? "-missing" : "");
-                status_check(classify_kernels_get(context, (tc_type)type, (tc_method)method, missing, &found));
+                status_check(program_get(context, PROGRAM_CLASSIFY, kind, &found));
             }
 }
 
 static void emit_programs(tc_context *context) {
-    tc_grid grid = {.context = context};
-    kernels found;
+    const program *found;
     for (int type = TC_U8; type <= TC_F64; type++)
         for (int method = TC_METHOD_TETRA; method <= TC_METHOD_HYBRID; method++)
-            for (int kind = GRID_UNIFORM; kind <= GRID_CURVILINEAR; kind++)
+            for (int grid = GRID_UNIFORM; grid <= GRID_CURVILINEAR; grid++)
                 for (int more = 0; more < 4; more++) {
-                    grid.type = (tc_type)type, grid.kind = (grid_kind)kind;
+                    const kernel_kind kind = {(unsigned)grid, (tc_type)type, method == TC_METHOD_HYBRID,
+                                              more & 1,       more & 2,      true};
                     snprintf(name, sizeof name, "emit-%s-%s-%s%s%s", type_names[type], method_names[method],
-                             kind_names[kind], more & 1 ? "-missing" : "", more & 2 ? "-normals" : "");
-                    status_check(emit_kernel_get(context, &grid, (tc_method)method, more & 1, more & 2, &found));
+                             kind_names[grid], more & 1 ? "-missing" : "", more & 2 ? "-normals" : "");
+                    status_check(program_get(context, PROGRAM_EMIT, kind, &found));
                 }
 }
 
 static void complex_programs(tc_context *context) {
-    tc_grid grid = {.context = context};
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++) {
-        grid.type = (tc_type)type;
+        const kernel_kind kind = {.grid = KIND_COMPLEX, .type = (tc_type)type};
         snprintf(name, sizeof name, "complex-%s", type_names[type]);
-        if (device_makes_vertices(context, grid.type)) status_check(complex_kernels_get(context, &grid, &found));
+        if (device_makes_vertices(context, kind.type))
+            status_check(program_get(context, PROGRAM_COMPLEX, kind, &found));
     }
 }
 
@@ -269,7 +272,7 @@ int main(int count, char **arguments) {
     classify_programs(context);
     emit_programs(context);
     complex_programs(context);
-    printf("%d programs, %u work-items\n", written, context->options.work_items);
+    printf("%d programs, %u work-items\n", written, context->launch.work_items);
     tc_context_destroy(context);
     return 0;
 }

@@ -1,0 +1,182 @@
+/*
+ * The public calls on contexts: a device is chosen and opened, launch parameters are chosen.
+ */
+#include "context_create.h"
+
+#include "device.h"
+#include "failure.h"
+#include "float_environment.h"
+#include "program.h"
+#include "structs.h"
+#include "vetting.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define TEXT2(x) #x
+#define TEXT(x)  TEXT2(x)
+
+const char *tc_message(void) { return failure_text(); }
+
+const char *tc_version(void) { return TEXT(TC_VERSION); }
+
+void tc_context_options_init(tc_context_options *options) {
+    if (!options) return;
+    *options = (tc_context_options){.struct_size = sizeof *options, .engine = TC_ENGINE_OPENCL};
+}
+
+/* Commands are put into it one after the other, and each relies on those before. */
+static tc_status queue_check(tc_context *context, cl_context theirs, cl_command_queue queue) {
+    cl_context of_queue = NULL;
+    cl_command_queue_properties properties = 0;
+    cl_int error = cl->GetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof of_queue, &of_queue, NULL);
+    if (!error) error = cl->GetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, NULL);
+    if (!error) error = cl->GetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof context->device, &context->device, NULL);
+    if (error) return context_fail(context, "asking the given queue for its context, properties and device", error);
+    if (of_queue != theirs)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "cl_queue is a queue of another OpenCL context than cl_context: give one made for it");
+    if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "cl_queue runs its commands out of order: give a queue without "
+                                                  "CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE");
+    return TC_OK;
+}
+
+static tc_status device_adopt(tc_context *context, cl_context theirs, cl_command_queue queue) {
+    if (!queue) return (tc_status)fail(TC_ERROR_ARGUMENT, "a cl_context needs a cl_queue with it");
+    tc_status status = queue_check(context, theirs, queue);
+    if (status) return status;
+    cl_int error = cl->RetainContext(theirs);
+    if (error) return context_fail(context, "retaining the given context", error);
+    context->context = theirs;
+    error = cl->RetainCommandQueue(queue);
+    if (error) return context_fail(context, "retaining the given queue", error);
+    context->queue = queue;
+    return TC_OK;
+}
+
+static tc_status device_open(tc_context *context, const char *specification) {
+    device_choice choice;
+    cl_int error;
+    tc_status status = device_choose(specification, &choice);
+    if (status) return status;
+    context->device = choice.device;
+    status = device_describe(choice.device, &context->info);
+    context->info.platform_index = choice.platform_index;
+    context->info.device_index = choice.device_index;
+    if (!status) status = device_vet(context);
+    if (status) return status;
+    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)choice.platform, 0};
+    context->context = cl->CreateContext(properties, 1, &choice.device, NULL, NULL, &error);
+    if (error) return context_fail(context, "making a context", error);
+    context->queue = cl->CreateCommandQueue(context->context, choice.device, 0, &error);
+    return error ? context_fail(context, "making a command queue", error) : TC_OK;
+}
+
+static tc_status opencl_begin(tc_context *context, const tc_context_options *o) {
+    tc_status status = opencl_lock();
+    if (status) return status;
+    if (o->cl_context) opencl_awake();
+    status = o->cl_context ? device_adopt(context, o->cl_context, o->cl_queue) : device_open(context, o->device);
+    opencl_unlock();
+    if (!status && o->cl_context) status = device_describe(context->device, &context->info);
+    context->in_place = context->info.shares_host_memory && !o->own_buffers;
+    return status ? status : tuning_choose(o, &context->info, &context->launch);
+}
+
+static tc_status context_make(const tc_context_options *options, bool is_trial, tc_context **out) {
+    tc_context_options o;
+    if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
+    *out = NULL;
+    tc_context_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "context options");
+    if (status) return status;
+    if (o.engine != TC_ENGINE_OPENCL && o.engine != TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
+    tc_context *context = calloc(1, sizeof *context);
+    if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
+    context->process = getpid();
+    context->options = o;
+    context->is_trial = is_trial;
+    context->options.device = NULL;
+    context->options.cl_context = NULL;
+    context->options.cl_queue = NULL;
+    if (o.engine == TC_ENGINE_OPENCL) status = opencl_begin(context, &o);
+    if (status) {
+        tc_context_destroy(context);
+        return status;
+    }
+    *out = context;
+    return TC_OK;
+}
+
+tc_status tc_context_create(const tc_context_options *options, tc_context **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
+    return context_make(options, false, out);
+}
+
+tc_status context_create_for_trial(const tc_context_options *options, tc_context **out) {
+    return context_make(options, true, out);
+}
+
+static void objects_release(tc_context *context) {
+    if (context_is_inherited(context) || opencl_lock()) return;
+    if (context->copies) cl->ReleaseCommandQueue(context->copies);
+    if (context->queue) cl->ReleaseCommandQueue(context->queue);
+    cl->ReleaseContext(context->context);
+    opencl_unlock();
+}
+
+void tc_context_destroy(tc_context *context) {
+    if (!context) return;
+    FLOAT_ENVIRONMENT_DEFAULT;
+    if (context->context) {
+        context_finish(context);
+        workspace_release(context);
+        programs_release(context);
+        objects_release(context);
+    }
+    free(context);
+}
+
+tc_status tc_context_device(const tc_context *context, tc_device_info *info) {
+    tc_status status = result_begin(info, sizeof *info, "tc_context_device: info");
+    if (status) return status;
+    if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_device needs a context");
+    if (context->options.engine == TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device");
+    result_give(info, &context->info);
+    return TC_OK;
+}
+
+tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
+    tc_status status = result_begin(tuning, sizeof *tuning, "tc_context_tuning: tuning");
+    if (status) return status;
+    if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tuning is that of a context: none given");
+    if (context->options.engine == TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine launches nothing");
+    const launch_parameters *p = &context->launch;
+    const tc_tuning found = {sizeof found, p->work_items, p->work_groups, p->scan.tile_bricks};
+    result_give(tuning, &found);
+    return TC_OK;
+}
+
+tc_status tc_context_tuning_keep(const tc_context *context) {
+    tc_tuning tuning = {.struct_size = sizeof tuning};
+    tc_status status = tc_context_tuning(context, &tuning);
+    return status ? status : tuning_keep(&context->info, &tuning);
+}
+
+struct _cl_context *tc_context_cl_context(const tc_context *context) {
+    return context ? context->context : NULL;
+}
+
+struct _cl_command_queue *tc_context_cl_queue(const tc_context *context) {
+    return context ? context->queue : NULL;
+}
+
+uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak) {
+    if (peak) *peak = context ? context->device_bytes_peak : 0;
+    return context ? context->device_bytes : 0;
+}

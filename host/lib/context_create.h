@@ -1,0 +1,10 @@
+/* context_create.h - contexts for trials */
+#ifndef CONTEXT_CREATE_H
+#define CONTEXT_CREATE_H
+
+#include "context.h"
+
+/* As tc_context_create; its kernels are built without asking what is known of them. */
+tc_status context_create_for_trial(const tc_context_options *options, tc_context **context);
+
+#endif

@@ -1,0 +1,26 @@
+#include "surface.h"
+
+#include "complex.h"
+#include "inside.h"
+#include "reference.h"
+#include "structured.h"
+
+kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
+    return grid->complex ? complex_kind(grid, emits) : structured_kind(grid, options, emits);
+}
+
+bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options) {
+    if (grid->context->options.engine != TC_ENGINE_OPENCL) return false;
+    if (grid->complex && !grid->complex->tetrahedron_count) return false;
+    return !inside_range_of(grid->type, options->isovalue).uniform;
+}
+
+tc_status surface_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    if (grid->complex) return complex_count(grid, options, counts);
+    return grid->device ? structured_count(grid, options, counts) : reference_count(grid, options, counts);
+}
+
+tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    if (grid->complex) return complex_extract(grid, options, mesh);
+    return grid->device ? structured_extract(grid, options, mesh) : reference_extract(grid, options, mesh);
+}
