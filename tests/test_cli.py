@@ -43,6 +43,12 @@ def chosen():
     return (["-k", only] if only else []) + (["-f"] if os.environ.get("TEST_STOP") else [])
 
 
+def signals_as_usual():
+    """Shells and nohup have what goes on in the background ignore some: the tool would as well."""
+    for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 def tool(*arguments, env=None, stdout=subprocess.PIPE, cwd=None):
     environment = dict(os.environ, **(env or {}))
     return subprocess.run([TOOL, *map(str, arguments)], stdout=stdout, stderr=subprocess.PIPE, text=True,

@@ -8,6 +8,7 @@ beside a mesh on standard output. Standard library only.
 import collections
 import itertools
 import json
+import math
 import os
 import random
 import struct
@@ -153,12 +154,15 @@ class Numbers(DataCase):
             self.assertIn(fact, text)
 
     def test_bounds_come_back(self):
-        grid = self.raw("a.raw", "f32", (3, 3, 3), [f32(n * 0.37 % 1) for n in range(27)])
-        [surface] = self.extract(grid, "0.5")["surfaces"]
-        text = self.expect(0, "extract", *grid, "--iso", "0.5", "--engine", "reference").stdout
-        words = next(line.split() for line in text.splitlines() if line.startswith("  bounds"))
-        self.assertEqual([f32(float(word)) for word in words[1:4] + words[5:]],
-                         [number for end in surface["bounds"] for number in end])
+        noise = self.raw("a.raw", "f32", (3, 3, 3), [f32(n * 0.37 % 1) for n in range(27)])
+        pyramid = self.raw("b.raw", "f32", (3, 3, 3), [f32(math.prod(1 - abs(c - 1) for c in p) * 7)
+                                                       for p in itertools.product(range(3), repeat=3)])
+        for grid in (noise, pyramid):
+            [surface] = self.extract(grid, "0.5")["surfaces"]
+            text = self.expect(0, "extract", *grid, "--iso", "0.5", "--engine", "reference").stdout
+            words = next(line.split() for line in text.splitlines() if line.startswith("  bounds"))
+            self.assertEqual([f32(float(word)) for word in words[1:4] + words[5:]],
+                             [number for end in surface["bounds"] for number in end])
 
 
 class Notices(DataCase):
@@ -227,8 +231,16 @@ class Notices(DataCase):
                              env={"LD_PRELOAD": test_cli.FAULT_LIBRARY, "MESH_FAULT": "limit"})
         self.assertNotIn("takes over", result.stderr)
 
-    @unittest.skipUnless(os.path.isdir(REPORTS), "TETRACUBES_DATA has no reports")
     def test_files_named_once(self):
+        with open(self.path("once.nrrd"), "wb") as out:
+            out.write(b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 3 3\nencoding: raw\nspacings: nan 1 1\n\n")
+            out.write(bytes(range(27)))
+        [told] = self.notices([self.path("once.nrrd")], "7.5")
+        self.assertIn("axis 1 is not known", told)
+        self.assertEqual(told.count("once.nrrd"), 1)
+
+    @unittest.skipUnless(os.path.isdir(REPORTS), "TETRACUBES_DATA has no reports")
+    def test_published_files_named_once(self):
         path = os.path.join(REPORTS, "array_too_long.vti")
         [told] = self.notices([path], "0.5")
         self.assertEqual(told.count("array_too_long.vti"), 1)
@@ -507,6 +519,12 @@ class Homes(DataCase):
                                   stderr=subprocess.PIPE, text=True, preexec_fn=drop, timeout=1000)
         except PermissionError:
             self.skipTest("nobody may not run the tool here")
+
+    def test_cache_folder_that_nobody_can_make(self):
+        if not test_cli.HAS_DEVICE or "Portable Computing" not in tool_platforms():
+            self.skipTest("no PoCL")
+        self.refuses(1, "devices", says="cannot write its cache folder /dev/null/kcache.*POCL_CACHE_DIR",
+                     env={"POCL_CACHE_DIR": "/dev/null/kcache"})
 
     def test_cache_folder_is_named(self):
         os.chmod(self.folder.name, 0o755)
