@@ -46,6 +46,16 @@ def trials_running():
     return found
 
 
+def wait_until_idle(process):
+    """It has not used the processor for a second."""
+    used, since = None, 0
+    while since < 10:
+        with open(f"/proc/{process}/stat", encoding="utf-8") as file:
+            now = file.read().rsplit(")", 1)[1].split()[11:13]
+        used, since = now, since + 1 if now == used else 0
+        time.sleep(0.1)
+
+
 class TrialCase(test_cli.Case):
     def setUp(self):
         super().setUp()
@@ -223,13 +233,14 @@ class Sound(TrialCase):
 
 
 class Interrupted(TrialCase):
-    def start(self, **how):
+    def start(self, command="crash launch hang", kept=1):
+        """The tool, once it has kept so many verdicts and waits for the next."""
         process = subprocess.Popen([test_cli.TOOL, *self.arguments, "-o", self.path("a.ply")], stderr=subprocess.PIPE,
-                                   env={**os.environ, **self.layer("crash launch hang")}, text=True, **how)
+                                   env={**os.environ, **self.layer(command)}, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(lambda: [os.kill(number, signal.SIGKILL) for number in trials_running()])
         for _ in range(3000):
-            if trials_running() and any(name.endswith(".verdict") for name in os.listdir(self.cache)):
+            if trials_running() and len(self.verdicts()) == kept:
                 return process
             time.sleep(0.01)
         process.kill()
@@ -252,10 +263,16 @@ class Interrupted(TrialCase):
             self.assertFalse(os.path.exists(self.path("a.ply")))
 
     def test_killed(self):
-        process = self.start()
-        process.kill()
-        process.wait(60)
-        self.assertTrue(self.gone(), "the trial outlives what started it")
+        """A trial that has something to say would end by itself, at the closed pipe; one that hangs does not."""
+        for how in (), ("crash open hang", 0):
+            process = self.start(*how)
+            if how:
+                wait_until_idle(*trials_running())
+            process.kill()
+            process.wait(60)
+            self.assertTrue(self.gone(), "the trial outlives what started it")
+            for path in self.verdicts():
+                os.unlink(path)
 
 
 def write_figures(seconds):
