@@ -11,8 +11,9 @@ files in the folder where it may write, which is removed after each.
 
 A mutant that no test catches is an error, unless the table says why it is the same program; one that the table calls
 the same and that is caught is an error too, and so is one whose text is not in the source any more or does not compile.
---only keeps the mutants whose file, text or description has one of the words; --sample a few of every kind; --changed
-those whose file is not as it was when mutants.json was written. What this processor would not compile is left out.
+--only keeps the mutants whose file, text, description or point has one of the words; --sample a few of every kind;
+--changed those whose file is not as it was when mutants.json was written. What this processor would not compile is left
+out.
 
 Prints one line per mutant. Where TETRACUBES_RESULTS names a folder, mutants.json there tells the same, and keeps what it
 told of other mutants whose files are as they were.
@@ -65,7 +66,7 @@ def planted(text, mutant):
 def targets_of(test):
     """What has to be built for it."""
     if test.program.endswith(".py"):
-        return ["tetracubes_tool"]
+        return ["tetracubes_tool", *(re.split("[/=]", name)[-1] for name in test.libraries)]
     return [os.path.basename(test.program)] + (["layer"] if is_layered(test) else [])
 
 
@@ -167,6 +168,12 @@ class Worker:
         os.killpg(child.pid, signal.SIGKILL)  # and those that it has started
         return child.wait()
 
+    def library(self, name):
+        """Of "layer/layer" its path, of "fault=mesh_fault" the same behind that word."""
+        word, equals, path = name.rpartition("=")
+        folder, own = os.path.split(path)
+        return word + equals + os.path.join(self.build_folder, "tests", folder, f"lib{own}.so")
+
     def run(self, test, cache, processor_seconds):
         """Whether the test passes, the processor time that it took, and what it said."""
         environment = dict(os.environ, TETRACUBES_CACHE_DIR="", POCL_CACHE_DIR=cache, TEST_ONLY=test.only,
@@ -174,11 +181,12 @@ class Worker:
         if not test.device:
             environment["OCL_ICD_VENDORS"] = os.devnull
         if is_layered(test):
-            environment["OPENCL_LAYERS"] = os.path.join(self.build_folder, "tests", "layer", "liblayer.so")
+            environment["OPENCL_LAYERS"] = self.library("layer/layer")
         command = [os.path.join(self.build_folder, "tests", test.program), *test.arguments]
         if test.program.endswith(".py"):
             tool = os.path.join(self.build_folder, "host", "tool", "tetracubes")
-            command = [sys.executable, os.path.join(self.source, "tests", test.program), tool, *test.arguments]
+            command = [sys.executable, os.path.join(self.source, "tests", test.program), tool,
+                       *map(self.library, test.libraries), *test.arguments]
 
         def limit():
             resource.setrlimit(resource.RLIMIT_CPU, (processor_seconds, processor_seconds + 1))
@@ -216,7 +224,8 @@ class Worker:
         changed, line = planted(text, mutant)
         start = time.monotonic()
         caught, compiles = None, True
-        cache = self.cache("mutant" if mutant.file.startswith("kernels/") else "kept")
+        is_kernel = mutant.file.startswith("kernels/")
+        cache = self.cache("mutant" if is_kernel else "kept")
         for name in table.tests_of(mutant):
             self.check_without_fault(name)
             test = table.TESTS[name]
@@ -224,7 +233,7 @@ class Worker:
                 write_text(path, changed)
                 compiles = self.builds(targets_of(test))
                 passed, _, said = self.run(test, cache, int(10 * self.usual[name]) + 3) if compiles else (False, 0, "")
-                compiles = compiles and KERNELS_REFUSED not in said
+                compiles = compiles and not (is_kernel and KERNELS_REFUSED in said)
             finally:
                 write_text(path, text)
             if not passed:
@@ -359,7 +368,8 @@ def main():
     if arguments.changed:
         mutants = [m for m in mutants if (m.file, m.what) not in before]
     if arguments.only:
-        mutants = [m for m in mutants if any(w in m.file or w in m.what or w in m.old for w in arguments.only)]
+        mutants = [m for m in mutants if any(w in part for w in arguments.only
+                                             for part in (m.file, m.what, m.old, m.point or ""))]
     if arguments.sample:
         mutants = [m for m in mutants if m.sample]
         arguments.workers = 1

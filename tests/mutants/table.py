@@ -3,22 +3,23 @@ import collections
 import subprocess
 
 import table_check_files
+import table_faults
 import table_host
 import table_kernels
 
-# A program of tests/ with arguments; only: what it chooses of its cases (expect.h). Without a device it makes use of the
-# reference alone.
+# A program of tests/ with arguments; only: what it chooses of its cases (expect.h); libraries: below tests/, which stand
+# behind the tool in the arguments of a test in Python. Without a device it makes use of the reference alone.
 
 
 class TableError(Exception):
     """The table of mutants does not fit the source."""
 
 
-Test = collections.namedtuple("Test", "program arguments only device")
+Test = collections.namedtuple("Test", "program arguments only device libraries")
 
 
-def test(program, only="", arguments=(), device=False):
-    return Test(program, arguments, only, device)
+def test(program, only="", arguments=(), device=False, libraries=()):
+    return Test(program, arguments, only, device, libraries)
 
 
 TESTS = {
@@ -145,13 +146,16 @@ FILES = {
     "kernels/": DEVICE,
 }
 
-MUTANTS = table_host.MUTANTS + table_kernels.MUTANTS + table_check_files.MUTANTS
+TESTS.update({name: test(*how) for name, how in table_faults.TESTS.items()})
+
+MUTANTS = table_host.MUTANTS + table_kernels.MUTANTS + table_check_files.MUTANTS + table_faults.MUTANTS
 
 
 def tests_of(mutant):
     """Names of the tests that are to catch it, the first first."""
-    longest = max((f for f in FILES if mutant.file.startswith(f)), key=len)
-    names = list(dict.fromkeys([*mutant.tests, *FILES[longest]]))
+    longest = max((f for f in FILES if mutant.file.startswith(f)), key=len, default=None)
+    others = [] if mutant.point or longest is None else FILES[longest]
+    names = list(dict.fromkeys([*mutant.tests, *others]))
     if not names or not set(names) <= set(TESTS):
         raise TableError(f"{mutant.file}: {mutant.what}: no tests, or unknown ones: {names}")
     return names
