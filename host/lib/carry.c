@@ -1,22 +1,13 @@
-#include "carry.h"
-
+/*
+ * The public call that carries a field: arguments checked, then the scalar loops of the reference.
+ */
+#include "carry_vertex.h"
 #include "complex.h"
 #include "context.h"
 #include "failure.h"
 #include "float_environment.h"
 #include "reference.h"
 #include "structs.h"
-
-void carry_vertex(const carry *c, uint64_t vertex, int64_t a, int64_t b, float t) {
-    const int components = c->field->components;
-    if (vertex >= c->room) return;
-    for (int n = 0; n < components; n++) {
-        double from = value_at(c->field->type, c->field->values, a * components + n);
-        double to = value_at(c->field->type, c->field->values, b * components + n);
-        double value = t == 1 ? to : from + (double)t * (to - from);
-        c->out[vertex * (uint64_t)components + (uint64_t)n] = (float)(t == 0 ? from : value);
-    }
-}
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))

@@ -4,7 +4,7 @@
 #ifndef COMPLEX_H
 #define COMPLEX_H
 
-#include "carry.h"
+#include "carry_vertex.h"
 #include "context.h"
 #include "grid.h"
 #include "inside.h"
@@ -32,9 +32,6 @@ typedef struct complex_grid {
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
 } complex_grid;
 
-/* As tc_complex_create; the options are complete. */
-tc_status complex_create(tc_context *context, const tc_complex_options *options, scan_parameters scan, tc_grid **out);
-
 /* What its kernels are: one program, tried with emission or without. */
 kernel_kind complex_kind(const tc_grid *grid, bool emits);
 
@@ -42,7 +39,10 @@ kernel_kind complex_kind(const tc_grid *grid, bool emits);
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
-void complex_grid_destroy(tc_grid *grid);
+
+/* Checks the options and fills *grid but for context and device; to be released in any case (complex.c). */
+tc_status complex_describe(const tc_complex_options *options, tc_grid *grid);
+void complex_release(tc_grid *grid);
 
 /* The sentence for a tetrahedron with a point that is not there. */
 tc_status complex_point_fail(const complex_grid *c);

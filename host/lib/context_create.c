@@ -14,12 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define TEXT2(x) #x
-#define TEXT(x)  TEXT2(x)
-
 const char *tc_message(void) { return failure_text(); }
-
-const char *tc_version(void) { return TEXT(TC_VERSION); }
 
 void tc_context_options_init(tc_context_options *options) {
     if (!options) return;

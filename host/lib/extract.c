@@ -1,7 +1,6 @@
 /*
- * The public calls on grids and meshes: arguments checked, then one engine or the other.
+ * The public calls that make surfaces: arguments are checked, drivers vetted and tried, then surface.c takes over.
  */
-#include "complex.h"
 #include "context.h"
 #include "failure.h"
 #include "float_environment.h"
@@ -18,44 +17,6 @@
 void tc_extract_options_init(tc_extract_options *options) {
     if (!options) return;
     *options = (tc_extract_options){.struct_size = sizeof *options};
-}
-
-tc_status grid_create(tc_context *context, const tc_grid_options *o, scan_parameters scan, tc_grid **out) {
-    *out = NULL;
-    tc_grid *grid = malloc(sizeof *grid);
-    if (!grid) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
-    tc_status status = grid_describe(o, grid);
-    grid->context = context;
-    grid->scan = scan;
-    if (!status && o->cl_samples && context->options.engine != TC_ENGINE_OPENCL)
-        status = (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine takes samples, not cl_samples");
-    if (!status && context->options.engine == TC_ENGINE_OPENCL) status = structured_grid_create(grid);
-    if (!status)
-        *out = grid;
-    else
-        tc_grid_destroy(grid);
-    return status;
-}
-
-tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
-    FLOAT_ENVIRONMENT_DEFAULT;
-    tc_grid_options o;
-    if (out) *out = NULL;
-    if (!out || !context)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
-    tc_grid_options_init(&o);
-    tc_status status = options_take(&o, sizeof o, options, "grid options");
-    if (!status) status = context_check(context);
-    return status ? status : grid_create(context, &o, context->launch.scan, out);
-}
-
-void tc_grid_destroy(tc_grid *grid) {
-    if (!grid) return;
-    FLOAT_ENVIRONMENT_DEFAULT;
-    complex_grid_destroy(grid);
-    structured_grid_destroy(grid);
-    grid_release(grid);
-    free(grid);
 }
 
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {

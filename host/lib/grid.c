@@ -23,8 +23,6 @@ void tc_grid_options_init(tc_grid_options *options) {
     for (int r = 0; r < 3; r++) options->matrix[r][r] = 1;
 }
 
-int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }
-
 const void *grid_array_data(const tc_grid *grid, int array) {
     const void *const data[ARRAY_COUNT] = {grid->samples, grid->points, grid->blanked_samples, grid->blanked_cells};
     return data[array];
@@ -199,7 +197,6 @@ tc_status origin_check(int has_origin, const double origin[3]) {
 }
 
 tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
-    *grid = (tc_grid){0};
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     tc_status status = sizes_check(o);
     if (status) return status;

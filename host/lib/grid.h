@@ -46,17 +46,14 @@ struct tc_grid {
 /* The caller's options, complete and checked. */
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
 
-/* As tc_grid_create; the options are complete. */
-tc_status grid_create(tc_context *context, const tc_grid_options *options, scan_parameters scan, tc_grid **out);
-
-/* Checks the options and fills *grid but for context and device; to be released in any case. */
+/* Checks the options and fills *grid, which is zeroed, but for context, scan and device; to be released in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 void grid_release(tc_grid *grid);
 
 /* TC_ERROR_ARGUMENT for an origin that the caller gives and that is no place. */
 tc_status origin_check(int has_origin, const double origin[3]);
 
-int64_t grid_sample_count(const tc_grid *grid);
+static inline int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }
 
 /* An array of a grid (context.h: ARRAY_...) in the host's memory, or NULL; bytes of one item, and of a plane. */
 const void *grid_array_data(const tc_grid *grid, int array);

@@ -6,7 +6,7 @@
 #ifndef REFERENCE_H
 #define REFERENCE_H
 
-#include "carry.h"
+#include "carry_vertex.h"
 #include "grid.h"
 #include "mesh.h"
 

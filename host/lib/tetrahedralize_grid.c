@@ -82,6 +82,7 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *com
     tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: complex");
     if (!status) status = options_take(&o, sizeof o, options, "grid options");
     if (status) return status;
+    s.grid = (tc_grid){0};
     status = grid_describe(&o, &s.grid);
     if (!status) status = source_check(&s.grid);
     s.may_miss = s.grid.blanked_samples || s.grid.has_nodata || s.grid.type >= TC_F32;

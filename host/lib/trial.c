@@ -5,6 +5,7 @@
 
 #include "context.h"
 #include "failure.h"
+#include "grids.h"
 #include "kernels.h"
 #include "mesh.h"
 #include "surface.h"
@@ -83,7 +84,7 @@ static tc_status reference_make(const trial_volume *v, const tc_extract_options 
         else
             status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
     }
-    tc_grid_destroy(grid);
+    grid_destroy(grid);
     return status;
 }
 
@@ -118,8 +119,8 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
     if (!status) grid->scan.spin_limit = 1;
     if (!status) status = count_try(context, v, grid, &how[1], expected[1]);
     if (!status && emits) status = extract_try(context, v, grid, &how[1], expected[1]);
-    tc_grid_destroy(grid);
-    tc_grid_destroy(counted);
+    grid_destroy(grid);
+    grid_destroy(counted);
     return status;
 }
 
@@ -137,10 +138,10 @@ static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind ki
     tc_mesh *meshes[SURFACES] = {NULL, NULL};
     tc_status status = trial_volume_make(v);
     for (int n = 0; n < SURFACES; n++) {
-        tc_extract_options_init(&how[n]);
-        how[n].isovalue = v->isovalue + (n ? 0.3 : 0);
-        how[n].method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
-        how[n].normals = kind.normals;
+        how[n] = (tc_extract_options){.struct_size = sizeof how[n],
+                                      .isovalue = v->isovalue + (n ? 0.3 : 0),
+                                      .method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA,
+                                      .normals = kind.normals};
     }
     if (!status) status = reference_make(v, how, meshes);
     if (!status) status = device_try(context, v, how, kind.emits, meshes);

@@ -3,8 +3,8 @@
  */
 #include "trial.h"
 
-#include "complex.h"
 #include "failure.h"
+#include "grids.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -119,8 +119,7 @@ void trial_volume_release(trial_volume *v) {
 tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_parameters scan, tc_grid **grid) {
     tc_complex_options complex;
     if (!v->unstructured) return grid_create(context, &v->options, scan, grid);
-    tc_complex_options_init(&complex);
-    complex.point_count = SAMPLES;
+    complex = (tc_complex_options){.struct_size = sizeof complex, .point_count = SAMPLES};
     complex.points = v->points;
     complex.type = v->type;
     complex.samples = v->samples;

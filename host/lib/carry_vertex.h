@@ -1,8 +1,8 @@
 /*
- * carry.h - another field of the grid on the vertices of a surface
+ * carry_vertex.h - another field of the grid on the vertices of a surface
  */
-#ifndef CARRY_H
-#define CARRY_H
+#ifndef CARRY_VERTEX_H
+#define CARRY_VERTEX_H
 
 #include "grid.h"
 

@@ -1,0 +1,42 @@
+/*
+ * The public calls that make grids.
+ */
+#include "context.h"
+#include "failure.h"
+#include "float_environment.h"
+#include "grids.h"
+#include "structs.h"
+
+void tc_complex_options_init(tc_complex_options *options) {
+    if (!options) return;
+    *options = (tc_complex_options){.struct_size = sizeof *options};
+}
+
+tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
+    tc_grid_options o;
+    if (out) *out = NULL;
+    if (!out || !context)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
+    tc_grid_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "grid options");
+    if (!status) status = context_check(context);
+    return status ? status : grid_create(context, &o, context->launch.scan, out);
+}
+
+tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
+    FLOAT_ENVIRONMENT_DEFAULT;
+    tc_complex_options o;
+    if (out) *out = NULL;
+    if (!out || !context)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_complex_create needs a context and a place for the grid");
+    tc_complex_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "complex options");
+    if (!status) status = context_check(context);
+    return status ? status : complex_create(context, &o, context->launch.scan, out);
+}
+
+void tc_grid_destroy(tc_grid *grid) {
+    FLOAT_ENVIRONMENT_DEFAULT;
+    grid_destroy(grid);
+}
