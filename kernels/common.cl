@@ -4,7 +4,7 @@
  * There are two texts of the kernels. One is for groups of work-items: plain OpenCL C 1.2, with vectors of 2, 3, 4, 8
  * and 16 elements, which every compiler takes and which can be translated to SPIR-V. The other is for a work-item alone
  * in its group, as processors want it: extensions.cl holds what it takes from compilers beyond OpenCL C. Files named
- * _groups or _alone, and those that say so, belong to one of them, the others to both. host/lib/text.c tells which
+ * _groups or _alone, and those that say so, belong to one of them, the others to both. host/lib/opencl/text.c tells which
  * device gets which.
  *
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;

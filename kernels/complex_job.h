@@ -30,7 +30,7 @@ typedef struct active_tetrahedron {
 } active_tetrahedron;
 
 /* Of each of the 16 cases: how many edges are crossed and triangles made; the two ends of each edge; the triangles'
- * corners, by place. Derived from the tables of host/lib/tables.h. */
+ * corners, by place. Derived from the tables of host/lib/grid/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
 /* The head of the state buffer, before the tiles of kernel 1. */

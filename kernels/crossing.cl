@@ -1,5 +1,5 @@
 /*
- * crossing.cl - where the isovalue lies on an edge; host/lib/reference_crossing.inc is its twin
+ * crossing.cl - where the isovalue lies on an edge; host/lib/reference/reference_crossing.inc is its twin
  *
  * One formula, one direction (from the lower to the higher sample index), one order of operations, no contraction, and
  * division rounded correctly: the same bits on every device.

@@ -1,6 +1,6 @@
 /*
  * extensions.cl - what the text for a work-item alone takes from compilers beyond OpenCL C 1.2: vectors of 64 elements,
- * built-in functions, hints. Compilers built on Clang know it; see host/lib/text.c
+ * built-in functions, hints. Compilers built on Clang know it; see host/lib/opencl/text.c
  */
 
 /* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.

@@ -1,5 +1,5 @@
 /*
- * vertex.cl - position and normal of one vertex, behind crossing.cl; host/lib/reference_vertex.inc is its twin
+ * vertex.cl - position and normal of one vertex, behind crossing.cl; host/lib/reference/reference_vertex.inc is its twin
  *
  * From the build: REAL, SAMPLE_VALUE(bits), NORMALS, GRID (0: uniform, 1: rectilinear, 2: curvilinear).
  */

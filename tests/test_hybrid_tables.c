@@ -11,7 +11,7 @@
 #include "expect.h"
 #include "random.h"
 #include "split.h"
-#include "tables.h"
+#include "grid/tables.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
  * fall anywhere.
  */
 #include "expect.h"
-#include "inside.h"
+#include "grid/inside.h"
 #include "random.h"
 #include "samples.h"
 

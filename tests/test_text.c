@@ -1,6 +1,6 @@
 /* test_text.c - which device gets which of the two texts of the kernels */
 #include "expect.h"
-#include "text.h"
+#include "opencl/text.h"
 
 #include <stdio.h>
 

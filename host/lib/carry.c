@@ -1,13 +1,13 @@
 /*
  * The public call that carries a field: arguments checked, then the scalar loops of the reference.
  */
-#include "carry_vertex.h"
-#include "complex.h"
-#include "context.h"
+#include "reference/carry_vertex.h"
+#include "grid/complex.h"
+#include "opencl/context.h"
 #include "failure.h"
-#include "float_environment.h"
-#include "reference.h"
-#include "structs.h"
+#include "base/float_environment.h"
+#include "reference/reference.h"
+#include "base/structs.h"
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))

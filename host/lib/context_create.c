@@ -3,12 +3,12 @@
  */
 #include "context_create.h"
 
-#include "device.h"
+#include "opencl/device.h"
 #include "failure.h"
-#include "float_environment.h"
-#include "program.h"
-#include "structs.h"
-#include "vetting.h"
+#include "base/float_environment.h"
+#include "opencl/program.h"
+#include "base/structs.h"
+#include "opencl/vetting.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef CONTEXT_CREATE_H
 #define CONTEXT_CREATE_H
 
-#include "context.h"
+#include "opencl/context.h"
 
 /* As tc_context_create; its kernels are built without asking what is known of them. */
 tc_status context_create_for_trial(const tc_context_options *options, tc_context **context);

@@ -1,14 +1,14 @@
 /*
  * The public calls that make surfaces: arguments are checked, drivers vetted and tried, then surface.c takes over.
  */
-#include "context.h"
+#include "opencl/context.h"
 #include "failure.h"
-#include "float_environment.h"
-#include "structs.h"
-#include "structured.h"
+#include "base/float_environment.h"
+#include "base/structs.h"
+#include "structured/structured.h"
 #include "surface.h"
 #include "trial.h"
-#include "vetting.h"
+#include "opencl/vetting.h"
 
 #include <math.h>
 #include <stdlib.h>

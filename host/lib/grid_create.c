@@ -1,11 +1,11 @@
 /*
  * The public calls that make grids.
  */
-#include "context.h"
+#include "opencl/context.h"
 #include "failure.h"
-#include "float_environment.h"
+#include "base/float_environment.h"
 #include "grids.h"
-#include "structs.h"
+#include "base/structs.h"
 
 void tc_complex_options_init(tc_complex_options *options) {
     if (!options) return;

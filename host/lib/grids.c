@@ -1,9 +1,9 @@
 #include "grids.h"
 
-#include "complex.h"
-#include "context.h"
+#include "grid/complex.h"
+#include "opencl/context.h"
 #include "failure.h"
-#include "structured.h"
+#include "structured/structured.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 #ifndef GRIDS_H
 #define GRIDS_H
 
-#include "grid.h"
+#include "grid/grid.h"
 
 /* As tc_grid_create and tc_complex_create. */
 tc_status grid_create(tc_context *context, const tc_grid_options *options, scan_parameters scan, tc_grid **out);

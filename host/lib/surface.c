@@ -1,9 +1,9 @@
 #include "surface.h"
 
-#include "complex.h"
-#include "inside.h"
-#include "reference.h"
-#include "structured.h"
+#include "grid/complex.h"
+#include "grid/inside.h"
+#include "reference/reference.h"
+#include "structured/structured.h"
 
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     return grid->complex ? complex_kind(grid, emits) : structured_kind(grid, options, emits);

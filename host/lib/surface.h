@@ -4,9 +4,9 @@
 #ifndef SURFACE_H
 #define SURFACE_H
 
-#include "grid.h"
-#include "kernel_kind.h"
-#include "mesh.h"
+#include "grid/grid.h"
+#include "opencl/kernel_kind.h"
+#include "grid/mesh.h"
 
 /* The kernels that make it; emits: kernel 2 too. */
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);

@@ -3,11 +3,11 @@
  */
 #include "trial.h"
 
-#include "context.h"
+#include "opencl/context.h"
 #include "failure.h"
 #include "grids.h"
-#include "kernels.h"
-#include "mesh.h"
+#include "opencl/kernels.h"
+#include "grid/mesh.h"
 #include "surface.h"
 
 #include <stdlib.h>

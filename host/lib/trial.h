@@ -13,8 +13,8 @@
 #ifndef TRIAL_H
 #define TRIAL_H
 
-#include "grid.h"
-#include "kernel_kind.h"
+#include "grid/grid.h"
+#include "opencl/kernel_kind.h"
 
 /* Tries the kernels of a kind, whether they have passed or not; progress is told "run" when they are built. */
 tc_status trial_of_kind(tc_context *context, kernel_kind kind);

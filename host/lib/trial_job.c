@@ -3,7 +3,7 @@
  */
 #include "context_create.h"
 #include "failure.h"
-#include "float_environment.h"
+#include "base/float_environment.h"
 #include "trial.h"
 
 #include <stdio.h>

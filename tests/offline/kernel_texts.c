@@ -7,10 +7,10 @@
  * Usage: kernel_texts DEVICE WORK_ITEMS FOLDER: FOLDER/NAME.cl and FOLDER/NAME.options for every program. WORK_ITEMS 0:
  * what the library takes by itself.
  */
-#include "context.h"
-#include "grid.h"
-#include "opencl.h"
-#include "program.h"
+#include "opencl/context.h"
+#include "grid/grid.h"
+#include "opencl/opencl.h"
+#include "opencl/program.h"
 #include "tetracubes.h"
 
 #include <stdio.h>

@@ -1,0 +1,45 @@
+/*
+ * tetrahedralize.h - making a tetrahedral complex in two passes over the cells: count, then write
+ *
+ * Cells are taken in blocks, by several threads; what a block makes goes where the sums of the blocks before it say, so
+ * that tetrahedra lie in the order of the cells whatever the number of threads.
+ */
+#ifndef TETRAHEDRALIZE_H
+#define TETRAHEDRALIZE_H
+
+#include "grid/origin.h"
+#include "tetracubes.h"
+
+#include <stdbool.h>
+
+/* What a block of cells gave. */
+typedef struct cell_tally {
+    uint64_t tetrahedra, flat, curved, blanked, inverted, folded, unsupported, surplus;
+} cell_tally;
+
+/* Where the tetrahedra of a block go; tetrahedra NULL: only counted. */
+typedef struct tetrahedron_writer {
+    uint32_t (*tetrahedra)[4];
+    uint32_t *cells;
+    cell_tally *tally;
+} tetrahedron_writer;
+
+/* Does cells [first, end); false where one of them cannot be cut, which only the first pass may find, or where memory
+ * runs out. */
+typedef bool block_function(const void *source, uint64_t first, uint64_t end, tetrahedron_writer *writer);
+
+/* Zeroes a complex of the caller's; TC_ERROR_ARGUMENT, naming what, where it has no room for the arrays. */
+tc_status complex_begin(tc_complex *complex, const char *what);
+
+/* Fills *complex, with its struct_size set. Where a block returns false: TC_ERROR_DATA, without a text, and *bad_cell
+ * is the first cell of the first such block; in the second pass TC_ERROR_MEMORY. */
+tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_complex *complex,
+                       uint64_t *bad_cell);
+
+/* Puts the tetrahedra of one cell behind those of the cells before it in the block. */
+void tetrahedra_put(tetrahedron_writer *writer, const uint32_t tetrahedra[][4], int count, uint64_t cell);
+
+/* Six times the volume, positive where (v1 - v0) x (v2 - v0) . (v3 - v0) is. */
+double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]);
+
+#endif

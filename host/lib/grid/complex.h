@@ -1,0 +1,61 @@
+/*
+ * complex.h - tetrahedral complexes as grids: what both engines know of one, and the calls that choose between them
+ */
+#ifndef COMPLEX_H
+#define COMPLEX_H
+
+#include "reference/carry_vertex.h"
+#include "opencl/context.h"
+#include "grid/grid.h"
+#include "grid/inside.h"
+#include "grid/mesh.h"
+
+/* What the device has of a complex: all of it, or a slab. */
+typedef struct complex_part {
+    uint32_t point_count, tetrahedron_count;
+    device_buffer samples, points, tetrahedra;
+    uint64_t sample_offset, point_offset, tetrahedron_offset; /* of the first item in its buffer */
+    device_buffer ranges;                                     /* of its clusters, made at the first visit */
+    bool ranges_known;
+} complex_part;
+
+/* Type and samples are those of the tc_grid. */
+typedef struct complex_grid {
+    uint32_t point_count;
+    uint32_t tetrahedron_count;
+    const float *points; /* relative to the grid's origin */
+    float *own_points;   /* what points leads to where they are not the caller's; NULL: they are */
+    const uint32_t *tetrahedra;
+
+    /* Under an OpenCL engine: */
+    complex_part part;
+    struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
+} complex_grid;
+
+/* What its kernels are: one program, tried with emission or without. */
+kernel_kind complex_kind(const tc_grid *grid, bool emits);
+
+/* As tc_count, tc_extract and tc_carry; the struct of options is complete. */
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
+
+/* Checks the options and fills *grid but for context and device; to be released in any case (complex.c). */
+tc_status complex_describe(const tc_complex_options *options, tc_grid *grid);
+void complex_release(tc_grid *grid);
+
+/* The sentence for a tetrahedron with a point that is not there. */
+tc_status complex_point_fail(const complex_grid *c);
+
+/* The device path (complex_device.c); samples lie on both sides of the isovalue as far as their type goes. */
+tc_status complex_device_create(tc_grid *grid);
+void complex_device_destroy(tc_grid *grid);
+tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts);
+tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+
+/* The scalar reference (reference_complex.c), likewise. */
+tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);
+tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh);
+tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+
+#endif

@@ -1,0 +1,241 @@
+#include "grid/grid.h"
+
+#include "opencl/context.h"
+#include "grid/coordinates.h"
+#include "failure.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
+static const size_t type_bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+static const int64_t index_limit = 1 << 24; /* indices up to here are exact in float32 */
+
+size_t tc_type_bytes(tc_type type) { return (unsigned)type <= TC_F64 ? type_bytes[type] : 0; }
+
+const char *tc_type_name(tc_type type) { return (unsigned)type <= TC_F64 ? type_names[type] : NULL; }
+
+void tc_grid_options_init(tc_grid_options *options) {
+    if (!options) return;
+    *options = (tc_grid_options){.struct_size = sizeof *options, .type = TC_U8};
+    for (int r = 0; r < 3; r++) options->matrix[r][r] = 1;
+}
+
+const void *grid_array_data(const tc_grid *grid, int array) {
+    const void *const data[ARRAY_COUNT] = {grid->samples, grid->points, grid->blanked_samples, grid->blanked_cells};
+    return data[array];
+}
+
+size_t grid_array_item_bytes(const tc_grid *grid, int array) {
+    const size_t bytes[ARRAY_COUNT] = {tc_type_bytes(grid->type), sizeof(float), 1, 1};
+    return bytes[array];
+}
+
+uint64_t grid_array_plane_bytes(const tc_grid *grid, int array) {
+    uint64_t plane = (uint64_t)(grid->dims[0] * grid->dims[1]);
+    if (array == ARRAY_BLANKED_CELLS) return (uint64_t)((grid->dims[0] - 1) * (grid->dims[1] - 1));
+    return plane * (array == ARRAY_POINTS ? 3 : 1) * grid_array_item_bytes(grid, array);
+}
+
+unsigned grid_parity(const tc_grid *grid) { return (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1; }
+
+static tc_status sizes_check(const tc_grid_options *o) {
+    for (int axis = 0; axis < 3; axis++) {
+        if (o->dims[axis] == 1)
+            return (tc_status)fail(TC_ERROR_DATA, "the grid has one sample along %c: a surface needs two or more",
+                                   'x' + axis);
+        if (o->dims[axis] < 1)
+            return (tc_status)fail(TC_ERROR_ARGUMENT, "%lld samples along %c: a grid needs two or more",
+                                   (long long)o->dims[axis], 'x' + axis);
+        const uint64_t first = o->first[axis] < 0 ? 0 - (uint64_t)o->first[axis] : (uint64_t)o->first[axis];
+        if (o->dims[axis] > index_limit || first > (uint64_t)(index_limit - o->dims[axis]))
+            return (tc_status)fail(TC_ERROR_DATA,
+                                   "%lld samples along %c from index %lld on: indices are limited to 2^24",
+                                   (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);
+    }
+    int64_t count;
+    if (__builtin_mul_overflow(o->dims[0] * o->dims[1], o->dims[2], &count) ||
+        (uint64_t)count > PTRDIFF_MAX / tc_type_bytes(o->type))
+        return (tc_status)fail(TC_ERROR_DATA, "%lld x %lld x %lld samples overflow the address space",
+                               (long long)o->dims[0], (long long)o->dims[1], (long long)o->dims[2]);
+    return TC_OK;
+}
+
+/* The cofactors of m are the inverse transposed times the determinant; its sign is taken out again. */
+static void normal_matrix_derive(const double m[3][3], double determinant, float out[9]) {
+    double c[9], largest = 0;
+    for (int r = 0; r < 3; r++)
+        for (int s = 0; s < 3; s++) {
+            int r1 = (r + 1) % 3, r2 = (r + 2) % 3, s1 = (s + 1) % 3, s2 = (s + 2) % 3;
+            double value = m[r1][s1] * m[r2][s2] - m[r1][s2] * m[r2][s1];
+            c[3 * r + s] = determinant < 0 ? -value : value;
+            largest = fmax(largest, fabs(value));
+        }
+    for (int n = 0; n < 9; n++) out[n] = (float)(c[n] / largest);
+}
+
+/* The double that the matrix gives for an index. */
+static double world_at(const double matrix[3][4], const double index[3], int r) {
+    return matrix[r][0] * index[0] + matrix[r][1] * index[1] + matrix[r][2] * index[2] + matrix[r][3];
+}
+
+/* Where the grid lies, its cells being parallelepipeds. */
+static void uniform_extent(const double matrix[3][4], const tc_grid *grid, extent *e) {
+    *e = extent_empty;
+    for (int r = 0; r < 3; r++) {
+        for (int corner = 0; corner < 8; corner++) {
+            double index[3];
+            for (int axis = 0; axis < 3; axis++)
+                index[axis] = (double)(grid->first[axis] + (corner >> axis & 1 ? grid->dims[axis] - 1 : 0));
+            const double at = world_at(matrix, index, r);
+            e->low[r] = fmin(e->low[r], at);
+            e->high[r] = fmax(e->high[r], at);
+        }
+        e->cell[r] = fmax(fabs(matrix[r][0]), fmax(fabs(matrix[r][1]), fabs(matrix[r][2])));
+    }
+}
+
+/* Indices count from an even number near the grid's where these are large, as float32 holds i + t, too: cubes keep
+ * their parity. */
+static void first_move(double matrix[3][4], tc_grid *grid) {
+    extent e = extent_empty;
+    double base[3];
+    for (int axis = 0; axis < 3; axis++) {
+        e.low[axis] = (double)grid->first[axis];
+        e.high[axis] = (double)(grid->first[axis] + grid->dims[axis] - 1);
+        e.cell[axis] = 1;
+    }
+    origin_choose(&e, base);
+    for (int r = 0; r < 3; r++) matrix[r][3] = world_at((const double(*)[4])matrix, base, r);
+    for (int axis = 0; axis < 3; axis++) grid->first[axis] -= (int64_t)base[axis];
+}
+
+static tc_status matrix_refuse(const double matrix[3][4], int r, int c) {
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "spacing, origin or direction %g is beyond float32", matrix[r][c]);
+}
+
+/* The map as float32, relative to the origin; no corner of the grid may overflow. */
+static tc_status matrix_round(const double matrix[3][4], tc_grid *grid) {
+    for (int r = 0; r < 3; r++) {
+        double reach = fabs(matrix[r][3] - grid->origin[r]);
+        for (int c = 0; c < 4; c++) {
+            grid->matrix[4 * r + c] = (float)(c < 3 ? matrix[r][c] : matrix[r][c] - grid->origin[r]);
+            if (!isfinite(grid->matrix[4 * r + c])) return matrix_refuse(matrix, r, c);
+        }
+        for (int c = 0; c < 3; c++)
+            reach +=
+                fabs(matrix[r][c]) * fmax(fabs((double)grid->first[c]), fabs((double)(grid->first[c] + grid->dims[c])));
+        if (reach > FLT_MAX)
+            return (tc_status)fail(TC_ERROR_ARGUMENT,
+                                   "spacing and origin put the grid's far corner at %g, beyond float32", reach);
+    }
+    return TC_OK;
+}
+
+static tc_status matrix_take(const double given[3][4], const double *origin, tc_grid *grid) {
+    double matrix[3][4], m[3][3], largest = 0;
+    extent e;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++) {
+            if (!isfinite(given[r][c])) return matrix_refuse(given, r, c);
+            matrix[r][c] = given[r][c];
+        }
+    first_move(matrix, grid);
+    uniform_extent((const double(*)[4])matrix, grid, &e);
+    if (origin)
+        for (int axis = 0; axis < 3; axis++) grid->origin[axis] = origin[axis];
+    else
+        origin_choose(&e, grid->origin);
+    tc_status status = matrix_round((const double(*)[4])matrix, grid);
+    if (status) return status;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) largest = fmax(largest, fabs((double)grid->matrix[4 * r + c]));
+    if (largest == 0) largest = 1;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) m[r][c] = grid->matrix[4 * r + c] / largest;
+    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    if (determinant == 0)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "spacing and directions flatten the grid (their determinant is 0)");
+    grid->mirrored = determinant < 0;
+    normal_matrix_derive(m, determinant, grid->normal_matrix);
+    return TC_OK;
+}
+
+/* How many of a grid's arrays of positions are there. */
+static int arrays_given(const void *x, const void *y, const void *z) { return (x != NULL) + (y != NULL) + (z != NULL); }
+
+static tc_status coordinates_check(const tc_grid_options *o) {
+    const int axes = arrays_given(o->axes[0], o->axes[1], o->axes[2]);
+    const int axes_f64 = arrays_given(o->axes_f64[0], o->axes_f64[1], o->axes_f64[2]);
+    if (axes % 3 || axes_f64 % 3)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "a rectilinear grid needs positions along all three axes, not %d",
+                               axes % 3 ? axes : axes_f64);
+    if ((axes != 0) + (axes_f64 != 0) + (o->points != NULL) + (o->points_f64 != NULL) > 1)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "the grid has more than one of axes, axes_f64, points and points_f64; give one of them");
+    uintptr_t unaligned = (uintptr_t)o->points % sizeof(float) | (uintptr_t)o->points_f64 % sizeof(double);
+    for (int axis = 0; axis < 3; axis++)
+        unaligned |= (uintptr_t)o->axes[axis] % sizeof(float) | (uintptr_t)o->axes_f64[axis] % sizeof(double);
+    if (unaligned) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid's coordinates are not aligned to their type");
+    if ((o->points || o->points_f64) &&
+        o->dims[0] * o->dims[1] * o->dims[2] > (int64_t)(PTRDIFF_MAX / (3 * sizeof(double))))
+        return (tc_status)fail(TC_ERROR_DATA, "%lld x %lld x %lld points overflow the address space",
+                               (long long)o->dims[0], (long long)o->dims[1], (long long)o->dims[2]);
+    return origin_check(o->has_origin, o->origin);
+}
+
+tc_status origin_check(int has_origin, const double origin[3]) {
+    for (int axis = 0; axis < 3 && has_origin; axis++)
+        if (!isfinite(origin[axis]))
+            return (tc_status)fail(TC_ERROR_ARGUMENT, "the origin's %c is %g: it has to be finite", 'x' + axis,
+                                   origin[axis]);
+    return TC_OK;
+}
+
+tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
+    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
+    tc_status status = sizes_check(o);
+    if (status) return status;
+    if (!o->samples && !o->cl_samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
+    if (o->samples && o->cl_samples)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has samples and cl_samples; give one of them");
+    if ((uintptr_t)o->samples % tc_type_bytes(o->type))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
+                               tc_type_name(o->type));
+    for (int axis = 0; axis < 3; axis++) {
+        grid->dims[axis] = o->dims[axis];
+        grid->first[axis] = o->first[axis];
+    }
+    grid->type = o->type;
+    grid->samples = o->samples;
+    grid->cl_samples = o->cl_samples;
+    grid->cl_samples_offset = o->cl_samples_offset;
+    grid->has_nodata = o->has_nodata != 0;
+    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata; /* 0.1 is no f32, its nearest is one */
+    grid->blanked_samples = o->blanked_samples;
+    grid->blanked_cells = o->blanked_cells;
+    status = coordinates_check(o);
+    if (status) return status;
+    grid->kind = o->points || o->points_f64     ? GRID_CURVILINEAR
+                 : o->axes[0] || o->axes_f64[0] ? GRID_RECTILINEAR
+                                                : GRID_UNIFORM;
+    grid->given_points = (coordinate_array){o->points, o->points_f64};
+    for (int axis = 0; axis < 3; axis++) grid->given_axes[axis] = (coordinate_array){o->axes[axis], o->axes_f64[axis]};
+    const double *origin = o->has_origin ? o->origin : NULL;
+    return grid->kind == GRID_UNIFORM ? matrix_take(o->matrix, origin, grid) : coordinates_take(grid, origin);
+}
+
+void grid_release(tc_grid *grid) {
+    free(grid->own_coordinates);
+    grid->own_coordinates = NULL;
+}
+
+tc_status tc_grid_origin(const tc_grid *grid, double origin[3]) {
+    for (int axis = 0; axis < 3 && origin; axis++) origin[axis] = grid ? grid->origin[axis] : 0;
+    if (grid && origin) return TC_OK;
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_origin needs a grid and a place for three numbers");
+}

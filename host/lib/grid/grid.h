@@ -1,0 +1,98 @@
+/*
+ * grid.h - a structured grid as both engines see it: checked sizes, parity, where its samples are in world space
+ */
+#ifndef GRID_H
+#define GRID_H
+
+#include "grid/origin.h"
+#include "tetracubes.h"
+#include "opencl/tuning.h"
+
+#include <math.h>
+
+#include <stdbool.h>
+
+struct device_grid;
+struct complex_grid;
+
+/* Where positions come from; the kernels know it as GRID. */
+typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEAR = 2 } grid_kind;
+
+struct tc_grid {
+    tc_context *context;
+    scan_parameters scan; /* those of the context, but in a trial */
+    int64_t dims[3];
+    int64_t first[3];
+    tc_type type;
+    const void *samples;        /* NULL where they are in cl_samples */
+    struct _cl_mem *cl_samples; /* the caller's, retained by the device path */
+    uint64_t cl_samples_offset;
+    bool has_nodata;
+    double nodata;
+    grid_kind kind;
+    float matrix[12];       /* uniform: rows of the index-to-world map: m0 m1 m2 o */
+    float normal_matrix[9]; /* inverse transposed, scaled by a positive number: index gradients to world directions */
+    double origin[3];       /* world coordinates minus this are what matrix, axes and points give */
+    const float *axes[3];   /* rectilinear */
+    const float *points;    /* curvilinear */
+    coordinate_array given_axes[3], given_points; /* as the caller gave them, while the grid is described */
+    float *own_coordinates; /* what axes or points lead to where they are not the caller's; NULL: they are */
+    const uint8_t *blanked_samples, *blanked_cells; /* or NULL */
+    bool mirrored;                                  /* negative determinant, or sum of the Jacobians */
+    struct device_grid *device;                     /* NULL under the reference engine */
+    struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
+};
+
+/* The caller's options, complete and checked. */
+tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
+
+/* Checks the options and fills *grid, which is zeroed, but for context, scan and device; to be released in any case. */
+tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
+void grid_release(tc_grid *grid);
+
+/* TC_ERROR_ARGUMENT for an origin that the caller gives and that is no place. */
+tc_status origin_check(int has_origin, const double origin[3]);
+
+static inline int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }
+
+/* An array of a grid (context.h: ARRAY_...) in the host's memory, or NULL; bytes of one item, and of a plane. */
+const void *grid_array_data(const tc_grid *grid, int array);
+size_t grid_array_item_bytes(const tc_grid *grid, int array);
+uint64_t grid_array_plane_bytes(const tc_grid *grid, int array);
+
+/* 0 where the first sample's cube is even. */
+unsigned grid_parity(const tc_grid *grid);
+
+static inline double value_at(tc_type type, const void *values, int64_t n) {
+    switch (type) {
+    case TC_U8:
+        return ((const uint8_t *)values)[n];
+    case TC_I8:
+        return ((const int8_t *)values)[n];
+    case TC_U16:
+        return ((const uint16_t *)values)[n];
+    case TC_I16:
+        return ((const int16_t *)values)[n];
+    case TC_U32:
+        return ((const uint32_t *)values)[n];
+    case TC_I32:
+        return ((const int32_t *)values)[n];
+    case TC_F32:
+        return (double)((const float *)values)[n];
+    default:
+        return ((const double *)values)[n];
+    }
+}
+
+/* A sample in the host's memory. */
+static inline double grid_value_at(const tc_grid *grid, int64_t n) { return value_at(grid->type, grid->samples, n); }
+
+/* A sample that is blanked or has no value; where samples are in cl_samples only the first can be known. */
+static inline bool grid_sample_missing(const tc_grid *grid, int64_t n) {
+    if (grid->blanked_samples && grid->blanked_samples[n]) return true;
+    if (!grid->samples) return false;
+    double value = grid_value_at(grid, n);
+    return !isfinite(value) || (grid->has_nodata && value == grid->nodata);
+}
+
+#endif

@@ -1,0 +1,132 @@
+/*
+ * The cases of a cube in the hybrid method: marching cubes, with tetrahedra to decide what is ambiguous.
+ *
+ * Vertices lie on the twelve edges of a cube. On a face with four of them the diagonal by which the face is cut joins
+ * two corners of one sign, so each of the other two is cut off on its own, as the tetrahedra would do it; both cubes of
+ * the face agree. Walking around a face counter-clockwise, seen from outside the cube, every side of the patch starts
+ * where the walk enters the inside and ends where it leaves: each crossed edge starts one side and ends one, in the
+ * other of its two faces, so the sides form loops, and these wind as their triangles shall.
+ *
+ * Each loop bounds a disk. It is cut by the chords whose squared lengths, between middles of edges, have the least sum;
+ * of equal ones the first is taken, which makes the table a function of the numbers of edges alone. A chord in a face
+ * of the cube could be one of the neighbour's too, and four triangles would meet in it. Twelve loops of eight vertices
+ * have no triangulation without one: they have it in a face at x, y or z = 0, where no neighbour may have one.
+ */
+#include "grid/tables.h"
+
+#include <string.h>
+
+enum { LOOP_MOST = 12, FACE_CORNERS = 4, CHORD_LOW = 1 << 10, CHORD_HIGH = 1 << 20 };
+
+typedef struct loop {
+    unsigned count;
+    uint8_t edges[LOOP_MOST]; /* places in cube_edges */
+} loop;
+
+/* Corners of a face, counter-clockwise seen from outside. */
+static void face_corners(unsigned axis, unsigned high, uint8_t corners[FACE_CORNERS]) {
+    unsigned u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, base = high << axis;
+    const unsigned around[FACE_CORNERS] = {base, base | u, base | u | v, base | v};
+    for (unsigned n = 0; n < FACE_CORNERS; n++) corners[n] = (uint8_t)around[high ? n : FACE_CORNERS - 1 - n];
+}
+
+/* Whether the diagonal of a face at this corner is an edge of the tetrahedra. */
+static int diagonal_at(unsigned parity, unsigned corner) {
+    return memchr(tetrahedron_corners[parity][0], (int)corner, 4) != NULL;
+}
+
+/* Enters the sides that start or end in a face into next: of an edge, the one that follows it in its loop. */
+static void face_sides(unsigned parity, unsigned pattern, const uint8_t corners[FACE_CORNERS],
+                       uint8_t next[CUBE_EDGES]) {
+    uint8_t places[FACE_CORNERS];
+    int steps[FACE_CORNERS], crossed = 0; /* 1: into the inside, -1: out of it */
+    for (unsigned n = 0; n < FACE_CORNERS; n++) {
+        unsigned a = corners[n], b = corners[(n + 1) % FACE_CORNERS];
+        places[n] = cube_edge_place(a, b);
+        steps[n] = (int)(pattern >> b & 1) - (int)(pattern >> a & 1);
+        crossed += steps[n] != 0;
+    }
+    for (unsigned n = 0; n < FACE_CORNERS; n++) {
+        if (steps[n] != 1) continue;
+        unsigned end = (n + 1) % FACE_CORNERS; /* cuts off the corner inside */
+        if (crossed == FACE_CORNERS && diagonal_at(parity, corners[end])) end = (n + FACE_CORNERS - 1) % FACE_CORNERS;
+        while (steps[end] != -1) end = (end + 1) % FACE_CORNERS;
+        next[places[n]] = places[end];
+    }
+}
+
+/* Twice the middle of an edge along an axis. */
+static int middle(unsigned edge, unsigned axis) {
+    const owned_edge e = cube_edges[edge];
+    const unsigned start[3] = {e.dx, e.dy, e.dz};
+    return (int)(2 * start[axis] + (e.type == axis));
+}
+
+/* What a chord between two edges costs. */
+static int chord_cost(unsigned a, unsigned b) {
+    int cost = 0;
+    for (unsigned axis = 0; axis < 3; axis++) {
+        int difference = middle(a, axis) - middle(b, axis);
+        cost += difference * difference;
+        if (difference == 0 && middle(a, axis) == 0) cost += CHORD_LOW;
+        if (difference == 0 && middle(a, axis) == 2) cost += CHORD_HIGH;
+    }
+    return cost;
+}
+
+/* The triangles between corners first and last of a loop, behind the side or chord that joins these. */
+static void part_store(const loop *l, uint8_t apex[LOOP_MOST][LOOP_MOST], unsigned first, unsigned last, int mirrored,
+                       cube_case *out) {
+    if (last - first < 2) return;
+    const unsigned corner = apex[first][last];
+    const uint8_t triangle[3] = {l->edges[first], l->edges[mirrored ? last : corner],
+                                 l->edges[mirrored ? corner : last]};
+    memcpy(out->edges[out->triangle_count++], triangle, sizeof triangle);
+    part_store(l, apex, first, corner, mirrored, out);
+    part_store(l, apex, corner, last, mirrored, out);
+}
+
+/* Finds, for ever longer parts of the loop, the corner that makes the triangle at the chord which cuts the part off. */
+static void loop_triangulate(const loop *l, int mirrored, cube_case *out) {
+    int costs[LOOP_MOST][LOOP_MOST] = {{0}};
+    uint8_t apex[LOOP_MOST][LOOP_MOST] = {{0}};
+    for (unsigned length = 2; length < l->count; length++)
+        for (unsigned first = 0; first + length < l->count; first++) {
+            const unsigned last = first + length;
+            int least = 0;
+            for (unsigned corner = first + 1; corner < last; corner++) {
+                const int cost = costs[first][corner] + costs[corner][last];
+                if (corner > first + 1 && cost >= least) continue;
+                least = cost;
+                apex[first][last] = (uint8_t)corner;
+            }
+            costs[first][last] = least + chord_cost(l->edges[first], l->edges[last]);
+        }
+    part_store(l, apex, 0, l->count - 1, mirrored, out);
+}
+
+static void hybrid_case_derive(cube_case *out, unsigned parity, unsigned pattern, int mirrored) {
+    uint8_t next[CUBE_EDGES], corners[FACE_CORNERS];
+    memset(next, CUBE_EDGES, sizeof next);
+    for (unsigned face = 0; face < 6; face++) {
+        face_corners(face / 2, face % 2, corners);
+        face_sides(parity, pattern, corners, next);
+    }
+    *out = (cube_case){0};
+    for (unsigned start = 0; start < CUBE_EDGES; start++) {
+        loop l = {0};
+        for (unsigned edge = start; next[edge] < CUBE_EDGES;) {
+            const unsigned follower = next[edge];
+            l.edges[l.count++] = (uint8_t)edge;
+            next[edge] = CUBE_EDGES;
+            edge = follower;
+        }
+        if (l.count) loop_triangulate(&l, mirrored, out);
+    }
+}
+
+void hybrid_cases_derive(cube_case cases[2][256], int mirrored) {
+    for (unsigned parity = 0; parity < 2; parity++)
+        for (unsigned pattern = 0; pattern < 256; pattern++)
+            hybrid_case_derive(&cases[parity][pattern], parity, pattern, mirrored);
+}

@@ -1,0 +1,97 @@
+#include "grid/inside.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static uint32_t bits_of_f32(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static uint64_t bits_of_f64(double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static inside_range integer_range(double isovalue, double least, double most) {
+    double threshold = ceil(isovalue);
+    if (threshold <= least || threshold > most) return (inside_range){.uniform = true};
+    uint64_t flip = least < 0 ? (uint64_t)(int64_t)least : 0; /* the sign bit, and above it what keys do not have */
+    uint32_t key = (uint32_t)((uint64_t)(int64_t)threshold - (uint64_t)(int64_t)least);
+    return (inside_range){false, (uint64_t)(int64_t)threshold, (uint64_t)(most - threshold), flip, key, key};
+}
+
+static inside_range f32_range(double isovalue) {
+    float threshold = (float)isovalue;
+    if ((double)threshold < isovalue) threshold = nextafterf(threshold, INFINITY);
+    if (threshold <= -FLT_MAX || threshold > FLT_MAX) return (inside_range){.uniform = true};
+    uint32_t bits = bits_of_f32(threshold), sign = 0x80000000, key = threshold > 0 ? bits | sign : ~(bits | sign);
+    if (threshold > 0) return (inside_range){false, bits, 0x7fffffff - bits, 0, key, key};
+    return (inside_range){false, 0, sign | bits, 0, key, key};
+}
+
+static inside_range f64_range(double isovalue) {
+    if (isovalue <= -DBL_MAX) return (inside_range){.uniform = true};
+    uint64_t bits = bits_of_f64(isovalue), sign = UINT64_C(1) << 63, key = isovalue > 0 ? bits | sign : ~(bits | sign);
+    uint32_t below = (uint32_t)(key >> 32), from = below + ((uint32_t)key != 0);
+    if (isovalue > 0) return (inside_range){false, bits, INT64_MAX - bits, 0, from, below};
+    return (inside_range){false, 0, sign | bits, 0, from, below};
+}
+
+inside_range inside_range_of(tc_type type, double isovalue) {
+    switch (type) {
+    case TC_U8:
+        return integer_range(isovalue, 0, UINT8_MAX);
+    case TC_I8:
+        return integer_range(isovalue, INT8_MIN, INT8_MAX);
+    case TC_U16:
+        return integer_range(isovalue, 0, UINT16_MAX);
+    case TC_I16:
+        return integer_range(isovalue, INT16_MIN, INT16_MAX);
+    case TC_U32:
+        return integer_range(isovalue, 0, UINT32_MAX);
+    case TC_I32:
+        return integer_range(isovalue, INT32_MIN, INT32_MAX);
+    case TC_F32:
+        return f32_range(isovalue);
+    default:
+        return f64_range(isovalue);
+    }
+}
+
+static bool integer_pattern(double value, double least, double most, uint64_t patterns[2]) {
+    if (!(value >= least && value <= most) || value != floor(value)) return false;
+    patterns[0] = patterns[1] = (uint64_t)(int64_t)value;
+    return true;
+}
+
+bool sample_patterns(tc_type type, double value, uint64_t patterns[2]) {
+    patterns[0] = patterns[1] = 0;
+    switch (type) {
+    case TC_U8:
+        return integer_pattern(value, 0, UINT8_MAX, patterns);
+    case TC_I8:
+        return integer_pattern(value, INT8_MIN, INT8_MAX, patterns);
+    case TC_U16:
+        return integer_pattern(value, 0, UINT16_MAX, patterns);
+    case TC_I16:
+        return integer_pattern(value, INT16_MIN, INT16_MAX, patterns);
+    case TC_U32:
+        return integer_pattern(value, 0, UINT32_MAX, patterns);
+    case TC_I32:
+        return integer_pattern(value, INT32_MIN, INT32_MAX, patterns);
+    case TC_F32:
+        if (!isfinite(value) || (double)(float)value != value) return false;
+        patterns[0] = patterns[1] = bits_of_f32((float)value);
+        if (value == 0) patterns[0] = 0, patterns[1] = UINT64_C(1) << 31;
+        return true;
+    default:
+        if (!isfinite(value)) return false;
+        patterns[0] = patterns[1] = bits_of_f64(value);
+        if (value == 0) patterns[0] = 0, patterns[1] = UINT64_C(1) << 63;
+        return true;
+    }
+}

@@ -1,0 +1,74 @@
+#include "grid/tables.h"
+
+const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4] = {
+    {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 3, 5, 6}},
+    {{1, 2, 4, 7}, {0, 4, 1, 2}, {3, 2, 1, 7}, {5, 7, 1, 4}, {6, 4, 2, 7}},
+};
+
+const uint8_t tetrahedron_edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+const tetrahedron_case tetrahedron_cases[16] = {
+    {0, {{0, 0, 0}, {0, 0, 0}}}, /* none inside */
+    {1, {{0, 1, 2}, {0, 0, 0}}}, /* v0 */
+    {1, {{0, 4, 3}, {0, 0, 0}}}, /* v1 */
+    {2, {{1, 2, 4}, {1, 4, 3}}}, /* v0 v1 */
+    {1, {{5, 1, 3}, {0, 0, 0}}}, /* v2 */
+    {2, {{2, 0, 3}, {2, 3, 5}}}, /* v0 v2 */
+    {2, {{0, 4, 5}, {0, 5, 1}}}, /* v1 v2 */
+    {1, {{5, 2, 4}, {0, 0, 0}}}, /* all but v3 */
+    {1, {{5, 4, 2}, {0, 0, 0}}}, /* v3 */
+    {2, {{0, 1, 5}, {0, 5, 4}}}, /* v0 v3 */
+    {2, {{2, 5, 3}, {2, 3, 0}}}, /* v1 v3 */
+    {1, {{5, 3, 1}, {0, 0, 0}}}, /* all but v2 */
+    {2, {{1, 3, 4}, {1, 4, 2}}}, /* v2 v3 */
+    {1, {{0, 3, 4}, {0, 0, 0}}}, /* all but v1 */
+    {1, {{0, 2, 1}, {0, 0, 0}}}, /* all but v0 */
+    {0, {{0, 0, 0}, {0, 0, 0}}}, /* all inside */
+};
+
+const owned_edge cube_edges[CUBE_EDGES] = {
+    {0, 0, 0, EDGE_X},  {0, 0, 0, EDGE_Y}, {0, 0, 0, EDGE_Z},  {0, 0, 0, EDGE_XY}, {0, 0, 0, EDGE_XZ},
+    {0, 0, 0, EDGE_YZ}, {0, 1, 0, EDGE_X}, {0, 1, 0, EDGE_Z},  {0, 1, 0, EDGE_XZ}, /* row y + 1 */
+    {0, 0, 1, EDGE_X},  {0, 0, 1, EDGE_Y}, {0, 0, 1, EDGE_XY},                     /* row z + 1 */
+    {0, 1, 1, EDGE_X},                                                             /* row y + 1, z + 1 */
+    {1, 0, 0, EDGE_Y},  {1, 0, 0, EDGE_Z}, {1, 0, 0, EDGE_YZ}, {1, 1, 0, EDGE_Z},  {1, 0, 1, EDGE_Y}, /* at x + 1 */
+};
+
+owned_edge edge_between(unsigned corner_a, unsigned corner_b) {
+    static const uint8_t type_of_axes[8] = {
+        [1] = EDGE_X, [2] = EDGE_Y, [4] = EDGE_Z, [3] = EDGE_XY, [5] = EDGE_XZ, [6] = EDGE_YZ};
+    unsigned low = corner_a & corner_b;
+    return (owned_edge){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), type_of_axes[corner_a ^ corner_b]};
+}
+
+uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b) {
+    const owned_edge e = edge_between(corner_a, corner_b);
+    uint8_t n = 0;
+    while (cube_edges[n].dx != e.dx || cube_edges[n].dy != e.dy || cube_edges[n].dz != e.dz ||
+           cube_edges[n].type != e.type)
+        n++;
+    return n;
+}
+
+static void cube_case_derive(cube_case *out, unsigned parity, unsigned pattern, int mirrored) {
+    *out = (cube_case){0};
+    for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++) {
+        const uint8_t *corners = tetrahedron_corners[parity][t];
+        unsigned index = 0;
+        for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
+        const tetrahedron_case *c = &tetrahedron_cases[index];
+        for (unsigned n = 0; n < c->triangle_count; n++) {
+            uint8_t *edges = out->edges[out->triangle_count++];
+            for (unsigned m = 0; m < 3; m++) {
+                const uint8_t *ends = tetrahedron_edges[c->triangles[n][mirrored ? (3 - m) % 3 : m]];
+                edges[m] = cube_edge_place(corners[ends[0]], corners[ends[1]]);
+            }
+        }
+    }
+}
+
+void cube_cases_derive(cube_case cases[2][256], int mirrored) {
+    for (unsigned parity = 0; parity < 2; parity++)
+        for (unsigned pattern = 0; pattern < 256; pattern++)
+            cube_case_derive(&cases[parity][pattern], parity, pattern, mirrored);
+}

@@ -1,0 +1,81 @@
+#include "opencl/context.h"
+
+#include "failure.h"
+
+#include <stdio.h>
+
+static void bytes_count(tc_context *context, uint64_t bytes) {
+    context->device_bytes += bytes;
+    if (context->device_bytes > context->device_bytes_peak) context->device_bytes_peak = context->device_bytes;
+}
+
+static tc_status buffer_create(tc_context *context, device_buffer *buffer, uint64_t bytes, cl_mem_flags flags,
+                               void *memory, const char *name) {
+    cl_int error = CL_INVALID_BUFFER_SIZE;
+    buffer_release(context, buffer);
+    if (bytes <= SIZE_MAX) buffer->memory = cl->CreateBuffer(context->context, flags, (size_t)bytes, memory, &error);
+    if (error) {
+        char what[128];
+        snprintf(what, sizeof what, "a device buffer of %llu bytes for %s", (unsigned long long)bytes, name);
+        buffer->memory = NULL;
+        return context_fail(context, what, error);
+    }
+    buffer->bytes = bytes;
+    bytes_count(context, bytes);
+    return TC_OK;
+}
+
+tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
+                      const char *name) {
+    return buffer_create(context, buffer, bytes, access | CL_MEM_USE_HOST_PTR, memory, name);
+}
+
+tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name) {
+    if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
+    if (!bytes) bytes = 1;
+    if (!context->in_place) return buffer_create(context, buffer, bytes, CL_MEM_READ_WRITE, NULL, name);
+    host_block block = {0};
+    if (buffer->memory) cl->Finish(context->queue); /* commands under way may use the memory that goes */
+    buffer_release(context, buffer);
+    tc_status status = host_block_reserve(&block, bytes);
+    if (status) return status;
+    status = buffer_wrap(context, buffer, block.memory, bytes, CL_MEM_READ_WRITE, name);
+    if (status)
+        host_block_release(&block);
+    else
+        buffer->block = block;
+    return status;
+}
+
+void buffer_release(tc_context *context, device_buffer *buffer) {
+    if (!buffer->memory) return;
+    if (!context_is_inherited(context)) cl->ReleaseMemObject(buffer->memory);
+    context->device_bytes -= buffer->bytes;
+    host_block_release(&buffer->block);
+    *buffer = (device_buffer){0};
+}
+
+tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name,
+                         size_t *bytes) {
+    char what[96];
+    cl_context of_memory = NULL;
+    cl_mem_flags flags = 0;
+    cl_mem_object_type type = 0;
+    cl_int error = cl->GetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof of_memory, &of_memory, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_FLAGS, sizeof flags, &flags, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_TYPE, sizeof type, &type, NULL);
+    if (!error) error = cl->GetMemObjectInfo(memory, CL_MEM_SIZE, sizeof *bytes, bytes, NULL);
+    snprintf(what, sizeof what, "asking %s for what it is", name);
+    if (error) return context_fail(context, what, error);
+    const char *wrong = of_memory != context->context  ? "belongs to another OpenCL context than this one's"
+                        : type != CL_MEM_OBJECT_BUFFER ? "is no buffer"
+                        : !(flags & unfit)             ? NULL
+                        : unfit == CL_MEM_WRITE_ONLY   ? "was made with CL_MEM_WRITE_ONLY, and kernels read it"
+                                                       : "was made with CL_MEM_READ_ONLY, and kernels write to it";
+    return wrong ? (tc_status)fail(TC_ERROR_ARGUMENT, "%s %s", name, wrong) : TC_OK;
+}
+
+void workspace_release(tc_context *context) {
+    device_buffer *buffers = (device_buffer *)&context->work;
+    for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
+}

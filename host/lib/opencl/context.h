@@ -1,0 +1,133 @@
+/*
+ * context.h - a device with its queue, its built programs and the buffers it keeps between extractions
+ */
+#ifndef CONTEXT_H
+#define CONTEXT_H
+
+#include "complex_job.h"
+#include "base/host_block.h"
+#include "opencl/kernel_kind.h"
+#include "opencl/opencl.h"
+#include "tetracubes.h"
+#include "opencl/tuning.h"
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* A buffer that grows when it has to and is kept. */
+typedef struct device_buffer {
+    cl_mem memory;
+    uint64_t bytes;
+    host_block block; /* where it lies, on devices that work in place */
+} device_buffer;
+
+enum { KERNELS_MOST = COMPLEX_KERNELS, PROGRAM_OPTIONS_BYTES = 512 };
+
+/* Kernels as built with some options: one of the two, or those of complexes. */
+typedef struct program {
+    char asked[PROGRAM_OPTIONS_BYTES];   /* its options but for the work-items, which a kernel may allow fewer of */
+    char options[PROGRAM_OPTIONS_BYTES]; /* those that it was built with */
+    uint32_t work_items;                 /* per group: what its kernels are launched with */
+    const char *const *sources;
+    bool cached; /* it came from the cache of built programs */
+    cl_program program;
+    cl_kernel kernels[KERNELS_MOST];
+    struct program *next;
+} program;
+
+/* What kernel 1 leaves for kernel 2, per word or brick of the window of sign words. */
+typedef struct word_buffers {
+    device_buffer words, offsets, triangle_offsets, bricks, active;
+} word_buffers;
+
+typedef struct mesh_buffers {
+    device_buffer positions, normals, triangles;
+} mesh_buffers;
+
+/* What a grid is given by, a value or more per sample or cube. */
+enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, ARRAY_COUNT };
+
+/* What the kernels of complexes leave for each other. */
+typedef struct complex_buffers {
+    device_buffer clusters, active_clusters, state, cases;
+    device_buffer active, entries, table, tiles;
+} complex_buffers;
+
+/* All that kernels need besides arrays of the grid that fit whole. A second window is in use where copies overlap
+ * kernels. */
+typedef struct workspace {
+    word_buffers words[2];
+    device_buffer arrays[2][ARRAY_COUNT];
+    mesh_buffers mesh[2];
+    device_buffer cells; /* grids with missing samples */
+    device_buffer state, scratch;
+    complex_buffers complex;
+    device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
+} workspace;
+
+struct tc_context {
+    tc_context_options options; /* the caller's; strings and OpenCL objects cleared */
+    launch_parameters launch;
+    tc_device_info info;
+    pid_t process; /* that made it */
+    bool in_place; /* the device works in the host's memory: nothing is copied */
+    cl_device_id device;
+    cl_context context;
+    cl_command_queue queue;
+    cl_command_queue copies; /* made when copies first overlap kernels */
+    program *programs;
+    workspace work;
+    bool is_trial;                 /* kernels are built without asking what is known of them */
+    bool tries;                    /* a trial is under way: progress is not told (trial.c) */
+    bool text_changed;             /* the other text was taken within a call, which starts again */
+    bool vetted[KERNEL_KINDS + 1]; /* kernels that may be built, and the device itself (vetting.c) */
+    const struct tc_grid *served;  /* the grid that the workspace was last used for */
+    bool passed[KERNEL_KINDS];     /* kernels that were tried (trial.c) */
+    const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
+    uint64_t device_bytes, device_bytes_peak;
+};
+
+/* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */
+tc_status context_fail(const tc_context *context, const char *what, cl_int error);
+
+/* True in a child of the process that made the context, which has no threads of the driver's: commands are never done
+ * there, and OpenCL objects are left alone. */
+bool context_is_inherited(const tc_context *context);
+
+/* TC_ERROR_DEVICE, with what to do, for such a context. */
+tc_status context_check(const tc_context *context);
+
+/* Waits for all commands, where they can end. */
+void context_finish(const tc_context *context);
+
+/* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
+tc_status context_progress(const tc_context *context, const char *stage, double fraction);
+
+/* u32, i32 and f64 samples: vertices are made in double. */
+bool type_is_wide(tc_type type);
+
+/* False where vertices of a wide type have to be made on the host. */
+bool device_makes_vertices(const tc_context *context, tc_type type);
+
+/* The size of a buffer of the caller's. TC_ERROR_ARGUMENT, naming it, where it is of another OpenCL context, no plain
+ * buffer, or made with `unfit`, a flag for kernels that shall not do what they are to. */
+tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name, size_t *bytes);
+
+/* Makes the queue of copies, in order like the other, where there is none yet. */
+tc_status copies_queue_provide(tc_context *context);
+
+/* Makes the buffer at least so large; its content is lost where it has to grow. name is for the error. */
+tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);
+void buffer_release(tc_context *context, device_buffer *buffer);
+
+/* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
+tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
+                      const char *name);
+
+/* Gives the buffers back that are kept between extractions. */
+void workspace_release(tc_context *context);
+
+/* Milliseconds of a clock that only runs forward. */
+double clock_ms(void);
+
+#endif

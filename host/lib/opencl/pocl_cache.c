@@ -1,0 +1,41 @@
+/*
+ * pocl_cache.c - where PoCL keeps its kernels, and whether this user may
+ *
+ * PoCL takes the folder of POCL_CACHE_DIR, else XDG_CACHE_HOME/pocl/kcache, else HOME/.cache/pocl/kcache, else
+ * /tmp/pocl/kcache (lib/CL/pocl_cache.c of PoCL 3.1). Where it cannot make that folder it has no device. Users without
+ * a home, as those of containers, meet this.
+ */
+#include "opencl/pocl_cache.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void find_folder(char *folder, size_t bytes) {
+    const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (own && *own)
+        snprintf(folder, bytes, "%s", own);
+    else if (cache && *cache)
+        snprintf(folder, bytes, "%s/pocl/kcache", cache);
+    else if (home && *home)
+        snprintf(folder, bytes, "%s/.cache/pocl/kcache", home);
+    else
+        snprintf(folder, bytes, "/tmp/pocl/kcache");
+}
+
+bool pocl_cache_is_locked(char *folder, size_t bytes) {
+    char path[PATH_MAX];
+    find_folder(path, sizeof path);
+    snprintf(folder, bytes, "%s", path);
+    while (access(path, W_OK | X_OK) != 0) { /* the folder, or the first one above it that exists */
+        char *slash = strrchr(path, '/');
+        if (errno != ENOENT) return true;
+        if (!slash) return access(".", W_OK | X_OK) != 0;
+        if (slash == path) return access("/", W_OK | X_OK) != 0;
+        *slash = '\0';
+    }
+    return false;
+}

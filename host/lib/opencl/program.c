@@ -1,0 +1,309 @@
+/*
+ * Kernels: the .cl files of the source tree, embedded as text, built for one sample type at a time, and taken from the
+ * cache of built programs where that has them. What was built here is put there at the end of the context, when the
+ * kernels have run.
+ */
+#include "opencl/program.h"
+
+#include "failure.h"
+#include "opencl/kernel_sources.h"
+#include "opencl/pocl_cache.h"
+#include "opencl/program_cache.h"
+#include "opencl/text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The kernels' names for a sample type: unsigned type of its width, width in bits where floating, value of a sample. */
+typedef struct type_text {
+    const char *bits;
+    int floating;
+    const char *value;
+} type_text;
+
+static const type_text type_texts[] = {
+    [TC_U8] = {"uchar", 0, "(float)(b)"},   [TC_I8] = {"uchar", 0, "(float)as_char(b)"},
+    [TC_U16] = {"ushort", 0, "(float)(b)"}, [TC_I16] = {"ushort", 0, "(float)as_short(b)"},
+    [TC_U32] = {"uint", 0, "(double)(b)"},  [TC_I32] = {"uint", 0, "(double)as_int(b)"},
+    [TC_F32] = {"uint", 32, "as_float(b)"}, [TC_F64] = {"ulong", 64, "as_double(b)"},
+};
+
+/* Kernel 1 sees samples as bit patterns, so types of one width share it. */
+static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    const type_text *type = &type_texts[kind.type];
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d", type->bits,
+             type->floating, kind.missing, context->launch.work_items, kind.hybrid);
+}
+
+static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {
+    char common[128];
+    const bool wide = type_is_wide(kind.type), vertices = device_makes_vertices(context, kind.type);
+    const char *real = !vertices ? "" : wide ? "-DREAL=double" : "-DREAL=float";
+    classify_options_write(context, kind, common, sizeof common);
+    snprintf(out, bytes, "%s %s-DWIDE=%d %s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%u%s", common,
+             context->launch.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide, real,
+             type_texts[kind.type].value, kind.normals, context->launch.division, grid,
+             context->info.has_fp64 ? " -DFP64=1" : "");
+}
+
+/* Complexes have points, and no cells: what is missing has no tetrahedra. */
+static void complex_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    const kernel_kind built = {.type = kind.type, .missing = true};
+    char common[PROGRAM_OPTIONS_BYTES - 16];
+    emit_options_write(context, built, 0, common, sizeof common);
+    snprintf(out, bytes, "%s -DCOMPLEX=1", common);
+}
+
+static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
+    if (name == PROGRAM_CLASSIFY)
+        classify_options_write(context, kind, out, bytes);
+    else if (name == PROGRAM_EMIT)
+        emit_options_write(context, kind, kind.grid, out, bytes);
+    else
+        complex_options_write(context, kind, out, bytes);
+}
+
+static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
+    char log[700] = "";
+    size_t bytes = 0;
+    char *whole = NULL;
+    cl->GetProgramBuildInfo(p->program, context->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
+    if (bytes && (whole = calloc(1, bytes + 1)) &&
+        !cl->GetProgramBuildInfo(p->program, context->device, CL_PROGRAM_BUILD_LOG, bytes, whole, NULL))
+        snprintf(log, sizeof log, "%s", whole);
+    free(whole);
+    char folder[512];
+    if (strstr(context->info.platform, "Portable Computing Language") && pocl_cache_is_locked(folder, sizeof folder))
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "%s does not build the kernels (%d), as PoCL cannot write its cache folder %s: set "
+                               "POCL_CACHE_DIR to a folder that this user may write, or HOME",
+                               context->info.name, (int)error, folder);
+    return (tc_status)fail(TC_ERROR_DEVICE, "%s does not build the kernels (%d) with %s: %s", context->info.name,
+                           (int)error, p->options, log);
+}
+
+/* Sources in order; the rest of a list is NULL. */
+enum { SOURCES_MOST = 24 };
+
+/* A program in both texts, and its kernels in order. */
+typedef struct program_text {
+    const char *kernels[KERNELS_MOST];
+    const char *sources[2][SOURCES_MOST];
+} program_text;
+
+static const program_text programs[PROGRAM_COUNT] = {
+    [PROGRAM_CLASSIFY] =
+        {.kernels = {"classify", "cells_mark"},
+         .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
+                                     kernel_source_lanes_alone, kernel_source_words, kernel_source_words_alone,
+                                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
+                                     kernel_source_ranges_alone, kernel_source_sign, kernel_source_sign_alone,
+                                     kernel_source_count, kernel_source_count_alone, kernel_source_scan,
+                                     kernel_source_classify},
+                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                      kernel_source_words, kernel_source_words_groups, kernel_source_tetrahedra,
+                                      kernel_source_cells, kernel_source_ranges, kernel_source_sign,
+                                      kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups,
+                                      kernel_source_scan, kernel_source_classify}}},
+    [PROGRAM_EMIT] = {.kernels = {"emit"},
+                      .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
+                                                  kernel_source_lanes_alone, kernel_source_words,
+                                                  kernel_source_words_alone, kernel_source_tetrahedra,
+                                                  kernel_source_cells, kernel_source_crossing, kernel_source_vertex,
+                                                  kernel_source_mesh, kernel_source_emit_numbers,
+                                                  kernel_source_emit_brick, kernel_source_emit},
+                                  [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                                   kernel_source_words, kernel_source_words_groups,
+                                                   kernel_source_tetrahedra, kernel_source_cells,
+                                                   kernel_source_crossing, kernel_source_vertex, kernel_source_mesh,
+                                                   kernel_source_emit_rows, kernel_source_emit}}},
+    [PROGRAM_COMPLEX] =
+        {.kernels = {"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
+         .sources = {[TEXT_ALONE] = {kernel_source_slab,
+                                     kernel_source_common,
+                                     kernel_source_extensions,
+                                     kernel_source_lanes_alone,
+                                     kernel_source_words,
+                                     kernel_source_words_alone,
+                                     kernel_source_ranges,
+                                     kernel_source_ranges_alone,
+                                     kernel_source_scan,
+                                     kernel_source_crossing,
+                                     kernel_source_complex_job,
+                                     kernel_source_complex_cluster,
+                                     kernel_source_complex_cluster_alone,
+                                     kernel_source_complex_tile,
+                                     kernel_source_complex_count,
+                                     kernel_source_complex_count_alone,
+                                     kernel_source_complex_classify,
+                                     kernel_source_complex_join,
+                                     kernel_source_complex_join_alone,
+                                     kernel_source_complex_number,
+                                     kernel_source_complex_emit},
+                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
+                                      kernel_source_words, kernel_source_words_groups, kernel_source_ranges,
+                                      kernel_source_scan, kernel_source_crossing, kernel_source_complex_job,
+                                      kernel_source_complex_cluster, kernel_source_complex_cluster_groups,
+                                      kernel_source_complex_tile, kernel_source_complex_count,
+                                      kernel_source_complex_count_groups, kernel_source_complex_classify,
+                                      kernel_source_complex_join, kernel_source_complex_join_groups,
+                                      kernel_source_complex_number, kernel_source_complex_emit}}},
+};
+
+static program_recipe recipe_of(const program *p) {
+    program_recipe recipe = {p->sources, 0, p->options};
+    while (recipe.source_count < SOURCES_MOST && p->sources[recipe.source_count]) recipe.source_count++;
+    return recipe;
+}
+
+uint64_t kernel_sources_hash(void) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++)
+        for (int name = 0; name < PROGRAM_COUNT; name++) {
+            const char *const *sources = programs[name].sources[text];
+            for (int n = 0; n < SOURCES_MOST && sources[n]; n++)
+                for (const char *c = sources[n]; *c; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+        }
+    return hash;
+}
+
+static tc_status source_build(const tc_context *context, program *p) {
+    cl_int error;
+    p->program = cl->CreateProgramWithSource(context->context, recipe_of(p).source_count,
+                                             (const char **)(size_t)p->sources, NULL, &error);
+    if (error) return context_fail(context, "handing the kernels to the device", error);
+    error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
+    return error ? build_fail(context, p, error) : TC_OK;
+}
+
+static tc_status program_build(const tc_context *context, program *p) {
+    program_recipe recipe = recipe_of(p);
+    p->program = program_cache_load(context, &recipe);
+    p->cached = p->program != NULL;
+    return p->cached ? TC_OK : source_build(context, p);
+}
+
+static const uint32_t items_step = 32; /* kernels of groups take whole parts of a brick's 32 words */
+
+/* What a kernel allows per group, and the multiple of work-items that suits the device. */
+typedef struct group_limit {
+    const char *kernel; /* that allows the fewest */
+    size_t most, multiple;
+} group_limit;
+
+static tc_status kernel_create(const tc_context *context, const program *p, const char *name, cl_kernel *kernel,
+                               group_limit *limit) {
+    cl_int error;
+    size_t most = 0, multiple = 0;
+    *kernel = cl->CreateKernel(p->program, name, &error);
+    if (!error)
+        error =
+            cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
+    if (!error)
+        error = cl->GetKernelWorkGroupInfo(*kernel, context->device, CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE,
+                                           sizeof multiple, &multiple, NULL);
+    if (error) return context_fail(context, name, error);
+    if (most < limit->most) *limit = (group_limit){name, most, multiple};
+    return TC_OK;
+}
+
+static tc_status kernels_create(const tc_context *context, program *p, const char *const *names, group_limit *limit) {
+    tc_status status = TC_OK;
+    *limit = (group_limit){NULL, SIZE_MAX, 0};
+    for (int n = 0; n < KERNELS_MOST && names[n] && !status; n++)
+        status = kernel_create(context, p, names[n], &p->kernels[n], limit);
+    return status;
+}
+
+/* Gives back what was built, not the program's place. */
+static void program_clear(program *p) {
+    for (int n = 0; n < KERNELS_MOST; n++)
+        if (p->kernels[n]) cl->ReleaseKernel(p->kernels[n]);
+    if (p->program) cl->ReleaseProgram(p->program);
+    memset(p->kernels, 0, sizeof p->kernels);
+    p->program = NULL;
+}
+
+static void program_release(program *p) {
+    program_clear(p);
+    free(p);
+}
+
+/* Keeps what was built here in the cache. */
+static void program_keep(const tc_context *context, const program *p) {
+    program_recipe recipe = recipe_of(p);
+    if (!p->cached) program_cache_store(context, &recipe, p->program);
+}
+
+/* The most work-items up to the limit that kernels of groups can have: a multiple of 32, and of what suits the device
+ * where there is one; 0: none. */
+static uint32_t work_items_below(const group_limit *limit) {
+    const size_t step = limit->multiple % items_step == 0 && limit->multiple <= limit->most && limit->multiple
+                            ? limit->multiple
+                            : items_step;
+    return (uint32_t)(limit->most / step * step);
+}
+
+/* The options asked for, with the program's own number of work-items. */
+static void program_options_write(program *p) {
+    static const char define[] = "-DWORK_ITEMS=";
+    const char *at = strstr(p->asked, define) + sizeof define - 1;
+    snprintf(p->options, sizeof p->options, "%.*s%u%s", (int)(at - p->asked), p->asked, p->work_items,
+             at + strspn(at, "0123456789"));
+}
+
+/* Builds the program, and again, smaller, where one of its kernels allows fewer work-items. */
+static tc_status program_make(const tc_context *context, program *p, const char *const *names) {
+    group_limit limit;
+    for (p->work_items = context->launch.work_items;; p->work_items = work_items_below(&limit)) {
+        program_options_write(p);
+        tc_status status = program_build(context, p);
+        if (!status) status = kernels_create(context, p, names, &limit);
+        if (status || p->work_items <= limit.most) return status;
+        if (!work_items_below(&limit))
+            return (tc_status)fail(TC_ERROR_DEVICE, "%s runs kernel %s with at most %zu work-items per group, not %u",
+                                   context->info.name, limit.kernel, limit.most, items_step);
+        program_keep(context, p); /* later contexts then learn its limits without a compiler */
+        program_clear(p);
+    }
+}
+
+tc_status program_get(tc_context *context, program_name name, kernel_kind kind, const program **out) {
+    const program_text *text = &programs[name];
+    const char *kernels[KERNELS_MOST];
+    char options[PROGRAM_OPTIONS_BYTES];
+    options_write(context, name, kind, options, sizeof options);
+    for (program *p = context->programs; p; p = p->next)
+        if (!strcmp(p->asked, options)) {
+            *out = p;
+            return TC_OK;
+        }
+    program *p = calloc(1, sizeof *p);
+    if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
+    snprintf(p->asked, sizeof p->asked, "%s", options);
+    p->sources = text->sources[text_for(context->launch.work_items)];
+    memcpy(kernels, text->kernels, sizeof kernels);
+    if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
+    tc_status status = program_make(context, p, kernels);
+    if (status) {
+        program_release(p);
+        return status;
+    }
+    p->next = context->programs;
+    *out = context->programs = p;
+    return context_progress(context, "build", 0);
+}
+
+void programs_release(tc_context *context) {
+    while (context->programs) {
+        program *p = context->programs, *next = p->next;
+        const bool inherited = context_is_inherited(context);
+        if (!inherited) program_keep(context, p);
+        if (inherited)
+            free(p);
+        else
+            program_release(p);
+        context->programs = next;
+    }
+}

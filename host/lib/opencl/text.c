@@ -1,0 +1,42 @@
+#include "opencl/text.h"
+
+#include <string.h>
+
+/* The first that fits. A device nobody knows gets the plain text, processors too: a compiler that does not know the
+ * extensions of the other may abort the process. Nothing but speed depends on the choice.
+ *
+ * PoCL 6.0 with LLVM 18 or 19 asks the optimiser to check itself (pass instcombine, verify-fixpoint), and aborts the
+ * process where code could be simplified twice. The kernels are written so that it does not; but what it takes is luck,
+ * so it does not count as tried, and first builds in a process of its own where a trial is asked for. */
+static const text_rule rules[] = {
+    {"Portable Computing Language", "cpu", TEXT_ALONE, true, "3.1",
+     "PoCL compiles by Clang; one work-item per group is three times as fast there"},
+    {"Intel(R) OpenCL", "cpu", TEXT_ALONE, true, "2026.", "Intel's compiler for CPUs is built on Clang"},
+    {"Oclgrind", NULL, TEXT_GROUPS, true, "Oclgrind 21.10",
+     "it simulates instructions one by one and knows no prefetching unless that is defined away"},
+    {"rusticl", NULL, TEXT_GROUPS, false, "22.3 25.0",
+     "Mesa compiles by way of SPIR-V, whose vectors have 16 elements at the most: its translator aborts on longer "
+     "ones"},
+    {"Clover", NULL, TEXT_GROUPS, false, "", "Mesa's older implementation, never tried"},
+    {NULL, NULL, TEXT_GROUPS, true, "", "nothing is known about it"},
+};
+
+static bool contains(const char *text, const char *part) { return !part || strstr(text, part); }
+
+const text_rule *text_rule_of(const tc_device_info *device) {
+    const text_rule *rule = rules;
+    while (!contains(device->platform, rule->platform) || !contains(device->type, rule->type)) rule++;
+    return rule;
+}
+
+bool text_tried(const tc_device_info *device) {
+    const char *version = text_rule_of(device)->tried;
+    while (*version) {
+        const size_t length = strcspn(version, " ");
+        if (!strncmp(device->driver, version, length)) return true;
+        version += length + (version[length] == ' ');
+    }
+    return false;
+}
+
+kernel_text text_for(uint32_t work_items) { return work_items == 1 ? TEXT_ALONE : TEXT_GROUPS; }

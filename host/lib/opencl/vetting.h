@@ -1,0 +1,25 @@
+/*
+ * vetting.h - no driver builds kernels in this process that is not known to be good, where the caller can have it tried
+ *
+ * What is known comes from the table of drivers, from verdicts kept in the cache, and else from the trial that the
+ * context's options name (tetracubes.h). Where a text of the kernels is bad the other one is taken, if work_items is
+ * the library's to choose; none left is an error that says what the driver did.
+ */
+#ifndef VETTING_H
+#define VETTING_H
+
+#include "opencl/context.h"
+
+/* Before the context of the device is made. */
+tc_status device_vet(tc_context *context);
+
+/* At the start of a call: TC_OK where the kernels may be built, perhaps with the other text. */
+tc_status call_vet(tc_context *context, kernel_kind kind);
+
+/* Within a call, where kernels are built: other text than at its start ends the call, which then starts again. */
+tc_status kernels_vet(tc_context *context, kernel_kind kind);
+
+/* True where the call that failed has to start again. */
+bool vetting_restarts(tc_context *context);
+
+#endif

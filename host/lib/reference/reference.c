@@ -1,0 +1,394 @@
+/*
+ * Stages, as in the kernels: signs of the samples; vertices of a layer of bricks, numbered in canonical order;
+ * triangles of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
+ *
+ * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
+ * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
+ * are those of cubes, and triangles come from the table of a cube.
+ */
+#include "reference/reference.h"
+
+#include "opencl/context.h"
+#include "failure.h"
+#include "grid/tables.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { BRICK_X = 64, BRICK_Y = 8, BRICK_Z = 4 };
+enum { INSIDE = 1, PRESENT = 2 };
+
+typedef struct reference {
+    const tc_grid *grid;
+    double isovalue;
+    int64_t dims[3];
+    uint8_t *signs;   /* per sample: INSIDE | PRESENT */
+    bool complete;    /* no sample is missing */
+    uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
+    tc_mesh *mesh;    /* NULL: count only */
+    const carry *carried;
+    bool normals, hybrid;
+    int edge_types; /* with vertices: of each sample the first so many */
+    cube_case hybrid_cases[2][256];
+    uint64_t vertex_count, triangle_count, active_cell_count;
+} reference;
+
+/* --------------------------------------------------------------------------------------------------------- samples */
+
+static int64_t sample_index(const reference *r, const int64_t p[3]) {
+    return (p[2] * r->dims[1] + p[1]) * r->dims[0] + p[0];
+}
+
+static double sample_value(const reference *r, const int64_t p[3]) {
+    return grid_value_at(r->grid, sample_index(r, p));
+}
+
+static bool sample_present(const reference *r, const int64_t p[3]) { return r->signs[sample_index(r, p)] & PRESENT; }
+
+static bool sample_inside(const reference *r, const int64_t p[3]) { return r->signs[sample_index(r, p)] & INSIDE; }
+
+static void signs_make(reference *r) {
+    const tc_grid *grid = r->grid;
+    int64_t count = grid_sample_count(grid);
+    r->complete = !grid->blanked_cells;
+    for (int64_t n = 0; n < count; n++) {
+        double value = grid_value_at(grid, n);
+        bool present = isfinite(value) && !(grid->has_nodata && value == grid->nodata);
+        present = present && !(grid->blanked_samples && grid->blanked_samples[n]);
+        r->signs[n] = (uint8_t)((value >= r->isovalue ? INSIDE : 0) | (present ? PRESENT : 0));
+        r->complete = r->complete && present;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- edges */
+
+static unsigned cube_parity(const reference *r, const int64_t p[3]) {
+    return (grid_parity(r->grid) ^ (unsigned)(p[0] + p[1] + p[2])) & 1;
+}
+
+static bool cube_present(const reference *r, const int64_t p[3]) {
+    for (int axis = 0; axis < 3; axis++)
+        if (p[axis] < 0 || p[axis] + 1 >= r->dims[axis]) return false;
+    int64_t number = (p[2] * (r->dims[1] - 1) + p[1]) * (r->dims[0] - 1) + p[0];
+    if (r->grid->blanked_cells && r->grid->blanked_cells[number]) return false;
+    for (int c = 0; c < 8 && !r->complete; c++)
+        if (!sample_present(r, (int64_t[3]){p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)})) return false;
+    return true;
+}
+
+static const uint8_t edge_axes[EDGES_PER_SAMPLE] = {1, 2, 4, 3, 5, 6}; /* bit n: the edge spans axis n */
+
+/* The ends of an edge, the lower linear sample index first. */
+static void edge_ends(const reference *r, const int64_t owner[3], int type, int64_t a[3], int64_t b[3]) {
+    unsigned axes = edge_axes[type];
+    for (int axis = 0; axis < 3; axis++) {
+        a[axis] = owner[axis];
+        b[axis] = owner[axis] + (axes >> axis & 1);
+    }
+    if (type >= EDGE_XY && cube_parity(r, owner)) {
+        int axis = type == EDGE_YZ ? 1 : 0;
+        a[axis]++, b[axis]--;
+    }
+}
+
+/* A vertex exists where a present cube contains its edge. */
+static bool edge_exists(const reference *r, const int64_t owner[3], int type) {
+    unsigned axes = edge_axes[type];
+    for (int axis = 0; axis < 3; axis++)
+        if ((axes >> axis & 1) && owner[axis] + 1 >= r->dims[axis]) return false;
+    if (r->complete) return true;
+    for (unsigned back = 0; back < 8; back++) {
+        int64_t cube[3] = {owner[0] - (back & 1), owner[1] - (back >> 1 & 1), owner[2] - (back >> 2)};
+        if (!(back & axes) && cube_present(r, cube)) return true;
+    }
+    return false;
+}
+
+/* A row of cubes and edges without a sign change, neighbours included, has nothing to emit. */
+static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    int64_t count = (x1 < r->dims[0] ? x1 + 1 : x1) - x0;
+    uint8_t any = 0, all = INSIDE;
+    for (int64_t k = z; k <= z + 1 && k < r->dims[2]; k++)
+        for (int64_t j = y; j <= y + 1 && j < r->dims[1]; j++) {
+            const uint8_t *signs = r->signs + sample_index(r, (int64_t[3]){x0, j, k});
+            /* Classified before. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
+            for (int64_t n = 0; n < count; n++) any |= signs[n], all &= signs[n];
+        }
+    return !(any & INSIDE) || (all & INSIDE);
+}
+
+/* -------------------------------------------------------------------------------------------------------- vertices */
+
+/* The samples that a difference along one axis is taken between: central, one-sided at borders and beside missing
+ * samples, the same one twice between two. */
+typedef struct neighbours {
+    int64_t before[3], after[3];
+    float weight; /* 1/16 of the usual one, so that nothing that is made of differences overflows */
+} neighbours;
+
+static neighbours neighbours_of(const reference *r, const int64_t p[3], int axis) {
+    neighbours n = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, 0.0625f};
+    n.before[axis]--, n.after[axis]++;
+    bool has_before = n.before[axis] >= 0 && sample_present(r, n.before);
+    bool has_after = n.after[axis] < r->dims[axis] && sample_present(r, n.after);
+    if (!has_before) n.before[axis]++;
+    if (!has_after) n.after[axis]--;
+    if (has_before && has_after) n.weight = 0.03125f;
+    return n;
+}
+
+/* World coordinate `row` of a sample of a grid that is not uniform. */
+static float coordinate_at(const reference *r, const int64_t p[3], int row) {
+    if (r->grid->kind == GRID_RECTILINEAR) return r->grid->axes[row][p[row]];
+    return r->grid->points[3 * sample_index(r, p) + row];
+}
+
+#define REAL    float
+#define NAME(x) x##_f32
+#define SQRT    sqrtf
+#include "reference/reference_crossing.inc"
+#include "reference/reference_vertex.inc"
+#undef REAL
+#undef NAME
+#undef SQRT
+#define REAL    double
+#define NAME(x) x##_f64
+#define SQRT    sqrt
+#include "reference/reference_crossing.inc"
+#include "reference/reference_vertex.inc"
+
+static void position_between(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+    for (int row = 0; row < 3; row++) {
+        float p0 = coordinate_at(r, a, row), p1 = coordinate_at(r, b, row);
+        out[row] = t == 1 ? p1 : p0 + t * (p1 - p0);
+    }
+}
+
+static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+    const float *m = r->grid->matrix;
+    float p[3];
+    for (int axis = 0; axis < 3; axis++) {
+        float start = (float)(r->grid->first[axis] + a[axis]);
+        p[axis] = b[axis] > a[axis] ? start + t : b[axis] < a[axis] ? start - t : start;
+    }
+    for (int row = 0; row < 3; row++, m += 4) out[row] = ((m[0] * p[0] + m[1] * p[1]) + m[2] * p[2]) + m[3];
+}
+
+static float edge_crossing(const reference *r, const int64_t a[3], const int64_t b[3]) {
+    double value_a = sample_value(r, a), value_b = sample_value(r, b);
+    return type_is_wide(r->grid->type) ? crossing_f64(value_a, value_b, r->isovalue)
+                                       : crossing_f32(value_a, value_b, r->isovalue);
+}
+
+static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
+    const float t = edge_crossing(r, a, b);
+    float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
+    if (r->grid->kind == GRID_UNIFORM)
+        position_make(r, a, b, t, position);
+    else
+        position_between(r, a, b, t, position);
+    if (!r->normals) return;
+    float *normal = (float *)r->mesh->normals.memory + 3 * r->vertex_count;
+    if (type_is_wide(r->grid->type))
+        normal_f64(r, a, b, t, normal);
+    else
+        normal_f32(r, a, b, t, normal);
+}
+
+static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
+    int64_t z = owner[2] % BRICK_Z, layer = owner[2] / BRICK_Z;
+    int64_t sample = (z * r->dims[1] + owner[1]) * r->dims[0] + owner[0];
+    return r->ids[layer & 1] + sample * EDGES_PER_SAMPLE + type;
+}
+
+static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    if (row_uniform(r, x0, x1, y, z)) return;
+    for (int type = 0; type < r->edge_types; type++)
+        for (int64_t x = x0; x < x1; x++) {
+            int64_t owner[3] = {x, y, z}, a[3], b[3];
+            if (!edge_exists(r, owner, type)) continue;
+            edge_ends(r, owner, type, a, b);
+            if (sample_inside(r, a) == sample_inside(r, b)) continue;
+            if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
+                *edge_id(r, owner, type) = (uint32_t)r->vertex_count;
+                vertex_emit(r, a, b);
+            }
+            if (r->carried)
+                carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b),
+                             edge_crossing(r, a, b));
+            r->vertex_count++;
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------------- triangles */
+
+/* The next triangle; NULL where none is made, or the mesh has no room for it (mesh_complete). */
+static uint32_t *triangle_next(const reference *r) {
+    if (!r->mesh || r->triangle_count >= r->mesh->triangle_count) return NULL;
+    return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
+}
+
+static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], unsigned pattern) {
+    unsigned index = 0;
+    for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
+    const tetrahedron_case *c = &tetrahedron_cases[index];
+    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
+        uint32_t *triangle = triangle_next(r);
+        for (unsigned m = 0; m < 3 && triangle; m++) {
+            const uint8_t *ends = tetrahedron_edges[c->triangles[n][r->grid->mirrored ? (3 - m) % 3 : m]];
+            owned_edge e = edge_between(corners[ends[0]], corners[ends[1]]);
+            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
+        }
+    }
+}
+
+static void cube_emit(reference *r, const int64_t cube[3], const cube_case *c) {
+    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
+        uint32_t *triangle = triangle_next(r);
+        for (unsigned m = 0; m < 3 && triangle; m++) {
+            const owned_edge e = cube_edges[c->edges[n][m]];
+            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
+        }
+    }
+}
+
+static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    if (row_uniform(r, x0, x1, y, z)) return;
+    for (int64_t x = x0; x < x1; x++) {
+        int64_t cube[3] = {x, y, z};
+        if (!cube_present(r, cube)) continue;
+        unsigned pattern = 0;
+        for (unsigned c = 0; c < 8; c++)
+            pattern |= (unsigned)sample_inside(r, (int64_t[3]){x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)}) << c;
+        if (pattern == 0 || pattern == 255) continue;
+        r->active_cell_count++;
+        if (r->hybrid) cube_emit(r, cube, &r->hybrid_cases[cube_parity(r, cube)][pattern]);
+        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE && !r->hybrid; t++)
+            tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- layers */
+
+typedef void row_stage(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z);
+
+static void layer_run(reference *r, int64_t layer, row_stage *stage) {
+    int64_t z0 = layer * BRICK_Z, z1 = z0 + BRICK_Z < r->dims[2] ? z0 + BRICK_Z : r->dims[2];
+    for (int64_t y0 = 0; y0 < r->dims[1]; y0 += BRICK_Y)
+        for (int64_t x0 = 0; x0 < r->dims[0]; x0 += BRICK_X)
+            for (int64_t z = z0; z < z1; z++)
+                for (int64_t y = y0; y < y0 + BRICK_Y && y < r->dims[1]; y++)
+                    stage(r, x0, x0 + BRICK_X < r->dims[0] ? x0 + BRICK_X : r->dims[0], y, z);
+}
+
+/* progress: where this stage begins in the whole call, and how much of it it is. */
+static tc_status layers_run(reference *r, const char *stage, double before, double share) {
+    int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
+    r->vertex_count = r->triangle_count = r->active_cell_count = 0;
+    layer_run(r, 0, row_number);
+    for (int64_t layer = 0; layer < layer_count; layer++) {
+        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_number);
+        layer_run(r, layer, row_triangulate);
+        tc_status status =
+            context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
+        if (status) return status;
+    }
+    return TC_OK;
+}
+
+static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
+    *r = (reference){.grid = grid, .isovalue = options->isovalue, .normals = options->normals != 0};
+    for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
+    r->hybrid = options->method == TC_METHOD_HYBRID;
+    r->edge_types = r->hybrid ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    if (r->hybrid) hybrid_cases_derive(r->hybrid_cases, grid->mirrored);
+    r->signs = malloc((size_t)grid_sample_count(grid));
+    if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
+    signs_make(r);
+    return TC_OK;
+}
+
+/* Zeros: an edge without a vertex is never asked for, unless samples change meanwhile. */
+static tc_status ids_allocate(reference *r) {
+    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * EDGES_PER_SAMPLE;
+    for (int n = 0; n < 2; n++)
+        if (!(r->ids[n] = calloc(count, sizeof *r->ids[n])))
+            return (tc_status)fail(TC_ERROR_MEMORY, "no memory for vertex numbers");
+    return TC_OK;
+}
+
+/* What has been emitted is what was counted, unless what the caller has lent has changed in between. */
+static tc_status mesh_complete(const reference *r, bool triangles) {
+    if (r->vertex_count == r->mesh->vertex_count && (!triangles || r->triangle_count == r->mesh->triangle_count))
+        return TC_OK;
+    return (tc_status)fail(TC_ERROR_DATA, "samples, or what is blanked, have changed while a surface was made of them");
+}
+
+static void reference_end(reference *r) {
+    free(r->signs);
+    free(r->ids[0]);
+    free(r->ids[1]);
+}
+
+tc_status reference_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    reference r;
+    double start = clock_ms();
+    tc_status status = reference_begin(&r, grid, options);
+    if (!status) status = layers_run(&r, "classify", 0, 1);
+    counts->vertex_count = r.vertex_count;
+    counts->triangle_count = r.triangle_count;
+    counts->active_cell_count = r.active_cell_count;
+    counts->classify_ms = clock_ms() - start;
+    reference_end(&r);
+    return status;
+}
+
+tc_status reference_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    reference r;
+    const double start = clock_ms();
+    tc_status status = reference_begin(&r, grid, options);
+    if (!status) status = layers_run(&r, "classify", 0, 0.5);
+    if (status) goto cleanup;
+    const double classified = clock_ms();
+    status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    if (!status) status = ids_allocate(&r);
+    if (status) goto cleanup;
+    r.mesh = mesh;
+    status = layers_run(&r, "emit", 0.5, 0.5);
+    if (!status) status = mesh_complete(&r, true);
+    mesh->active_cell_count = r.active_cell_count;
+    mesh->timings.classify_ms = classified - start;
+    mesh->timings.emit_ms = clock_ms() - classified;
+    mesh->timings.total_ms = clock_ms() - start;
+cleanup:
+    reference_end(&r);
+    return status;
+}
+
+tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    reference r;
+    tc_status status = reference_begin(&r, grid, options);
+    if (!status) status = ids_allocate(&r);
+    if (!status) {
+        r.mesh = mesh;
+        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
+        status = mesh_complete(&r, false);
+    }
+    reference_end(&r);
+    return status;
+}
+
+tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                          uint64_t *vertex_count) {
+    reference r;
+    const int64_t layer_count = (grid->dims[2] + BRICK_Z - 1) / BRICK_Z;
+    tc_status status = reference_begin(&r, grid, options);
+    r.carried = c;
+    for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
+        layer_run(&r, layer, row_number);
+        status = context_progress(grid->context, "carry", (double)(layer + 1) / (double)layer_count);
+    }
+    *vertex_count = r.vertex_count;
+    reference_end(&r);
+    return status;
+}

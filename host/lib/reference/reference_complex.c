@@ -1,0 +1,197 @@
+/*
+ * The scalar reference of complexes: one loop over the tetrahedra counts, another emits. A table of the crossed edges
+ * met so far tells whose vertex is there already, so that vertices are numbered as they are met.
+ */
+#include "grid/complex.h"
+
+#include "failure.h"
+#include "grid/tables.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct edge_entry {
+    uint32_t low, high;
+    uint32_t number; /* of its vertex */
+    uint32_t taken;
+} edge_entry;
+
+typedef struct reference {
+    const tc_grid *grid;
+    double isovalue;
+    edge_entry *table; /* open addressing, half full at most */
+    uint64_t table_size;
+    tc_mesh *mesh; /* NULL: count only */
+    const carry *carried;
+    uint64_t vertex_count, triangle_count, active_count;
+} reference;
+
+#define REAL    float
+#define NAME(x) x##_f32
+#include "reference/reference_crossing.inc"
+#undef REAL
+#undef NAME
+#define REAL    double
+#define NAME(x) x##_f64
+#include "reference/reference_crossing.inc"
+
+/* ----------------------------------------------------------------------------------------------------------- edges */
+
+static bool table_allocate(reference *r, uint64_t size) {
+    r->table = calloc((size_t)size, sizeof *r->table);
+    r->table_size = r->table ? size : 0;
+    return r->table != NULL;
+}
+
+/* The edge's entry, or the free one where it belongs. */
+static edge_entry *edge_find(const reference *r, uint32_t low, uint32_t high) {
+    uint64_t hash = ((uint64_t)high << 32 | low) * 0x9e3779b97f4a7c15u;
+    uint64_t n = (hash ^ hash >> 29) & (r->table_size - 1);
+    while (r->table[n].taken && (r->table[n].low != low || r->table[n].high != high)) n = (n + 1) & (r->table_size - 1);
+    return &r->table[n];
+}
+
+static tc_status table_grow(reference *r) {
+    edge_entry *old = r->table;
+    uint64_t old_size = r->table_size;
+    if (2 * (r->vertex_count + 1) < old_size) return TC_OK;
+    bool grown = table_allocate(r, old_size ? 2 * old_size : 1024);
+    for (uint64_t n = 0; n < old_size && grown; n++)
+        if (old[n].taken) *edge_find(r, old[n].low, old[n].high) = old[n];
+    free(old);
+    return grown ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
+}
+
+static float edge_crossing(const reference *r, uint32_t low, uint32_t high) {
+    const double a = grid_value_at(r->grid, low), b = grid_value_at(r->grid, high);
+    return type_is_wide(r->grid->type) ? crossing_f64(a, b, r->isovalue) : crossing_f32(a, b, r->isovalue);
+}
+
+static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
+    const float t = edge_crossing(r, low, high);
+    const float *p0 = r->grid->complex->points + 3 * (uint64_t)low, *p1 = r->grid->complex->points + 3 * (uint64_t)high;
+    float *out = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
+    for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
+}
+
+static tc_status change_fail(void) {
+    return (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a surface was made of them");
+}
+
+/* The vertex on the edge of two points, made when it is met first. */
+static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    tc_status status = table_grow(r);
+    if (status) return status;
+    edge_entry *e = edge_find(r, low, high);
+    if (!e->taken) {
+        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
+        *e = (edge_entry){low, high, (uint32_t)r->vertex_count, 1};
+        if (r->mesh) vertex_emit(r, low, high);
+        if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
+        r->vertex_count++;
+    }
+    *number = e->number;
+    return TC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- tetrahedra */
+
+/* The case of a tetrahedron, 0 where a sample is missing. */
+static unsigned pattern_of(const reference *r, const uint32_t points[4]) {
+    unsigned pattern = 0;
+    for (unsigned v = 0; v < 4; v++) {
+        double value = grid_value_at(r->grid, points[v]);
+        if (!isfinite(value)) return 0;
+        pattern |= (unsigned)(value >= r->isovalue) << v;
+    }
+    return pattern;
+}
+
+static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
+    const uint32_t points[4] = {tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3]};
+    for (int v = 0; v < 4; v++)
+        if (points[v] >= r->grid->complex->point_count) return complex_point_fail(r->grid->complex);
+    const unsigned pattern = pattern_of(r, points);
+    const tetrahedron_case *c = &tetrahedron_cases[pattern];
+    uint32_t numbers[6] = {0};
+    tc_status status = TC_OK;
+    if (pattern == 0 || pattern == 15) return TC_OK;
+    r->active_count++;
+    for (int e = 0; e < 6 && !status; e++) {
+        const uint8_t *ends = tetrahedron_edges[e];
+        if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
+            status = edge_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
+    }
+    for (unsigned n = 0; n < c->triangle_count && !status; n++, r->triangle_count++) {
+        if (!r->mesh) continue;
+        if (r->triangle_count >= r->mesh->triangle_count) return change_fail();
+        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
+        for (int m = 0; m < 3; m++) triangle[m] = numbers[c->triangles[n][m]];
+    }
+    return status;
+}
+
+/* progress: where this stage begins in the whole call, and how much of it it is. */
+static tc_status tetrahedra_run(reference *r, const char *stage, double before, double share) {
+    const complex_grid *c = r->grid->complex;
+    const uint64_t count = c->tetrahedron_count, steps = 64;
+    tc_status status = TC_OK;
+    r->vertex_count = r->triangle_count = r->active_count = 0;
+    if (r->table_size) memset(r->table, 0, r->table_size * sizeof *r->table);
+    for (uint64_t step = 0; step < steps && !status; step++) {
+        for (uint64_t n = count * step / steps; n < count * (step + 1) / steps && !status; n++)
+            status = tetrahedron_run(r, c->tetrahedra + 4 * n);
+        if (!status)
+            status = context_progress(r->grid->context, stage, before + share * (double)(step + 1) / (double)steps);
+    }
+    return status;
+}
+
+static tc_status reference_begin(reference *r, const tc_grid *grid, double isovalue) {
+    *r = (reference){.grid = grid, .isovalue = isovalue};
+    return table_allocate(r, 1024) ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
+}
+
+tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts) {
+    reference r;
+    double start = clock_ms();
+    tc_status status = reference_begin(&r, grid, isovalue);
+    if (!status) status = tetrahedra_run(&r, "classify", 0, 1);
+    counts->vertex_count = r.vertex_count;
+    counts->triangle_count = r.triangle_count;
+    counts->active_cell_count = r.active_count;
+    counts->classify_ms = clock_ms() - start;
+    free(r.table);
+    return status;
+}
+
+tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+    reference r;
+    tc_status status = reference_begin(&r, grid, isovalue);
+    r.carried = c;
+    if (!status) status = tetrahedra_run(&r, "carry", 0, 1);
+    *vertex_count = r.vertex_count;
+    free(r.table);
+    return status;
+}
+
+tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh) {
+    reference r;
+    const double start = clock_ms();
+    tc_status status = reference_begin(&r, grid, isovalue);
+    if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
+    const double classified = clock_ms();
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
+    r.mesh = mesh;
+    if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);
+    if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))
+        status = change_fail();
+    mesh->active_cell_count = r.active_count;
+    mesh->timings.classify_ms = classified - start;
+    mesh->timings.emit_ms = clock_ms() - classified;
+    mesh->timings.total_ms = clock_ms() - start;
+    free(r.table);
+    return status;
+}

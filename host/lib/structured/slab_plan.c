@@ -1,0 +1,218 @@
+#include "structured/slab_plan.h"
+
+#include "failure.h"
+#include "slab.h"
+#include "grid/tables.h"
+
+/* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan word counts to 2^30. */
+static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
+
+static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
+
+uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index) {
+    return slab_index * plan->slab_layers * BRICK_PLANES;
+}
+
+uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
+    return (uint32_t)min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES, (uint64_t)grid->dims[2]);
+}
+
+uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index) {
+    uint32_t z0 = slab_begin(plan, slab_index);
+    return plan->samples_whole || z0 == 0 ? 0 : z0 - 1;
+}
+
+uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
+    uint64_t nz = (uint64_t)grid->dims[2];
+    return (uint32_t)(plan->samples_whole ? nz : min_u64(slab_end(plan, grid, slab_index) + 2ull, nz));
+}
+
+uint32_t plan_window_count(const slab_plan *plan) { return plan->overlaps && !plan->samples_whole ? 2 : 1; }
+
+uint32_t plan_window_layers(const slab_plan *plan) {
+    return plan->words_whole ? plan->layer_count : (uint32_t)min_u64(plan->slab_layers + 1ull, plan->layer_count);
+}
+
+uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid) {
+    return (uint64_t)plan->words_x * (uint64_t)grid->dims[1];
+}
+
+uint64_t plan_cell_planes(const slab_plan *plan) { return plan->slab_layers * (uint64_t)BRICK_PLANES + 2; }
+
+uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->words_x * plan->bricks_y; }
+
+/* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
+ * samples. Never so large that groups run out of tiles. */
+static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
+    uint64_t wanted = (grid->scan.tile_bricks + plan->words_x - 1ull) / plan->words_x;
+    if (!grid->scan.tile_bricks)
+        wanted = context->launch.work_items == 1 ? rows / (16ull * context->launch.work_groups) : 8 / plan->words_x;
+    if (wanted == 0) wanted = 1;
+    plan->tile_rows = (uint32_t)min_u64(wanted, plan->bricks_y);
+    /* A grid has rows of bricks. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+    plan->tile_layers = (uint32_t)min_u64(wanted / plan->bricks_y, plan->slab_layers);
+    if (plan->tile_layers == 0) plan->tile_layers = 1;
+    plan->slab_tiles = ((plan->bricks_y + plan->tile_rows - 1) / plan->tile_rows) *
+                       ((plan->slab_layers + plan->tile_layers - 1) / plan->tile_layers);
+    plan->scratch_words = (BRICK_ROWS * (plan->tile_rows + 1) + BRICK_PLANES * plan->tile_layers) * plan->words_x;
+}
+
+uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array) {
+    uint64_t planes = plan->samples_whole
+                          ? (uint64_t)grid->dims[2]
+                          : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
+    return grid_array_data(grid, array) ? planes * grid_array_plane_bytes(grid, array) : 0;
+}
+
+static uint64_t axes_bytes(const tc_grid *grid) {
+    return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) + 4096 : 0;
+}
+
+static bool can_miss_samples(const tc_grid *grid) {
+    return grid->has_nodata || grid->blanked_samples || grid->blanked_cells || grid->type == TC_F32 ||
+           grid->type == TC_F64;
+}
+
+/* Bytes of everything but the mesh; *largest: of the largest buffer. */
+static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
+    uint64_t layers = plan_window_layers(plan);
+    uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
+    uint64_t arrays = 0, windows = plan_window_count(plan);
+    uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
+    uint64_t scratch = 8ull * plan->scratch_words * context->launch.work_groups;
+    uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
+    uint64_t fixed = 4 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
+    *largest = words;
+    for (int array = 0; array < ARRAY_COUNT; array++) {
+        uint64_t bytes = plan_array_bytes(plan, grid, array);
+        arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
+        if (bytes > *largest) *largest = bytes;
+    }
+    uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
+    uint64_t word_window = words * 2 + words / 4 + (sizeof(brick_state) + 4) * bricks;
+    return arrays * windows + axes_bytes(grid) + word_window * (plan->words_whole ? 1 : windows) + cells + ranges +
+           state + scratch + fixed * windows;
+}
+
+static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t slab_layers,
+                      uint64_t budget, uint64_t *bytes) {
+    uint64_t largest;
+    plan->slab_layers = slab_layers;
+    plan->work_items = context->launch.work_items;
+    plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
+    tiles_shape(context, grid, plan);
+    *bytes = plan_bytes(context, grid, plan, &largest);
+    uint64_t words = BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
+    return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
+}
+
+void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t bytes;
+    if (plan->work_items != context->launch.work_items) plan_fits(context, grid, plan, plan->slab_layers, 0, &bytes);
+}
+
+/* Most layers per slab that fit, by bisection; 0 where not even one does. */
+static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
+                           uint64_t budget) {
+    uint64_t bytes;
+    uint32_t low = 0, high = most;
+    while (low < high) {
+        uint32_t middle = high - (high - low) / 2;
+        if (plan_fits(context, grid, plan, middle, budget, &bytes))
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+/* The same with sign words whole where one layer per slab leaves room for them, else with windows of them. */
+static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
+                            uint64_t budget) {
+    uint64_t bytes;
+    plan->words_whole = true;
+    plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
+    return layers_fit(context, grid, plan, most, budget);
+}
+
+static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
+    const uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES;
+    return (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
+}
+
+static slab_plan plan_begin(const tc_grid *grid) {
+    return (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
+                       .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
+                       .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
+}
+
+/* Bytes of everything but the mesh, at the least and where all is whole; false: buffers are too large for that. */
+static bool plan_least(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid);
+    plan.samples_whole = grid->cl_samples != NULL;
+    return plan_fits(context, grid, &plan, 1, UINT64_MAX, bytes);
+}
+
+static bool plan_whole(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid);
+    plan.samples_whole = plan.words_whole = true;
+    plan.overlaps = !context->in_place;
+    return plan_fits(context, grid, &plan, layers_most(grid, &plan), UINT64_MAX, bytes);
+}
+
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid) {
+    uint64_t bytes;
+    plan_whole(context, grid, &bytes);
+    return (bytes + 2) / 3 * 4;
+}
+
+/* The mesh has half of the budget where the grid is not whole, a quarter or more where it is; emission goes on with a
+ * row of bricks in it at a time: six vertices per sample, with normals, and ten triangles per cube at most. */
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid) {
+    const uint64_t sample_bytes = 2 * EDGES_PER_SAMPLE * 12 + CUBE_TRIANGLES_MAX * 12;
+    const uint64_t row = plan_begin(grid).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
+    uint64_t least, whole, budget;
+    plan_least(context, grid, &least);
+    budget = 2 * (least > row ? least : row);
+    if (!plan_whole(context, grid, &whole)) return budget;
+    const uint64_t from = plan_budget_whole(context, grid);
+    return whole + row > (from > budget ? from : budget) ? whole + row : budget;
+}
+
+static tc_status plan_refuse(const tc_context *context, const tc_grid *grid) {
+    uint64_t bytes;
+    if (!plan_least(context, grid, &bytes))
+        return (tc_status)fail(TC_ERROR_MEMORY,
+                               "a layer of this grid needs larger buffers than %s has, %llu bytes each: use the "
+                               "reference engine, or parts of the grid",
+                               context->info.name, (unsigned long long)context->info.max_buffer_bytes);
+    return (tc_status)fail(TC_ERROR_MEMORY,
+                           "a layer of this grid needs %llu bytes of device memory beside its mesh; allow %llu or more",
+                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid));
+}
+
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+    uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
+    uint64_t budget = context->options.max_memory_bytes;
+    if (!budget) budget = context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
+    *plan = plan_begin(grid);
+    if (layer_samples > scan_samples)
+        return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
+                               (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
+    const uint32_t most = layers_most(grid, plan);
+    plan->samples_whole = plan->words_whole = true;
+    plan->overlaps = !context->in_place;
+    if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
+        plan->samples_whole = grid->cl_samples != NULL;
+        uint32_t layers = windows_fit(context, grid, plan, most, budget / 2);
+        if (layers == 0 && plan->overlaps) {
+            plan->overlaps = false;
+            layers = windows_fit(context, grid, plan, most, budget / 2);
+        }
+        if (layers == 0) return plan_refuse(context, grid);
+        plan_fits(context, grid, plan, layers, budget, &bytes);
+    }
+    plan->mesh_bytes = budget - bytes;
+    return TC_OK;
+}

@@ -1,0 +1,55 @@
+/*
+ * slab_plan.h - how a grid is cut into slabs and tiles so that counts and buffers fit the device
+ *
+ * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
+ * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a
+ * slab, and the other arrays that a grid may have, with one plane before and two after (gradients and missing cells
+ * reach that far), sign words with one layer after. Devices with memory of their own hold two such windows, where that
+ * fits: one is copied while kernels run over the other.
+ */
+#ifndef SLAB_PLAN_H
+#define SLAB_PLAN_H
+
+#include "opencl/context.h"
+#include "grid/grid.h"
+
+typedef struct slab_plan {
+    uint32_t words_x, bricks_y, layer_count;
+    uint32_t slab_layers, slab_count;
+    bool samples_whole, words_whole;             /* samples: with all other arrays of the grid */
+    bool overlaps;                               /* copies and kernels run at once: windows are double */
+    uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
+    uint32_t scratch_words;                      /* per group */
+    uint32_t work_items;                         /* that tiles are shaped for */
+    uint64_t mesh_bytes;                         /* bound on the mesh, or all windows of it */
+} slab_plan;
+
+/* The least budget from which on a grid can be extracted from whatever its samples are, normals included; and whole,
+ * for tc_emit, without its mesh. As far as the device's limit on buffers allows. */
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid);
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid);
+
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+
+/* Shapes the tiles anew where the context's text of the kernels is another than when the plan was made. */
+void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+
+/* Planes z0 <= z < z1 of a slab. */
+uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
+
+/* Planes of samples that a slab needs. */
+uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
+
+/* How many windows of samples, and of sign words where these are not whole, there are: 1 or 2. */
+uint32_t plan_window_count(const slab_plan *plan);
+
+/* Bytes of an array of the grid in one window, or of all of it; 0 where there is none, or it is the caller's buffer. */
+uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array);
+uint32_t plan_window_layers(const slab_plan *plan);
+uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid); /* without padding to bricks */
+uint64_t plan_cell_planes(const slab_plan *plan);
+uint64_t plan_bricks_per_layer(const slab_plan *plan);
+
+#endif

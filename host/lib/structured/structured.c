@@ -1,0 +1,291 @@
+/*
+ * The device path as the diagram of the design has it: classify and scan, totals, allocate, emit.
+ */
+#include "structured/structured.h"
+
+#include "failure.h"
+#include "grid/inside.h"
+#include "reference/reference.h"
+#include "structured/structured_run.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void base_fill(run *r, inside_range inside, double isovalue) {
+    const tc_grid *grid = r->grid;
+    slab *s = &r->base;
+    s->inside_low = inside.low;
+    s->inside_span = inside.span;
+    s->key_flip = inside.key_flip;
+    s->key_inside = inside.key_inside;
+    s->key_outside = inside.key_outside;
+    s->ranges_known = grid->device->ranges_known;
+    s->has_blanked_samples = grid->blanked_samples != NULL;
+    s->has_blanked_cells = grid->blanked_cells != NULL;
+    s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
+    s->nx = (uint32_t)grid->dims[0];
+    s->ny = (uint32_t)grid->dims[1];
+    s->nz = (uint32_t)grid->dims[2];
+    s->words_x = r->plan->words_x;
+    s->bricks_y = r->plan->bricks_y;
+    s->parity = grid_parity(grid);
+    for (int axis = 0; axis < 3; axis++) s->first[axis] = (int32_t)grid->first[axis];
+    s->tile_rows = r->plan->tile_rows;
+    s->tile_layers = r->plan->tile_layers;
+    s->spin_limit = r->grid->scan.spin_limit;
+    s->isovalue32 = (float)isovalue;
+    memcpy(&s->isovalue64, &isovalue, sizeof isovalue);
+    memcpy(s->matrix, grid->matrix, sizeof s->matrix);
+    memcpy(s->normal_matrix, grid->normal_matrix, sizeof s->normal_matrix);
+}
+
+static uint64_t state_bytes(const run *r) {
+    return 4ull * r->plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * r->plan->slab_tiles);
+}
+
+/* Sign words, the constant bricks before them. */
+static tc_status words_reserve(tc_context *context, device_buffer *words, uint64_t brick_count) {
+    const size_t brick_bytes = 8 * BRICK_WORDS;
+    uint64_t bytes = brick_bytes * (UNIFORM_BRICKS + brick_count);
+    if (words->memory && bytes <= words->bytes) return TC_OK;
+    tc_status status = buffer_reserve(context, words, bytes, "sign words");
+    for (size_t sign = 0; sign < UNIFORM_BRICKS && !status; sign++) {
+        const cl_ulong word = sign == SIGN_INSIDE ? UINT64_MAX : 0;
+        cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, sign * brick_bytes,
+                                             brick_bytes, 0, NULL, NULL);
+        if (error) status = context_fail(context, "filling constant sign words", error);
+    }
+    return status;
+}
+
+typedef struct reservation {
+    device_buffer *buffer;
+    uint64_t bytes;
+    const char *name;
+} reservation;
+
+static tc_status buffers_reserve(tc_context *context, const reservation *buffers, size_t count) {
+    tc_status status = TC_OK;
+    for (size_t n = 0; n < count && !status; n++)
+        status = buffer_reserve(context, buffers[n].buffer, buffers[n].bytes, buffers[n].name);
+    return status;
+}
+
+static tc_status word_buffers_reserve(run *r, word_buffers *w) {
+    uint64_t bricks = plan_window_layers(r->plan) * plan_bricks_per_layer(r->plan), words = BRICK_WORDS * bricks;
+    const reservation buffers[] = {{&w->offsets, 8 * words, "vertex offsets"},
+                                   {&w->triangle_offsets, 2 * words, "triangle offsets"},
+                                   {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
+                                   {&w->active, 4 * bricks, "active bricks"}};
+    tc_status status = words_reserve(r->context, &w->words, bricks);
+    return status ? status : buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
+}
+
+/* Windows kept for another grid would come on top of the memory that this one may have. */
+static void windows_trim(run *r) {
+    workspace *w = &r->context->work;
+    uint32_t windows = plan_window_count(r->plan);
+    for (uint32_t n = r->plan->samples_whole ? 0 : windows; n < 2; n++)
+        for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[n][array]);
+    if (windows == 2 && !r->plan->words_whole) return;
+    device_buffer *words = (device_buffer *)&w->words[1];
+    for (size_t n = 0; n < sizeof w->words[1] / sizeof *words; n++) buffer_release(r->context, &words[n]);
+}
+
+static tc_status workspace_reserve(run *r) {
+    workspace *w = &r->context->work;
+    const slab_plan *plan = r->plan;
+    uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
+    const reservation buffers[] = {{&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
+                                   {&w->state, state_bytes(r), "the scan"},
+                                   {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
+    uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
+    if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
+        cl->Finish(r->context->queue);
+        workspace_release(r->context); /* what another grid has left could make too much of it */
+    }
+    r->context->served = r->grid;
+    windows_trim(r);
+    tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
+    for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
+    return status;
+}
+
+void structured_reshape(tc_grid *grid) { slab_plan_reshape(grid->context, grid, &grid->device->plan); }
+
+kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
+    const kernel_kind kind = {.grid = (unsigned)grid->kind,
+                              .type = grid->type,
+                              .hybrid = options->method == TC_METHOD_HYBRID,
+                              .missing = grid->device && grid->device->missing,
+                              .normals = options->normals != 0,
+                              .emits = true};
+    return emits ? kind : kind_of_classify(kind);
+}
+
+tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+    *r = (run){.grid = grid,
+               .context = grid->context,
+               .plan = &grid->device->plan,
+               .method = options->method,
+               .normals = options->normals != 0};
+    r->copies = r->context->queue;
+    base_fill(r, inside, options->isovalue);
+    r->classify_share = emits ? 0.5 : 1;
+    tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
+    r->start_ms = clock_ms();
+    if (!status) status = workspace_reserve(r);
+    if (!status) status = slab_store_allocate(r);
+    if (status) return status;
+    r->heads = calloc(r->plan->slab_count, STATE_WORDS * sizeof *r->heads);
+    return r->heads ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
+}
+
+void run_end(run *r, tc_status status) {
+    workspace *w = &r->context->work;
+    cl->Finish(r->context->queue);
+    if (status) workspace_release(r->context); /* what it holds may not be what it is taken for */
+    if (r->context->in_place) {                /* windows in memory that is not ours to keep */
+        mesh_buffers *mesh = &w->mesh[0];
+        device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
+        for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
+        for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[0][array]);
+    }
+    slab_store_release(&r->store);
+    free(r->heads);
+}
+
+/* -------------------------------------------------------------------------------------------------- classification */
+
+static slab_place classify_place(const run *r, uint32_t slab_index) {
+    return (slab_place){slab_index, slab_index % plan_window_count(r->plan)};
+}
+
+static tc_status classify_load(run *r, uint32_t slab_index) {
+    return slab_load(r, classify_place(r, slab_index), false);
+}
+
+static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_place(r, slab_index)); }
+
+static tc_status slab_classify(run *r, uint32_t slab_index) {
+    slab_place place = classify_place(r, slab_index);
+    workspace *work = &r->context->work;
+    word_buffers *w = place_words(r, place);
+    slab s;
+    slab_describe(r, place, &s);
+    tc_status status = slab_mark_cells(r, place, &s);
+    if (status) return status;
+    const cl_uint scratch_words = r->plan->scratch_words;
+    const kernel_argument arguments[] = {ARGUMENT(s),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(r->grid->device->ranges.memory),
+                                         ARGUMENT(w->words.memory),
+                                         ARGUMENT(w->offsets.memory),
+                                         ARGUMENT(w->triangle_offsets.memory),
+                                         ARGUMENT(w->bricks.memory),
+                                         ARGUMENT(w->active.memory),
+                                         ARGUMENT(work->state.memory),
+                                         ARGUMENT(work->scratch.memory),
+                                         ARGUMENT(scratch_words)};
+    return kernel_launch(r->context, r->kernels.classify, "kernel classify", arguments,
+                         sizeof arguments / sizeof *arguments);
+}
+
+void totals_add(run *r) {
+    r->vertex_count = r->triangle_count = r->active_cell_count = 0;
+    for (uint32_t n = 0; n < r->plan->slab_count; n++) {
+        const uint32_t *head = r->heads + n * STATE_WORDS;
+        r->vertex_count += head[STATE_VERTICES];
+        r->triangle_count += head[STATE_TRIANGLES];
+        r->active_cell_count += head[STATE_ACTIVE_CELLS];
+    }
+}
+
+/* The one point where the host waits before the mesh can be allocated. */
+static tc_status totals_read(run *r) {
+    uint32_t slabs = r->plan->slab_count;
+    cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.state.memory, CL_TRUE, 0,
+                                         slabs * STATE_WORDS * sizeof *r->heads, r->heads, 0, NULL, NULL);
+    if (error) return context_fail(r->context, "reading the totals of kernel classify", error);
+    totals_add(r);
+    for (uint32_t n = 0; n < slabs; n++)
+        if (r->heads[n * STATE_WORDS + STATE_NONFINITE]) r->grid->device->missing = true;
+    r->grid->device->ranges_known = true;
+    return TC_OK;
+}
+
+static tc_status slabs_classify(run *r) {
+    const cl_uint zero = 0;
+    cl_int error = cl->EnqueueFillBuffer(r->context->queue, r->context->work.state.memory, &zero, sizeof zero, 0,
+                                         state_bytes(r), 0, NULL, NULL);
+    if (error) return context_fail(r->context, "clearing the scan", error);
+    const step_stages stages = {"classify", 0, r->classify_share, classify_load, slab_classify, classify_save};
+    tc_status status = steps_run(r, &stages, r->plan->slab_count, plan_window_count(r->plan) > 1);
+    return status ? status : totals_read(r);
+}
+
+/* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with
+ * missing cells, and remembered as such. */
+static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+    grid->context->counted = NULL; /* from here on the workspace is not what was counted */
+    tc_status status = run_begin(r, grid, options, inside, emits);
+    if (status) return status;
+    bool missing = grid->device->missing;
+    status = slabs_classify(r);
+    if (status || grid->device->missing == missing) return status;
+    double start = r->start_ms;
+    run_end(r, status);
+    status = run_begin(r, grid, options, inside, emits);
+    r->start_ms = start;
+    return status ? status : slabs_classify(r);
+}
+
+/* ------------------------------------------------------------------------------------------------------ extraction */
+
+/* For tc_emit; heads NULL: there is no surface. */
+static void counted_keep(tc_grid *grid, const tc_extract_options *options, uint32_t *heads) {
+    free(grid->device->heads);
+    grid->device->heads = heads;
+    grid->device->counted_options = *options;
+    grid->context->counted = grid;
+}
+
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    inside_range inside = inside_range_of(grid->type, options->isovalue);
+    run r;
+    if (inside.uniform) {
+        counted_keep(grid, options, NULL);
+        return TC_OK;
+    }
+    tc_status status = classify(&r, grid, options, inside, false);
+    counts->vertex_count = r.vertex_count;
+    counts->triangle_count = r.triangle_count;
+    counts->active_cell_count = r.active_cell_count;
+    counts->classify_ms = clock_ms() - r.start_ms;
+    if (!status) {
+        counted_keep(grid, options, r.heads);
+        r.heads = NULL;
+    }
+    run_end(&r, status);
+    return status;
+}
+
+tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    inside_range inside = inside_range_of(grid->type, options->isovalue);
+    double classified;
+    run r;
+    if (inside.uniform) return TC_OK;
+    tc_status status = classify(&r, grid, options, inside, true);
+    classified = clock_ms();
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
+    if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
+    mesh->active_cell_count = r.active_cell_count;
+    mesh->slab_count = r.plan->slab_count;
+    mesh->timings.classify_ms = classified - r.start_ms;
+    mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
+    mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    run_end(&r, status);
+    return status;
+}

@@ -1,0 +1,27 @@
+/*
+ * structured.h - the device path over structured grids: upload, classify, totals, allocate, emit
+ */
+#ifndef STRUCTURED_H
+#define STRUCTURED_H
+
+#include "grid/grid.h"
+#include "opencl/kernel_kind.h"
+#include "grid/mesh.h"
+
+/* Plans slabs and tiles and, where the samples fit the device whole, makes them available to it. */
+tc_status structured_grid_create(tc_grid *grid);
+void structured_grid_destroy(tc_grid *grid);
+
+/* Shapes tiles anew where the context's text of the kernels is another than when the grid was made. */
+void structured_reshape(tc_grid *grid);
+
+/* What its kernels are; emits: kernel 2 too. */
+kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
+
+/* As tc_count and tc_extract, with arguments already checked. */
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
+                          struct _cl_event **done);
+tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+#endif

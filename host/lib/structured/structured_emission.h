@@ -1,0 +1,45 @@
+/*
+ * structured_emission.h - what is emitted by one launch of kernel 2, and where it goes
+ */
+#ifndef STRUCTURED_EMISSION_H
+#define STRUCTURED_EMISSION_H
+
+#include "structured/structured_run.h"
+
+/* Vertices [vertex0, vertex1) and triangles [triangle0, triangle1) of the mesh. */
+typedef struct mesh_window {
+    uint64_t vertex0, vertex1, triangle0, triangle1;
+    uint32_t position_offset, triangle_offset; /* 32-bit items before them in the buffers */
+    mesh_buffers *buffers;
+} mesh_window;
+
+/* Rows of bricks of a slab, layer after layer, that are emitted by one launch. */
+typedef struct emit_step {
+    slab_place place;
+    bool opens_slab; /* the first of its slab */
+    uint32_t row0, row1;
+    uint64_t slab_vertex, slab_triangle; /* before the slab */
+    mesh_window part;                    /* of the mesh: what the step makes */
+} emit_step;
+
+typedef struct emission {
+    tc_mesh *mesh;
+    mesh_window whole;     /* where one window holds the mesh */
+    uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
+    emit_step *steps;
+    uint32_t step_count, step_room;
+    unsigned shrink; /* steps of several rows leave so many halvings of a window free */
+    double kernels_end_ms;
+} emission;
+
+/* True where one of so many windows can hold so much of the mesh. */
+bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows);
+
+/* The largest numbers of vertices and triangles of a step. */
+void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles);
+
+/* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one (structured_cut.c).
+ * TC_ERROR_MEMORY, with what would do, where a row of bricks is too large for one. */
+tc_status steps_plan(run *r, emission *e, bool whole);
+
+#endif

@@ -1,0 +1,255 @@
+/*
+ * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
+ * after the other, each a run of whole layers, or of rows of bricks where a layer is too large. On devices that share
+ * the host's memory a window lies in the mesh itself; else what a step has emitted is read back while the next step
+ * runs.
+ */
+#include "structured/structured_emission.h"
+
+#include "failure.h"
+#include "grid/tables.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const uint64_t page_bytes = 4096;
+
+/* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
+static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
+                           uint32_t *offset, const char *name) {
+    *offset = 0;
+    if (first == end) return buffer_reserve(r->context, buffer, 4, name);
+    if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
+    uint64_t start = first & ~(page_bytes - 1);
+    *offset = (uint32_t)((first - start) / 4);
+    return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
+}
+
+static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
+    mesh_buffers *b = w->buffers;
+    uint64_t v0 = w->vertex0 * MESH_BYTES_PER_VERTEX, v1 = w->vertex1 * MESH_BYTES_PER_VERTEX;
+    uint64_t t0 = w->triangle0 * MESH_BYTES_PER_TRIANGLE, t1 = w->triangle1 * MESH_BYTES_PER_TRIANGLE;
+    tc_status status = part_open(r, &b->positions, &mesh->positions, v0, v1, &w->position_offset, "vertices");
+    if (!status && r->normals)
+        status = part_open(r, &b->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
+    if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
+    return status;
+}
+
+/* Has the host see what the device wrote in its memory. */
+static tc_status part_sync(run *r, device_buffer *buffer) {
+    cl_command_queue queue = r->context->queue;
+    cl_int error;
+    void *mapped =
+        cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
+    if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
+    buffer_release(r->context, buffer);
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
+}
+
+static tc_status window_sync(run *r, const mesh_window *w) {
+    mesh_buffers *b = w->buffers;
+    tc_status status = w->vertex0 < w->vertex1 ? part_sync(r, &b->positions) : TC_OK;
+    if (!status && r->normals && w->vertex0 < w->vertex1) status = part_sync(r, &b->normals);
+    if (!status && w->triangle0 < w->triangle1) status = part_sync(r, &b->triangles);
+    return status;
+}
+
+/* Copies bytes [first, end) of a block from a buffer that starts with byte `start` of it. */
+static tc_status part_read(run *r, const device_buffer *buffer, const host_block *block, uint64_t start, uint64_t first,
+                           uint64_t end) {
+    if (first == end) return TC_OK;
+    cl_int error = cl->EnqueueReadBuffer(r->copies, buffer->memory, CL_FALSE, first - start, end - first,
+                                         (char *)block->memory + first, 0, NULL, NULL);
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
+}
+
+/* Copies a part of the mesh from the window that it is in. */
+static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, const mesh_window *part) {
+    const uint64_t bytes = MESH_BYTES_PER_VERTEX, start = w->vertex0 * bytes;
+    const uint64_t v0 = part->vertex0 * bytes, v1 = part->vertex1 * bytes;
+    tc_status status = part_read(r, &w->buffers->positions, &mesh->positions, start, v0, v1);
+    if (!status && r->normals) status = part_read(r, &w->buffers->normals, &mesh->normals, start, v0, v1);
+    if (!status)
+        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * MESH_BYTES_PER_TRIANGLE,
+                           part->triangle0 * MESH_BYTES_PER_TRIANGLE, part->triangle1 * MESH_BYTES_PER_TRIANGLE);
+    return status;
+}
+
+/* How kernel 2 finds the vertex on an edge of a cube: by the edge's owner and type, or, where a work-item has a brick
+ * to itself, by lane. */
+static uint8_t edge_item(const run *r, uint8_t edge) {
+    const owned_edge e = cube_edges[edge];
+    if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
+    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
+}
+
+/* The cube table of the run's method, by items. */
+static void cases_write(const run *r, cube_case cases[2][256]) {
+    _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
+    if (r->method == TC_METHOD_HYBRID)
+        hybrid_cases_derive(cases, r->grid->mirrored);
+    else
+        cube_cases_derive(cases, r->grid->mirrored);
+    for (int n = 0; n < 2 * 256; n++)
+        for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
+            for (int corner = 0; corner < 3; corner++) {
+                uint8_t *edge = &cases[n / 256][n % 256].edges[triangle][corner];
+                *edge = edge_item(r, *edge);
+            }
+}
+
+/* The cube table, uploaded once per context, method and winding. */
+static tc_status cases_provide(run *r, device_buffer **out) {
+    device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
+    cube_case cases[2][256];
+    *out = buffer;
+    if (buffer->memory) return TC_OK;
+    tc_status status = buffer_reserve(r->context, buffer, sizeof cases, "the case table");
+    if (status) return status;
+    cases_write(r, cases);
+    cl_int error =
+        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
+    if (error) buffer_release(r->context, buffer); /* one that is there counts as filled */
+    return error ? context_fail(r->context, "uploading the case table", error) : TC_OK;
+}
+
+/* Emits the active bricks of s among [brick_first, brick_last). */
+static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
+    workspace *work = &r->context->work;
+    const word_buffers *words = place_words(r, place);
+    const device_buffer *coordinates =
+        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : place_array(r, place, ARRAY_POINTS);
+    device_buffer *cases;
+    tc_status status = cases_provide(r, &cases);
+    if (status) return status;
+    const cl_uint zero = 0;
+    cl_int error = cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
+                                         (s.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
+    if (error) return context_fail(r->context, "clearing the ticket of kernel 2", error);
+    s.vertex_window = (uint32_t)w->vertex0;
+    s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
+    s.position_offset = w->position_offset;
+    s.triangle_offset = w->triangle_offset;
+    const kernel_argument arguments[] = {ARGUMENT(s),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(words->words.memory),
+                                         ARGUMENT(words->offsets.memory),
+                                         ARGUMENT(words->triangle_offsets.memory),
+                                         ARGUMENT(words->bricks.memory),
+                                         ARGUMENT(words->active.memory),
+                                         ARGUMENT(work->state.memory),
+                                         ARGUMENT(cases->memory),
+                                         ARGUMENT(w->buffers->positions.memory),
+                                         ARGUMENT(w->buffers->normals.memory),
+                                         ARGUMENT(w->buffers->triangles.memory),
+                                         ARGUMENT(coordinates->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
+    return kernel_launch(r->context, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
+}
+
+/* -------------------------------------------------------------------------------------------------------- emission */
+
+static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
+    buffer_release(context, &b->positions);
+    buffer_release(context, &b->normals);
+    buffer_release(context, &b->triangles);
+}
+
+/* Windows as large as the largest step needs: they would grow while copies from them are under way. */
+static tc_status windows_reserve(run *r, emission *e) {
+    mesh_window largest = {0};
+    tc_status status = TC_OK;
+    steps_largest(e, &largest.vertex1, &largest.triangle1);
+    for (uint32_t n = 0; n < e->window_count && !status; n++) {
+        largest.buffers = &r->context->work.mesh[n];
+        status = window_open(r, e->mesh, &largest);
+    }
+    return status;
+}
+
+/* Buffers kept from an extraction with other windows would come on top of the memory that these may have. */
+static tc_status windows_begin(run *r, emission *e) {
+    mesh_buffers *buffers = r->context->work.mesh;
+    mesh_buffers_release(r->context, &buffers[1]);
+    if (e->window_count) mesh_buffers_release(r->context, &buffers[0]);
+    for (uint32_t n = 0; n < e->step_count && e->window_count; n++)
+        e->steps[n].part.buffers = &buffers[n % e->window_count];
+    e->whole = (mesh_window){0, r->vertex_count, 0, r->triangle_count, 0, 0, &buffers[0]};
+    if (!e->window_count) return window_open(r, e->mesh, &e->whole);
+    return r->context->in_place ? TC_OK : windows_reserve(r, e);
+}
+
+static tc_status emit_load(run *r, uint32_t n) {
+    const emit_step *step = &r->emission->steps[n];
+    if (!step->opens_slab) return TC_OK;
+    tc_status status = slab_load(r, step->place, true);
+    return status ? status : slab_restore(r, step->place);
+}
+
+static void step_describe(const run *r, const emit_step *step, slab *s) {
+    const uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
+    slab_describe(r, step->place, s);
+    s->vertex_base = (uint32_t)step->slab_vertex;
+    s->vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->head_offset + STATE_VERTICES]);
+    s->brick_first = (s->z0 - s->word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
+    s->brick_last = s->brick_first + (step->row1 - step->row0) * r->plan->words_x;
+}
+
+static tc_status step_emit(run *r, uint32_t n) {
+    emission *e = r->emission;
+    emit_step *step = &e->steps[n];
+    slab s;
+    step_describe(r, step, &s);
+    const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has been since */
+    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->place, &s) : TC_OK;
+    if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
+    if (status) return status;
+    return bricks_emit(r, step->place, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
+}
+
+/* The last copy is timed: it begins when all kernels have ended. */
+static tc_status emit_unload(run *r, uint32_t n) {
+    emission *e = r->emission;
+    const emit_step *step = &e->steps[n];
+    if (n + 1 == e->step_count) {
+        cl_int error = cl->Finish(r->context->queue);
+        if (error) return context_fail(r->context, "kernel emit", error);
+        e->kernels_end_ms = clock_ms();
+    }
+    if (r->context->in_place) return e->window_count ? window_sync(r, &step->part) : TC_OK;
+    return window_read(r, e->mesh, e->window_count ? &step->part : &e->whole, &step->part);
+}
+
+/* Steps may only overlap where what they have loaded does not share a window. */
+static tc_status steps_emit(run *r, emission *e) {
+    const step_stages stages = {"emit", 0.5, 0.5, emit_load, step_emit, emit_unload};
+    tc_status status = windows_begin(r, e);
+    if (!status) status = steps_run(r, &stages, e->step_count, r->plan->overlaps && e->window_count != 1);
+    if (!status && r->context->in_place && !e->window_count) status = window_sync(r, &e->whole);
+    cl_int error = cl->Finish(r->context->queue);
+    if (!status && error) status = context_fail(r->context, "reading the mesh back", error);
+    if (!status && !r->context->in_place) e->mesh->timings.readback_ms = clock_ms() - e->kernels_end_ms;
+    return status;
+}
+
+tc_status slabs_emit_whole(run *r, mesh_buffers *buffers) {
+    emission e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
+    r->emission = &e;
+    tc_status status = steps_plan(r, &e, true);
+    for (uint32_t n = 0; n < e.step_count && !status; n++) status = step_emit(r, n);
+    free(e.steps);
+    r->emission = NULL;
+    return status;
+}
+
+tc_status slabs_emit(run *r, tc_mesh *mesh) {
+    emission e = {.mesh = mesh};
+    r->emission = &e;
+    tc_status status = steps_plan(r, &e, window_fits(r, r->vertex_count, r->triangle_count, 1));
+    if (!status) status = steps_emit(r, &e);
+    free(e.steps);
+    r->emission = NULL;
+    return status;
+}

@@ -1,0 +1,99 @@
+/*
+ * structured_run.h - one extraction on a device: what its stages share
+ */
+#ifndef STRUCTURED_RUN_H
+#define STRUCTURED_RUN_H
+
+#include "opencl/context.h"
+#include "grid/grid.h"
+#include "grid/inside.h"
+#include "opencl/kernels.h"
+#include "grid/mesh.h"
+#include "slab.h"
+#include "structured/slab_plan.h"
+
+/* What an OpenCL context adds to a grid. */
+struct device_grid {
+    slab_plan plan;
+    device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plan.samples_whole */
+    device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
+    device_buffer ranges;              /* of all bricks, made at the first visit */
+    bool ranges_known;
+    tc_extract_options counted_options; /* what tc_count left for tc_emit, where context->counted is this grid: */
+    uint32_t *heads;                    /* of all slabs */
+    bool missing; /* some sample is missing: known from the start with nodata or blanks, else found by kernel 1 */
+};
+
+/* Kernel 1's results kept on the host while the device holds only a window of them. */
+typedef struct slab_store {
+    uint8_t *words, *offsets, *triangle_offsets, *bricks, *active;
+} slab_store;
+
+typedef struct run {
+    tc_grid *grid;
+    tc_context *context;
+    const slab_plan *plan;
+    kernels kernels;
+    tc_method method;
+    bool normals;
+    slab base;       /* what all slabs have in common */
+    uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
+    slab_store store;
+    cl_command_queue copies; /* takes copies to and from the device; may be the queue of kernels */
+    struct emission *emission;
+    uint64_t vertex_count, triangle_count, active_cell_count;
+    double classify_share; /* of the whole call, for progress */
+    double start_ms;       /* kernels are built by then */
+} run;
+
+/* A slab and the window that it is in: below plan_window_count. */
+typedef struct slab_place {
+    uint32_t slab_index, window;
+} slab_place;
+
+/* The buffers of a place, which are those of all slabs where they are whole. */
+device_buffer *place_array(const run *r, slab_place place, int array);
+word_buffers *place_words(const run *r, slab_place place);
+
+/* Brings the slab's samples, and what tells which are missing, to the device; for kernel 2 its points too. */
+tc_status slab_load(run *r, slab_place place, bool emits);
+
+/* The slab's parameters; its samples are loaded. */
+void slab_describe(const run *r, slab_place place, slab *out);
+
+/* Marks the slab's present cells, where samples may be missing. */
+tc_status slab_mark_cells(run *r, slab_place place, const slab *s);
+
+/* Moves kernel 1's results of a slab from or to the store, where windows are in use. */
+tc_status slab_save(run *r, slab_place place);
+tc_status slab_restore(run *r, slab_place place);
+tc_status slab_store_allocate(run *r);
+void slab_store_release(slab_store *store);
+
+/* What a stage does in each of its steps (structured_steps.c). */
+typedef struct step_stages {
+    const char *name;    /* for progress */
+    double begin, share; /* of the whole call */
+    tc_status (*load)(run *r, uint32_t step);
+    tc_status (*compute)(run *r, uint32_t step);
+    tc_status (*unload)(run *r, uint32_t step);
+} step_stages;
+
+/* All steps, in order; overlaps: copies run beside the kernels of other steps, which use other windows. */
+tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool overlaps);
+
+/* Describes an extraction, builds its kernels and provides what they work on but the mesh; run_end gives it back,
+ * with all that the context keeps where the extraction has failed. */
+tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
+void run_end(run *r, tc_status status);
+
+/* Adds up the heads of all slabs. */
+void totals_add(run *r);
+
+/* Enqueues kernel 2 over all slabs, the whole mesh going to these buffers; samples and sign words are whole. */
+tc_status slabs_emit_whole(run *r, mesh_buffers *buffers);
+
+/* Emits all slabs into the mesh, which is allocated (structured_emit.c). */
+tc_status slabs_emit(run *r, tc_mesh *mesh);
+
+#endif

@@ -1,0 +1,263 @@
+/*
+ * What a slab needs on the device before a kernel can run over it: arrays of the grid, present cells, kernel 1's
+ * results.
+ */
+#include "structured/structured_run.h"
+
+#include "failure.h"
+#include "grid/inside.h"
+#include "structured/structured.h"
+
+#include <stdlib.h>
+
+static const uintptr_t page_bytes = 4096;
+
+/* --------------------------------------------------------------------------------------------------------- arrays */
+
+static const char *const array_names[ARRAY_COUNT] = {"samples", "points", "blanked samples", "blanked cells"};
+
+static uint64_t array_planes(const tc_grid *grid, int array) {
+    return (uint64_t)grid->dims[2] - (array == ARRAY_BLANKED_CELLS);
+}
+
+static char *array_start(const tc_grid *grid, int array, uint64_t z) {
+    return (char *)(uintptr_t)grid_array_data(grid, array) + z * grid_array_plane_bytes(grid, array);
+}
+
+/* Items in the buffer before plane z, its first: one that is used in place starts at a page's boundary. */
+static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
+    const uint64_t item_bytes = grid_array_item_bytes(grid, array);
+    if (array == ARRAY_SAMPLES && grid->cl_samples)
+        return grid->cl_samples_offset + z * (grid_array_plane_bytes(grid, array) / item_bytes);
+    uintptr_t before = (uintptr_t)array_start(grid, array, z) & (page_bytes - 1);
+    return grid->context->in_place ? before / item_bytes : 0;
+}
+
+/* Makes planes z0 <= z < z1 available: in place where the device can, else by a copy, only enqueued. */
+static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, int array, uint64_t z0,
+                               uint64_t z1) {
+    tc_context *context = grid->context;
+    if (!grid_array_data(grid, array)) return TC_OK;
+    if (z1 > array_planes(grid, array)) z1 = array_planes(grid, array);
+    uint64_t bytes = (z1 - z0) * grid_array_plane_bytes(grid, array);
+    char *start = array_start(grid, array, z0);
+    if (context->in_place) {
+        uintptr_t before = (uintptr_t)start & (page_bytes - 1);
+        return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
+    }
+    uint64_t room = plan_array_bytes(&grid->device->plan, grid, array);
+    tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
+    if (status) return status;
+    cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
+    return error ? context_fail(context, "copying a grid to the device", error) : TC_OK;
+}
+
+/* All arrays whole. */
+static tc_status arrays_provide(tc_grid *grid) {
+    cl_command_queue queue = grid->context->queue;
+    tc_status status = TC_OK;
+    for (int array = 0; array < ARRAY_COUNT && !status; array++)
+        status = array_provide(grid, queue, &grid->device->arrays[array], array, 0, array_planes(grid, array));
+    if (status || grid->context->in_place) return status;
+    cl_int error = cl->Finish(queue);
+    return error ? context_fail(grid->context, "copying a grid to the device", error) : TC_OK;
+}
+
+/* Positions along x, y and z, one after the other. */
+static tc_status axes_provide(tc_grid *grid) {
+    device_buffer *buffer = &grid->device->axes;
+    const uint64_t bytes[3] = {sizeof(float) * (uint64_t)grid->dims[0], sizeof(float) * (uint64_t)grid->dims[1],
+                               sizeof(float) * (uint64_t)grid->dims[2]};
+    uint64_t offset = 0;
+    if (grid->kind != GRID_RECTILINEAR) return TC_OK;
+    tc_status status = buffer_reserve(grid->context, buffer, bytes[0] + bytes[1] + bytes[2], "coordinates");
+    for (int axis = 0; axis < 3 && !status; offset += bytes[axis++]) {
+        cl_int error = cl->EnqueueWriteBuffer(grid->context->queue, buffer->memory, CL_TRUE, offset, bytes[axis],
+                                              grid->axes[axis], 0, NULL, NULL);
+        if (error) status = context_fail(grid->context, "copying coordinates to the device", error);
+    }
+    return status;
+}
+
+/* The caller's buffer, not counted as ours. */
+static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
+    const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
+    size_t held = 0;
+    tc_status status = buffer_inspect(grid->context, grid->cl_samples, CL_MEM_WRITE_ONLY, "cl_samples", &held);
+    if (status) return status;
+    if (grid->cl_samples_offset > held / bytes || held / bytes - grid->cl_samples_offset < count)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "cl_samples has %llu bytes, not %llu samples of %llu after the first %llu",
+                               (unsigned long long)held, (unsigned long long)count, (unsigned long long)bytes,
+                               (unsigned long long)grid->cl_samples_offset);
+    if (!device_makes_vertices(grid->context, grid->type))
+        return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64, so samples of type %s have to be in the host's memory",
+                               grid->context->info.name, tc_type_name(grid->type));
+    cl_int error = cl->RetainMemObject(grid->cl_samples);
+    if (error) return context_fail(grid->context, "retaining cl_samples", error);
+    buffer->memory = grid->cl_samples;
+    return TC_OK;
+}
+
+tc_status structured_grid_create(tc_grid *grid) {
+    uint64_t ignored[2];
+    struct device_grid *device = calloc(1, sizeof *device);
+    if (!device) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    grid->device = device;
+    device->missing = grid->blanked_samples || grid->blanked_cells ||
+                      (grid->has_nodata && sample_patterns(grid->type, grid->nodata, ignored));
+    tc_status status = slab_plan_make(grid->context, grid, &device->plan);
+    uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
+    if (!status)
+        status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
+    if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
+    if (!status) status = axes_provide(grid);
+    if (!status && device->plan.samples_whole) status = arrays_provide(grid);
+    if (status) cl->Finish(grid->context->queue); /* copies under way read what is the caller's */
+    return status;
+}
+
+void structured_grid_destroy(tc_grid *grid) {
+    if (!grid->device) return;
+    context_finish(grid->context); /* an emission that is under way reads arrays of the grid and of the caller's */
+    if (grid->context->counted == grid) grid->context->counted = NULL;
+    if (grid->context->served == grid) grid->context->served = NULL;
+    free(grid->device->heads);
+    for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &grid->device->arrays[array]);
+    buffer_release(grid->context, &grid->device->axes);
+    buffer_release(grid->context, &grid->device->ranges);
+    free(grid->device);
+    grid->device = NULL;
+}
+
+device_buffer *place_array(const run *r, slab_place place, int array) {
+    return r->plan->samples_whole ? &r->grid->device->arrays[array] : &r->context->work.arrays[place.window][array];
+}
+
+word_buffers *place_words(const run *r, slab_place place) {
+    return &r->context->work.words[r->plan->words_whole ? 0 : place.window];
+}
+
+/* One bit per cube whose corners are present, for the planes that kernels 1 and 2 look at. */
+tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
+    workspace *work = &r->context->work;
+    if (!r->grid->device->missing) return TC_OK;
+    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
+    const kernel_argument arguments[] = {ARGUMENT(*s),
+                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory),
+                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_CELLS)->memory),
+                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(planes)};
+    return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
+                         sizeof arguments / sizeof *arguments);
+}
+
+tc_status slab_load(run *r, slab_place place, bool emits) {
+    tc_status status = TC_OK;
+    if (r->plan->samples_whole) return TC_OK;
+    for (int array = 0; array < ARRAY_COUNT && !status; array++)
+        if (emits || array != ARRAY_POINTS)
+            status = array_provide(r->grid, r->copies, place_array(r, place, array), array,
+                                   slab_samples_begin(r->plan, place.slab_index),
+                                   slab_samples_end(r->plan, r->grid, place.slab_index));
+    return status;
+}
+
+/* Where the slab's first planes are in their buffers. */
+static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
+    const tc_grid *grid = r->grid;
+    uint64_t begin = s->sample_z, end = slab_samples_end(r->plan, grid, slab_index);
+    uint64_t cell_end = end < s->nz ? end : s->nz - 1;
+    s->sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
+    s->sample_count = (end - begin) * s->nx * s->ny;
+    s->point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->sample_offset;
+    s->blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->sample_offset;
+    s->blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
+    s->blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
+}
+
+void slab_describe(const run *r, slab_place place, slab *out) {
+    const uint32_t slab_index = place.slab_index;
+    slab *s = out;
+    *s = r->base;
+    s->z0 = slab_begin(r->plan, slab_index);
+    s->z1 = slab_end(r->plan, r->grid, slab_index);
+    s->word_z = r->plan->words_whole ? 0 : s->z0;
+    s->range_offset = (uint32_t)(s->word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->cell_z = s->z0 ? s->z0 - 1 : 0;
+    s->sample_z = slab_samples_begin(r->plan, slab_index);
+    s->head_offset = slab_index * STATE_WORDS;
+    s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
+    s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
+    s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
+    slab_offsets(r, slab_index, s);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- store */
+
+tc_status slab_store_allocate(run *r) {
+    if (r->plan->words_whole) return TC_OK;
+    uint64_t bricks = r->plan->layer_count * plan_bricks_per_layer(r->plan), words = BRICK_WORDS * bricks;
+    const size_t brick_bytes = sizeof(brick_state);
+    slab_store *s = &r->store;
+    s->words = malloc(8 * words);
+    s->offsets = malloc(8 * words);
+    s->triangle_offsets = malloc(2 * words);
+    s->bricks = malloc(brick_bytes * bricks);
+    s->active = malloc(4 * bricks);
+    if (s->words && s->offsets && s->triangle_offsets && s->bricks && s->active) return TC_OK;
+    return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to keep the sign words of all slabs");
+}
+
+void slab_store_release(slab_store *store) {
+    free(store->words);
+    free(store->offsets);
+    free(store->triangle_offsets);
+    free(store->bricks);
+    free(store->active);
+    *store = (slab_store){0};
+}
+
+/* Moves count bytes between byte `place` of a window's buffer and byte `first` of an array of the store. */
+static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint8_t *host, uint64_t first,
+                             uint64_t count, bool save) {
+    if (count == 0) return TC_OK;
+    cl_command_queue queue = r->copies;
+    cl_mem memory = buffer->memory;
+    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL)
+                        : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL);
+    return error ? context_fail(r->context, save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
+}
+
+/* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */
+static tc_status slab_move(run *r, slab_place place, bool save) {
+    if (r->plan->words_whole) return TC_OK;
+    word_buffers *work = place_words(r, place);
+    const uint32_t slab_index = place.slab_index;
+    uint64_t layer0 = slab_begin(r->plan, slab_index) / BRICK_PLANES;
+    uint64_t layer1 = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
+    uint64_t layer_end = !save && layer1 < r->plan->layer_count ? layer1 + 1 : layer1;
+    uint64_t bricks = plan_bricks_per_layer(r->plan), constant = 8 * UNIFORM_BRICKS * BRICK_WORDS;
+    const struct {
+        device_buffer *buffer;
+        uint64_t place;
+        uint8_t *host;
+        uint64_t end, brick_bytes;
+    } arrays[] = {{&work->words, constant, r->store.words, layer_end, 8 * BRICK_WORDS},
+                  {&work->offsets, 0, r->store.offsets, layer_end, 8 * BRICK_WORDS},
+                  {&work->triangle_offsets, 0, r->store.triangle_offsets, layer1, 2 * BRICK_WORDS},
+                  {&work->bricks, 0, r->store.bricks, layer_end, sizeof(brick_state)},
+                  {&work->active, 0, r->store.active, layer1, 4}};
+    tc_status status = TC_OK;
+    for (size_t n = 0; n < sizeof arrays / sizeof *arrays && !status; n++)
+        status =
+            window_copy(r, arrays[n].buffer, arrays[n].place, arrays[n].host, layer0 * bricks * arrays[n].brick_bytes,
+                        (arrays[n].end - layer0) * bricks * arrays[n].brick_bytes, save);
+    return status;
+}
+
+tc_status slab_save(run *r, slab_place place) { return slab_move(r, place, true); }
+
+tc_status slab_restore(run *r, slab_place place) { return slab_move(r, place, false); }

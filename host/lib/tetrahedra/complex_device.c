@@ -1,0 +1,126 @@
+/*
+ * Complexes on a device: whole, with totals, a new mesh and emission after each other, where the device has room; else
+ * slab by slab (complex_slabs.c), for good.
+ */
+#include "tetrahedra/complex_run.h"
+
+#include "failure.h"
+
+#include <stdlib.h>
+
+tc_status complex_device_create(tc_grid *grid) {
+    const complex_grid *c = grid->complex;
+    tc_context *context = grid->context;
+    if (!device_makes_vertices(context, grid->type))
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "%s has no fp64, which complexes with %s samples need: use the reference engine",
+                               context->info.name, tc_type_name(grid->type));
+    if (context->options.max_memory_bytes) workspace_release(context); /* what another grid has left */
+    if (!complex_fits(grid)) return complex_cut(grid);
+    tc_status status = part_tetrahedra_provide(grid, c->tetrahedra, c->tetrahedron_count);
+    return status ? status : part_points_provide(grid, c->points, grid->samples, c->point_count);
+}
+
+void complex_device_destroy(tc_grid *grid) {
+    struct complex_slabs *slabs = grid->complex->slabs;
+    if (grid->context->served == grid) grid->context->served = NULL;
+    part_tetrahedra_release(grid);
+    part_points_release(grid);
+    if (slabs) free(slabs->ranges);
+    free(slabs);
+}
+
+/* What a complex is cut for that the device has whole so far. */
+static tc_status cut_later(complex_run *r) {
+    cl->Finish(r->context->queue);
+    tc_status status = complex_cut(r->grid);
+    if (status) return status;
+    part_tetrahedra_release(r->grid);
+    part_points_release(r->grid);
+    r->context->served = NULL; /* the workspace is too large */
+    return TC_OK;
+}
+
+/* All but the mesh; head has the counts then. */
+static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
+    tc_status status = complex_run_begin(r, grid, isovalue);
+    if (!status) status = surface_classify(r);
+    if (!status) status = context_progress(r->context, "classify", 0.6 * share);
+    if (!status && r->job.active_count) status = surface_number(r);
+    return status ? status : context_progress(r->context, "classify", share);
+}
+
+tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts) {
+    complex_run r;
+    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, 0, counts);
+    tc_status status = whole_count(&r, grid, isovalue, 1);
+    if (r.too_large) {
+        status = cut_later(&r);
+        return status ? status : complex_slabs_count(grid, isovalue, 0.6, counts);
+    }
+    counts->vertex_count = r.head[HEAD_VERTICES];
+    counts->triangle_count = r.head[HEAD_TRIANGLES];
+    counts->active_cell_count = r.job.active_count;
+    counts->classify_ms = clock_ms() - r.start_ms;
+    cl->Finish(r.context->queue);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------- extraction */
+
+static tc_status mesh_open(complex_run *r, device_buffer *buffer, const host_block *block, uint64_t bytes,
+                           const char *name) {
+    buffer_release(r->context, buffer);
+    if (!surface_fits(r, bytes)) return (tc_status)fail(TC_ERROR_MEMORY, "the complex has no room for its %s", name);
+    return r->context->in_place ? buffer_wrap(r->context, buffer, block->memory, bytes, CL_MEM_READ_WRITE, name)
+                                : buffer_reserve(r->context, buffer, bytes, name);
+}
+
+/* Brings what the device wrote to the host: a copy, or a map that makes it seen. */
+static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_block *block, uint64_t bytes) {
+    cl_command_queue queue = r->context->queue;
+    cl_int error = CL_SUCCESS;
+    if (!r->context->in_place) {
+        error = cl->EnqueueReadBuffer(queue, buffer->memory, CL_TRUE, 0, bytes, block->memory, 0, NULL, NULL);
+        return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
+    }
+    void *mapped = cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &error);
+    if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
+    cl->Finish(queue);
+    buffer_release(r->context, buffer);
+    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
+}
+
+static tc_status emit(complex_run *r, tc_mesh *mesh) {
+    mesh_buffers *m = &r->context->work.mesh[0];
+    const uint64_t vertex_bytes = mesh->vertex_count * MESH_BYTES_PER_VERTEX;
+    const uint64_t triangle_bytes = mesh->triangle_count * MESH_BYTES_PER_TRIANGLE;
+    tc_status status = mesh_open(r, &m->positions, &mesh->positions, vertex_bytes, "vertices");
+    if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
+    if (!status) status = surface_emit(r, &m->positions, &m->triangles);
+    double emitted = clock_ms();
+    if (!status) status = mesh_close(r, &m->positions, &mesh->positions, vertex_bytes);
+    if (!status) status = mesh_close(r, &m->triangles, &mesh->triangles, triangle_bytes);
+    if (!r->context->in_place) mesh->timings.readback_ms = clock_ms() - emitted;
+    return status;
+}
+
+tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) {
+    complex_run r;
+    if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, 0, mesh);
+    tc_status status = whole_count(&r, grid, isovalue, 0.8);
+    double classified = clock_ms();
+    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], false);
+    if (!status && r.head[HEAD_TRIANGLES]) status = emit(&r, mesh);
+    if (r.too_large) {
+        status = cut_later(&r);
+        return status ? status : complex_slabs_extract(grid, isovalue, 0.8, mesh);
+    }
+    if (!status) status = context_progress(r.context, "emit", 1);
+    mesh->active_cell_count = r.job.active_count;
+    mesh->timings.classify_ms = classified - r.start_ms;
+    mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
+    mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    cl->Finish(r.context->queue);
+    return status;
+}

@@ -1,0 +1,49 @@
+/*
+ * An isovalue's surface of a complex, by the engine of its context.
+ */
+#include "grid/complex.h"
+
+#include "failure.h"
+
+/* TC_ERROR_ARGUMENT for what complexes cannot do. */
+static tc_status complex_request_check(const tc_extract_options *options) {
+    if (options->normals)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "normals are made on structured grids only, not on complexes");
+    if (options->method != TC_METHOD_TETRA)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "complexes have no cubes: use TC_METHOD_TETRA");
+    return TC_OK;
+}
+
+static bool surface_possible(const tc_grid *grid, double isovalue) {
+    return grid->complex->tetrahedron_count && !inside_range_of(grid->type, isovalue).uniform;
+}
+
+/* What the workspace holds after a failure may not be what it is taken for. */
+static tc_status device_end(tc_context *context, tc_status status) {
+    if (!status) return TC_OK;
+    cl->Finish(context->queue);
+    workspace_release(context);
+    return status;
+}
+
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+    tc_status status = complex_request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
+        return reference_complex_count(grid, options->isovalue, counts);
+    return device_end(grid->context, complex_device_count(grid, options->isovalue, counts));
+}
+
+tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    tc_status status = complex_request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
+        return reference_complex_extract(grid, options->isovalue, mesh);
+    return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
+}
+
+tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
+    tc_status status = complex_request_check(options);
+    if (status || !surface_possible(grid, options->isovalue)) return status;
+    return reference_complex_carry(grid, options->isovalue, c, vertex_count);
+}

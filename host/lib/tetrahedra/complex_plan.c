@@ -1,0 +1,135 @@
+/*
+ * How much of the device's memory a complex takes, and slabs of it.
+ *
+ * Beside the arrays that the caller gave, that is per tetrahedron about two bytes before the surface is known, and for
+ * each tetrahedron that it passes through up to 190, the mesh included: four crossed edges, each with a vertex of its
+ * own, and two triangles. A slab is counted as if it passed through all.
+ */
+#include "tetrahedra/complex_run.h"
+
+#include "failure.h"
+
+#include <stdlib.h>
+
+enum { PAGE_BYTES = 4096 };
+
+/* Sums of the scan, four places per tetrahedron among them, take 30 bits. */
+static const uint64_t slab_tetrahedra_most = UINT64_C(1) << 27, whole_tetrahedra_most = UINT64_C(1) << 28;
+
+typedef struct device_need {
+    uint64_t bytes, largest; /* of all buffers, of one */
+} device_need;
+
+static void need_add(device_need *need, uint64_t bytes) {
+    need->bytes += bytes;
+    if (bytes > need->largest) need->largest = bytes;
+}
+
+uint32_t complex_cluster_count(uint64_t tetrahedron_count) {
+    return (uint32_t)((tetrahedron_count + CLUSTER_TETRAHEDRA - 1) / CLUSTER_TETRAHEDRA);
+}
+
+uint32_t complex_tile_clusters(const tc_grid *grid) {
+    const uint32_t work_items = grid->context->launch.work_items, given = grid->scan.tile_bricks;
+    const uint32_t tile = given ? given : work_items == 1 ? 1024 : 64;
+    return work_items > tile ? work_items : tile;
+}
+
+uint32_t complex_tile_actives(const tc_grid *grid) {
+    return grid->context->launch.work_items == 1 && !grid->scan.tile_bricks ? 1024 : complex_tile_clusters(grid);
+}
+
+uint64_t complex_budget(const tc_context *context) {
+    if (context->options.max_memory_bytes) return context->options.max_memory_bytes;
+    return context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
+}
+
+/* Arrays, and what kernel 1 works on beside them. */
+static device_need part_need(const tc_grid *grid, uint64_t points, uint64_t tetrahedra) {
+    const tc_context *context = grid->context;
+    const uint64_t clusters = complex_cluster_count(tetrahedra), page = context->in_place ? PAGE_BYTES : 0;
+    const uint64_t tiles = clusters / complex_tile_clusters(grid) + 1;
+    device_need need = {0, 0};
+    need_add(&need, page + 16 * tetrahedra);
+    need_add(&need, page + 12 * points);
+    need_add(&need, page + tc_type_bytes(grid->type) * points);
+    need_add(&need, sizeof(brick_range) * clusters);
+    need_add(&need, sizeof(cluster_state) * clusters);
+    need_add(&need, 4 * clusters); /* those that are active */
+    need_add(&need, 4 * (HEAD_WORDS + TILE_WORDS * tiles));
+    need_add(&need, 16 * CASE_BYTES);
+    return need;
+}
+
+/* The largest surface, with its mesh. */
+static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+    uint64_t entries = 64;
+    while (entries < 8 * tetrahedra) entries *= 2;
+    need_add(need, sizeof(active_tetrahedron) * tetrahedra);
+    need_add(need, 16 * tetrahedra); /* entries of its edges */
+    need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
+    need_add(need, 4 * entries);
+    need_add(need, 4 * MESH_BYTES_PER_VERTEX * tetrahedra);
+    need_add(need, 2 * MESH_BYTES_PER_TRIANGLE * tetrahedra);
+}
+
+static bool need_fits(const tc_context *context, device_need need) {
+    return need.bytes <= complex_budget(context) && need.largest <= context->info.max_buffer_bytes;
+}
+
+bool complex_fits(const tc_grid *grid) {
+    const complex_grid *c = grid->complex;
+    return c->tetrahedron_count <= whole_tetrahedra_most &&
+           need_fits(grid->context, part_need(grid, c->point_count, c->tetrahedron_count));
+}
+
+static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points_whole) {
+    const complex_grid *c = grid->complex;
+    uint64_t tetrahedra = CLUSTER_TETRAHEDRA * clusters, points = c->point_count;
+    if (tetrahedra > c->tetrahedron_count) tetrahedra = c->tetrahedron_count;
+    if (!points_whole && 4 * tetrahedra < points) points = 4 * tetrahedra;
+    device_need need = part_need(grid, points, tetrahedra);
+    surface_add(grid, tetrahedra, &need);
+    return need;
+}
+
+/* Most clusters per slab that fit, by bisection; 0 where not even one does. */
+static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
+    uint32_t low = 0, high = complex_cluster_count(grid->complex->tetrahedron_count);
+    if (high > slab_tetrahedra_most / CLUSTER_TETRAHEDRA) high = slab_tetrahedra_most / CLUSTER_TETRAHEDRA;
+    while (low < high) {
+        const uint32_t middle = high - (high - low) / 2;
+        if (need_fits(grid->context, slab_need(grid, middle, points_whole)))
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+static tc_status cut_refuse(const tc_grid *grid) {
+    const device_need need = slab_need(grid, 1, false);
+    return (tc_status)fail(TC_ERROR_MEMORY,
+                           "the smallest slab of this complex needs %llu bytes of device memory, and the budget is "
+                           "%llu: allow %llu or, to be faster, much more",
+                           (unsigned long long)need.bytes, (unsigned long long)complex_budget(grid->context),
+                           (unsigned long long)need.bytes);
+}
+
+tc_status complex_cut(tc_grid *grid) {
+    complex_grid *c = grid->complex;
+    const uint32_t clusters = complex_cluster_count(c->tetrahedron_count);
+    const uint32_t local = clusters_fit(grid, false), whole = clusters_fit(grid, true);
+    if (!local) return cut_refuse(grid);
+    struct complex_slabs *slabs = calloc(1, sizeof *slabs);
+    if (slabs) slabs->ranges = malloc(sizeof *slabs->ranges * (size_t)clusters);
+    if (!slabs || !slabs->ranges) {
+        free(slabs);
+        return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the ranges of clusters");
+    }
+    slabs->points_whole = whole > 0 && whole >= local / 4; /* points of their own cost more than smaller slabs do */
+    slabs->slab_clusters = slabs->points_whole ? whole : local;
+    slabs->slab_count = (clusters + slabs->slab_clusters - 1) / slabs->slab_clusters;
+    c->slabs = slabs;
+    return TC_OK;
+}

@@ -1,0 +1,109 @@
+/*
+ * complex_run.h - the device path over complexes: what its files share
+ *
+ * Kernels run over a part of a complex, which is all of it where that fits the device, else one slab after the other.
+ *
+ * A slab is a run of clusters. It is cut so that whatever its surface is, everything on the device fits the budget and
+ * each buffer the device. Its points are all those of the complex where these leave room enough, else its own, numbered
+ * in the order of the complex's. Its surface is numbered on its own; the host joins the vertices over slabs
+ * (edge_numbers.h).
+ */
+#ifndef COMPLEX_RUN_H
+#define COMPLEX_RUN_H
+
+#include "grid/complex.h"
+#include "opencl/kernels.h"
+
+/* How a complex is cut, and what is known of its clusters; the host has the ranges that the device has of a slab. */
+struct complex_slabs {
+    uint32_t slab_clusters, slab_count;
+    bool points_whole;   /* all points are on the device */
+    brick_range *ranges; /* of all clusters, made at the first visit */
+    bool ranges_known;
+};
+
+/* ------------------------------------------------------------------------------------- memory (complex_plan.c) */
+
+uint32_t complex_cluster_count(uint64_t tetrahedron_count);
+
+/* Clusters per tile of kernel 1, active tetrahedra per tile of the numbering. */
+uint32_t complex_tile_clusters(const tc_grid *grid);
+uint32_t complex_tile_actives(const tc_grid *grid);
+
+/* What device buffers may have together, in bytes. */
+uint64_t complex_budget(const tc_context *context);
+
+/* Whether kernel 1 can run over the complex whole. */
+bool complex_fits(const tc_grid *grid);
+
+/* Cuts the complex, which is not cut yet. TC_ERROR_MEMORY, with what would be needed, where the least slab is too
+ * large: nothing has changed then. */
+tc_status complex_cut(tc_grid *grid);
+
+/* ---------------------------------------------------------------------------- arrays of a part (complex_part.c) */
+
+/* Brings tetrahedra, and points with samples, of the host's to the device: in place where it can. Of points and samples
+ * none are there where one fails. */
+tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uint32_t count);
+tc_status part_points_provide(tc_grid *grid, const float *points, const void *samples, uint32_t count);
+void part_tetrahedra_release(tc_grid *grid); /* with their ranges */
+void part_points_release(tc_grid *grid);
+
+/* Points of a slab on their own. */
+typedef struct local_points {
+    uint64_t *used;    /* a bit per point of the complex */
+    uint32_t *before;  /* per word of them, those in words before it */
+    uint32_t *numbers; /* in the complex */
+    float *points;
+    void *samples;
+    uint32_t *tetrahedra; /* of local points */
+} local_points;
+
+/* Room for slabs of so many tetrahedra. */
+tc_status local_points_allocate(const tc_grid *grid, uint32_t tetrahedron_count, local_points *local);
+void local_points_release(local_points *local);
+
+/* Fills numbers, points, samples and tetrahedra. TC_ERROR_DATA for points that the complex has not. */
+tc_status local_points_gather(const tc_grid *grid, const uint32_t *tetrahedra, uint32_t tetrahedron_count,
+                              local_points *local, uint32_t *count);
+
+/* ------------------------------------------------------------------- an isovalue's surface (complex_surface.c) */
+
+typedef struct complex_run {
+    tc_grid *grid;
+    complex_grid *complex;
+    complex_part *part;
+    tc_context *context;
+    complex_buffers *work;
+    sized_kernel kernels[COMPLEX_KERNELS];
+    slab s; /* the isovalue's part */
+    complex_job job;
+    uint32_t head[HEAD_WORDS];
+    bool too_large;  /* the surface of a complex that is not cut does not fit */
+    double start_ms; /* kernels are built by then */
+} complex_run;
+
+/* Kernels, and the workspace for this grid. */
+tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue);
+
+/* Finds the active tetrahedra of the part; then numbers its vertices. head has the counts. */
+tc_status surface_classify(complex_run *r);
+tc_status surface_number(complex_run *r);
+
+/* Emits what has been numbered, triangles among it. */
+tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
+
+/* A buffer for what is as large as the surface. TC_ERROR_MEMORY and too_large where that is not cut and too large. */
+tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes, const char *name);
+bool surface_fits(complex_run *r, uint64_t bytes);
+
+/* Bytes of the table that drives the kernels, from the 16 cases. */
+void complex_cases(uint8_t cases[16][CASE_BYTES]);
+
+/* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
+
+/* before: how much of the whole call is over, for progress. */
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts);
+tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
+
+#endif

@@ -1,0 +1,294 @@
+/*
+ * A complex slab by slab: all are classified and their vertices joined, with totals of 64 bits carried; then those that
+ * have triangles are classified once more, which their clusters' ranges make short, and emitted.
+ *
+ * A slab's vertices are numbered by the first of its tetrahedra that has the edge. The host goes through them in this
+ * order and gives each the number that its edge has in the mesh: what an earlier slab has given it, else the next. That
+ * is the order of a complex in one piece. The slab's triangles are then renumbered in the mesh; of its positions the
+ * mesh takes those that are new.
+ */
+#include "tetrahedra/complex_run.h"
+
+#include "tetrahedra/edge_numbers.h"
+#include "failure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct slab_totals {
+    uint32_t vertices, triangles; /* vertices: those of earlier slabs, too */
+} slab_totals;
+
+typedef struct slabs_run {
+    complex_run r;
+    struct complex_slabs *slabs;
+    slab_totals *totals;
+    local_points local; /* where slabs have points of their own */
+    uint8_t cases[16][CASE_BYTES];
+    active_tetrahedron *active; /* of one slab */
+    edge_numbers edges;
+    uint32_t *numbers; /* in the mesh, of the vertices of each slab, one slab after the other */
+    uint64_t number_count, number_room, active_room;
+    uint64_t triangle_count, active_count;
+} slabs_run;
+
+static uint32_t slab_first_cluster(const slabs_run *t, uint32_t slab_index) {
+    return slab_index * t->slabs->slab_clusters;
+}
+
+static uint32_t slab_cluster_count(const slabs_run *t, uint32_t slab_index) {
+    const uint32_t rest = complex_cluster_count(t->r.complex->tetrahedron_count) - slab_first_cluster(t, slab_index);
+    return rest < t->slabs->slab_clusters ? rest : t->slabs->slab_clusters;
+}
+
+static uint32_t slab_tetrahedron_count(const slabs_run *t, uint32_t slab_index) {
+    const uint64_t first = (uint64_t)CLUSTER_TETRAHEDRA * slab_first_cluster(t, slab_index);
+    const uint64_t rest = t->r.complex->tetrahedron_count - first;
+    const uint64_t most = (uint64_t)CLUSTER_TETRAHEDRA * t->slabs->slab_clusters;
+    return (uint32_t)(rest < most ? rest : most);
+}
+
+static tc_status slabs_begin(slabs_run *t, tc_grid *grid, double isovalue) {
+    struct complex_slabs *slabs = grid->complex->slabs;
+    *t = (slabs_run){.slabs = slabs};
+    complex_cases(t->cases);
+    tc_status status = complex_run_begin(&t->r, grid, isovalue);
+    t->totals = calloc(slabs->slab_count, sizeof *t->totals);
+    if (!status && !t->totals) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
+    if (!status && !slabs->points_whole) status = local_points_allocate(grid, slab_tetrahedron_count(t, 0), &t->local);
+    return status;
+}
+
+static void slabs_end(slabs_run *t) {
+    cl->Finish(t->r.context->queue);
+    part_tetrahedra_release(t->r.grid);
+    if (!t->slabs->points_whole) part_points_release(t->r.grid);
+    local_points_release(&t->local);
+    edge_numbers_release(&t->edges);
+    free(t->totals);
+    free(t->active);
+    free(t->numbers);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- arrays */
+
+static tc_status points_load(slabs_run *t, uint32_t slab_index, const uint32_t **tetrahedra) {
+    tc_grid *grid = t->r.grid;
+    const complex_grid *c = grid->complex;
+    uint32_t point_count;
+    if (t->slabs->points_whole)
+        return c->part.points.memory ? TC_OK : part_points_provide(grid, c->points, grid->samples, c->point_count);
+    part_points_release(grid); /* in place they lie where the next ones are gathered */
+    tc_status status =
+        local_points_gather(grid, *tetrahedra, slab_tetrahedron_count(t, slab_index), &t->local, &point_count);
+    *tetrahedra = t->local.tetrahedra;
+    return status ? status : part_points_provide(grid, t->local.points, t->local.samples, point_count);
+}
+
+/* Copies the slab's ranges from the host, or to it. */
+static tc_status ranges_move(slabs_run *t, uint32_t slab_index, bool save) {
+    cl_command_queue queue = t->r.context->queue;
+    cl_mem memory = t->r.part->ranges.memory;
+    brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
+    const size_t bytes = sizeof *ranges * slab_cluster_count(t, slab_index);
+    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL)
+                        : cl->EnqueueWriteBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL);
+    return error ? context_fail(t->r.context, "copying ranges of clusters", error) : TC_OK;
+}
+
+static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known) {
+    const uint64_t first = (uint64_t)CLUSTER_TETRAHEDRA * slab_first_cluster(t, slab_index);
+    const uint32_t *tetrahedra = t->r.complex->tetrahedra + 4 * first;
+    tc_status status = points_load(t, slab_index, &tetrahedra);
+    if (!status) status = part_tetrahedra_provide(t->r.grid, tetrahedra, slab_tetrahedron_count(t, slab_index));
+    if (!status && ranges_known) status = ranges_move(t, slab_index, false);
+    t->r.part->ranges_known = ranges_known;
+    if (!status) status = surface_classify(&t->r);
+    if (!status && !ranges_known) status = ranges_move(t, slab_index, true);
+    return !status && t->r.job.active_count ? surface_number(&t->r) : status;
+}
+
+/* -------------------------------------------------------------------------------------------------- classification */
+
+/* As far as the ranges of its clusters tell. */
+static bool slab_possible(const slabs_run *t, uint32_t slab_index) {
+    const slab *s = &t->r.s;
+    const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
+    for (uint32_t n = 0; n < slab_cluster_count(t, slab_index); n++)
+        if (ranges[n].low < s->key_inside && ranges[n].high >= s->key_outside) return true;
+    return !t->slabs->ranges_known;
+}
+
+static void *room_enlarge(void *memory, uint64_t *room, uint64_t count, size_t item_bytes) {
+    uint64_t larger = 2 * *room > count ? 2 * *room : count;
+    void *grown = realloc(memory, (size_t)larger * item_bytes);
+    if (grown) *room = larger;
+    return grown;
+}
+
+/* Room for what the slab has. */
+static tc_status lists_reserve(slabs_run *t) {
+    const uint64_t active = t->r.job.active_count, numbers = t->number_count + t->r.head[HEAD_VERTICES];
+    void *grown = t->active;
+    if (active > t->active_room) grown = room_enlarge(t->active, &t->active_room, active, sizeof *t->active);
+    if (grown) t->active = grown;
+    if (grown && numbers > t->number_room) {
+        grown = room_enlarge(t->numbers, &t->number_room, numbers, sizeof *t->numbers);
+        if (grown) t->numbers = grown;
+    }
+    return grown ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory for the vertices of all slabs");
+}
+
+/* Numbers the vertices that an active tetrahedron owns. */
+static tc_status vertices_join(slabs_run *t, const active_tetrahedron *a) {
+    const uint32_t *names = t->local.numbers;
+    for (uint32_t rest = a->owned; rest; rest &= rest - 1) {
+        const uint8_t *ends = t->cases[a->pattern] + CASE_ENDS + 2 * __builtin_ctz(rest);
+        const uint32_t p = names ? names[a->points[ends[0]]] : a->points[ends[0]];
+        const uint32_t q = names ? names[a->points[ends[1]]] : a->points[ends[1]];
+        tc_status status = edge_number(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
+        if (status) return status;
+        t->number_count++;
+    }
+    return TC_OK;
+}
+
+static tc_status slab_join(slabs_run *t) {
+    const uint32_t count = t->r.job.active_count;
+    tc_status status = lists_reserve(t);
+    if (status) return status;
+    cl_int error = cl->EnqueueReadBuffer(t->r.context->queue, t->r.work->active.memory, CL_TRUE, 0,
+                                         count * sizeof *t->active, t->active, 0, NULL, NULL);
+    if (error) return context_fail(t->r.context, "reading the active tetrahedra back", error);
+    for (uint32_t n = 0; n < count && !status; n++) status = vertices_join(t, &t->active[n]);
+    return status;
+}
+
+static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
+    if (!slab_possible(t, slab_index)) return TC_OK;
+    tc_status status = slab_count(t, slab_index, t->slabs->ranges_known);
+    if (status || !t->r.job.active_count) return status;
+    t->totals[slab_index] = (slab_totals){t->r.head[HEAD_VERTICES], t->r.head[HEAD_TRIANGLES]};
+    t->triangle_count += t->r.head[HEAD_TRIANGLES];
+    t->active_count += t->r.job.active_count;
+    return slab_join(t);
+}
+
+/* progress: where this stage begins in the whole call, and where it ends. */
+static tc_status slabs_classify(slabs_run *t, double before, double after) {
+    const uint32_t count = t->slabs->slab_count;
+    tc_status status = TC_OK;
+    for (uint32_t n = 0; n < count && !status; n++) {
+        status = slab_classify(t, n);
+        if (!status) status = context_progress(t->r.context, "classify", before + (after - before) * (n + 1) / count);
+    }
+    if (!status) t->slabs->ranges_known = true;
+    return status;
+}
+
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts) {
+    slabs_run t;
+    tc_status status = slabs_begin(&t, grid, isovalue);
+    if (!status) status = slabs_classify(&t, before, 1);
+    counts->vertex_count = t.edges.count;
+    counts->triangle_count = t.triangle_count;
+    counts->active_cell_count = t.active_count;
+    counts->classify_ms = clock_ms() - t.r.start_ms;
+    slabs_end(&t);
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------- emission */
+
+/* What has been emitted of the mesh, and the positions of a slab. */
+typedef struct emission {
+    tc_mesh *mesh;
+    const uint32_t *numbers; /* of the slab's vertices */
+    uint64_t vertex_count, triangle_count;
+    float *positions;
+    double readback_ms;
+} emission;
+
+static tc_status positions_allocate(const slabs_run *t, emission *e) {
+    uint32_t most = 0;
+    for (uint32_t n = 0; n < t->slabs->slab_count; n++)
+        if (t->totals[n].vertices > most) most = t->totals[n].vertices;
+    e->positions = malloc(MESH_BYTES_PER_VERTEX * (size_t)most + 1);
+    return e->positions ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the vertices of a slab");
+}
+
+/* Reads what the slab has emitted, triangles to where they belong. */
+static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) {
+    const mesh_buffers *m = &t->r.context->work.mesh[0];
+    cl_command_queue queue = t->r.context->queue;
+    uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
+    cl_int error = cl->EnqueueReadBuffer(queue, m->positions.memory, CL_TRUE, 0,
+                                         MESH_BYTES_PER_VERTEX * (size_t)totals.vertices, e->positions, 0, NULL, NULL);
+    if (!error)
+        error = cl->EnqueueReadBuffer(queue, m->triangles.memory, CL_TRUE, 0,
+                                      MESH_BYTES_PER_TRIANGLE * (size_t)totals.triangles, triangles, 0, NULL, NULL);
+    return error ? context_fail(t->r.context, "reading the mesh back", error) : TC_OK;
+}
+
+/* Puts the slab's new vertices behind the others, and gives its triangles the numbers in the mesh. */
+static void slab_place(slab_totals totals, emission *e) {
+    uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
+    float *positions = e->mesh->positions.memory;
+    for (uint32_t n = 0; n < totals.vertices; n++)
+        if (e->numbers[n] == e->vertex_count)
+            memcpy(positions + 3 * e->vertex_count++, e->positions + 3 * (size_t)n, MESH_BYTES_PER_VERTEX);
+    for (uint64_t n = 0; n < 3ull * totals.triangles; n++) triangles[n] = e->numbers[triangles[n]];
+    e->numbers += totals.vertices;
+    e->triangle_count += totals.triangles;
+}
+
+static tc_status slab_emit(slabs_run *t, uint32_t slab_index, emission *e) {
+    const slab_totals totals = t->totals[slab_index];
+    mesh_buffers *m = &t->r.context->work.mesh[0];
+    const uint64_t vertex_bytes = MESH_BYTES_PER_VERTEX * (uint64_t)totals.vertices;
+    if (!totals.triangles) return TC_OK;
+    tc_status status = slab_count(t, slab_index, true);
+    if (!status && (t->r.head[HEAD_VERTICES] != totals.vertices || t->r.head[HEAD_TRIANGLES] != totals.triangles))
+        status = (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
+    if (!status) status = surface_reserve(&t->r, &m->positions, vertex_bytes, "vertices");
+    if (!status)
+        status =
+            surface_reserve(&t->r, &m->triangles, MESH_BYTES_PER_TRIANGLE * (uint64_t)totals.triangles, "triangles");
+    if (!status) status = surface_emit(&t->r, &m->positions, &m->triangles);
+    double emitted = clock_ms();
+    if (!status) status = slab_read(t, totals, e);
+    if (!status) slab_place(totals, e);
+    e->readback_ms += clock_ms() - emitted;
+    return status;
+}
+
+static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
+    const uint32_t count = t->slabs->slab_count;
+    emission e = {.mesh = mesh, .numbers = t->numbers};
+    tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, false);
+    edge_numbers_release(&t->edges);
+    if (!status) status = positions_allocate(t, &e);
+    for (uint32_t n = 0; n < count && !status; n++) {
+        status = slab_emit(t, n, &e);
+        if (!status) status = context_progress(t->r.context, "emit", before + (1 - before) * (n + 1) / count);
+    }
+    mesh->timings.readback_ms = e.readback_ms;
+    free(e.positions);
+    return status;
+}
+
+tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh) {
+    const double middle = before + 0.7 * (1 - before);
+    slabs_run t;
+    tc_status status = slabs_begin(&t, grid, isovalue);
+    if (!status) status = slabs_classify(&t, before, middle);
+    double classified = clock_ms();
+    if (!status) status = slabs_emit_all(&t, mesh, middle);
+    mesh->active_cell_count = t.active_count;
+    mesh->slab_count = t.slabs->slab_count;
+    mesh->timings.classify_ms = classified - t.r.start_ms;
+    mesh->timings.total_ms = clock_ms() - t.r.start_ms - mesh->timings.readback_ms;
+    mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    slabs_end(&t);
+    return status;
+}

@@ -1,0 +1,246 @@
+/*
+ * An isovalue's surface in a part of a complex: classify and list, join and number the crossed edges, emit.
+ *
+ * The host waits twice: for the number of active tetrahedra, which lists and the table of edges are sized by, and for
+ * that of the vertices. Everything but the part itself is proportional to the surface.
+ */
+#include "tetrahedra/complex_run.h"
+
+#include "failure.h"
+#include "grid/tables.h"
+
+#include <string.h>
+
+/* ---------------------------------------------------------------------------------------------------------- buffers */
+
+bool surface_fits(complex_run *r, uint64_t bytes) {
+    const tc_context *context = r->context;
+    const uint64_t budget = complex_budget(context);
+    if (r->complex->slabs) return true; /* they are cut so */
+    if (bytes > context->info.max_buffer_bytes || context->device_bytes > budget ||
+        bytes > budget - context->device_bytes)
+        r->too_large = true;
+    return !r->too_large;
+}
+
+tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes, const char *name) {
+    if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
+    buffer_release(r->context, buffer);
+    if (!surface_fits(r, bytes))
+        return (tc_status)fail(TC_ERROR_MEMORY, "the complex has no room for %llu bytes for %s",
+                               (unsigned long long)bytes, name);
+    return buffer_reserve(r->context, buffer, bytes, name);
+}
+
+void complex_cases(uint8_t cases[16][CASE_BYTES]) {
+    memset(cases, 0, 16 * CASE_BYTES);
+    for (unsigned pattern = 0; pattern < 16; pattern++) {
+        const tetrahedron_case *c = &tetrahedron_cases[pattern];
+        uint8_t *row = cases[pattern], places[6] = {0};
+        for (unsigned e = 0; e < 6; e++) {
+            const uint8_t *ends = tetrahedron_edges[e];
+            if ((pattern >> ends[0] & 1) == (pattern >> ends[1] & 1)) continue;
+            places[e] = row[CASE_EDGES]++;
+            memcpy(row + CASE_ENDS + 2 * places[e], ends, 2);
+        }
+        row[CASE_TRIANGLES] = c->triangle_count;
+        for (unsigned n = 0; n < 3u * c->triangle_count; n++)
+            row[CASE_CORNERS + n] = places[c->triangles[n / 3][n % 3]];
+    }
+}
+
+/* Uploaded once per context. */
+static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
+    uint8_t cases[16][CASE_BYTES];
+    if (buffer->memory) return TC_OK;
+    tc_status status = buffer_reserve(context, buffer, sizeof cases, "the case table");
+    if (status) return status;
+    complex_cases(cases);
+    cl_int error =
+        cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
+    if (error) buffer_release(context, buffer);
+    return error ? context_fail(context, "uploading the case table", error) : TC_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- commands */
+
+static tc_status buffer_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
+                             uint64_t bytes) {
+    cl_int error =
+        cl->EnqueueFillBuffer(r->context->queue, buffer->memory, &value, sizeof value, first, bytes, 0, NULL, NULL);
+    return error ? context_fail(r->context, "clearing a buffer", error) : TC_OK;
+}
+
+static tc_status head_read(complex_run *r) {
+    cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->work->state.memory, CL_TRUE, 0, sizeof r->head, r->head,
+                                         0, NULL, NULL);
+    return error ? context_fail(r->context, "reading totals", error) : TC_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- classification */
+
+static void isovalue_describe(complex_run *r, double isovalue) {
+    const inside_range inside = inside_range_of(r->grid->type, isovalue);
+    r->s.inside_low = inside.low;
+    r->s.inside_span = inside.span;
+    r->s.key_flip = inside.key_flip;
+    r->s.key_inside = inside.key_inside;
+    r->s.key_outside = inside.key_outside;
+    r->s.spin_limit = r->grid->scan.spin_limit;
+    r->s.isovalue32 = (float)isovalue;
+    memcpy(&r->s.isovalue64, &isovalue, sizeof isovalue);
+}
+
+static void part_describe(complex_run *r) {
+    const complex_part *part = r->part;
+    r->s.ranges_known = part->ranges_known;
+    r->job = (complex_job){.sample_offset = part->sample_offset,
+                           .point_offset = part->point_offset,
+                           .tetrahedron_offset = part->tetrahedron_offset,
+                           .point_count = part->point_count,
+                           .tetrahedron_count = part->tetrahedron_count,
+                           .cluster_count = complex_cluster_count(part->tetrahedron_count),
+                           .tile_clusters = complex_tile_clusters(r->grid),
+                           .tile_actives = complex_tile_actives(r->grid)};
+    r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
+}
+
+tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
+    tc_context *context = grid->context;
+    *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
+    r->work = &context->work.complex;
+    isovalue_describe(r, isovalue);
+    context->counted = NULL;
+    tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
+    r->start_ms = clock_ms();
+    if (status) return status;
+    if (context->served != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
+        cl->Finish(context->queue);
+        workspace_release(context);
+    }
+    context->served = grid;
+    return cases_provide(context, &r->work->cases);
+}
+
+static tc_status clusters_reserve(complex_run *r) {
+    const uint64_t clusters = r->job.cluster_count;
+    const uint64_t state_bytes = 4 * (HEAD_WORDS + (uint64_t)TILE_WORDS * r->job.cluster_tiles);
+    tc_status status = surface_reserve(r, &r->work->clusters, sizeof(cluster_state) * clusters, "clusters");
+    if (!status) status = surface_reserve(r, &r->work->active_clusters, 4 * clusters, "active clusters");
+    if (!status) status = surface_reserve(r, &r->work->state, state_bytes, "the scan");
+    return status ? status : buffer_fill(r, &r->work->state, 0, 0, state_bytes);
+}
+
+tc_status surface_classify(complex_run *r) {
+    const complex_buffers *w = r->work;
+    part_describe(r);
+    tc_status status = clusters_reserve(r);
+    if (status) return status;
+    const kernel_argument arguments[] = {ARGUMENT(r->s),
+                                         ARGUMENT(r->job),
+                                         ARGUMENT(r->part->samples.memory),
+                                         ARGUMENT(r->part->tetrahedra.memory),
+                                         ARGUMENT(r->part->ranges.memory),
+                                         ARGUMENT(w->clusters.memory),
+                                         ARGUMENT(w->active_clusters.memory),
+                                         ARGUMENT(w->state.memory)};
+    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments, 8);
+    if (!status) status = head_read(r);
+    if (!status && r->head[HEAD_INVALID]) status = complex_point_fail(r->complex);
+    if (status) return status;
+    r->part->ranges_known = true;
+    r->job.active_count = r->head[HEAD_ACTIVE];
+    r->job.active_tiles = (r->job.active_count + r->job.tile_actives - 1) / r->job.tile_actives;
+    return TC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ edges */
+
+/* Clears the table and the tiles of the numbering, too. */
+static tc_status active_list(complex_run *r) {
+    complex_buffers *w = r->work;
+    tc_status status =
+        surface_reserve(r, &w->active, sizeof(active_tetrahedron) * (uint64_t)r->job.active_count, "active tetrahedra");
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
+                                         ARGUMENT(r->part->tetrahedra.memory),
+                                         ARGUMENT(w->clusters.memory),
+                                         ARGUMENT(w->active_clusters.memory),
+                                         ARGUMENT(w->state.memory),
+                                         ARGUMENT(w->cases.memory),
+                                         ARGUMENT(w->active.memory),
+                                         ARGUMENT(w->table.memory),
+                                         ARGUMENT(w->tiles.memory)};
+    return status ? status : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments, 9);
+}
+
+static tc_status table_reserve(complex_run *r, uint64_t entries) {
+    r->job.table_mask = (uint32_t)(entries - 1);
+    r->job.probe_limit = entries >= 2ull * r->head[HEAD_CROSSED] ? r->job.table_mask : 256;
+    return surface_reserve(r, &r->work->table, 4 * entries, "the table of edges");
+}
+
+/* A larger table, and all else that an attempt with one too small has left behind. */
+static tc_status table_enlarge(complex_run *r, uint64_t entries) {
+    tc_status status = table_reserve(r, entries);
+    if (!status) status = buffer_fill(r, &r->work->table, EDGE_NONE, 0, 4 * entries);
+    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * (HEAD_TICKETS + KERNEL_JOIN), 8);
+    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * HEAD_FULL, 4);
+    return status ? status : buffer_fill(r, &r->work->tiles, 0, 0, 4ull * TILE_WORDS * r->job.active_tiles);
+}
+
+/* Enters the crossed edges into the table and numbers their vertices. */
+static tc_status edges_join(complex_run *r) {
+    complex_buffers *w = r->work;
+    const kernel_argument join[] = {ARGUMENT(r->job),          ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
+                                    ARGUMENT(w->state.memory), ARGUMENT(w->table.memory),  ARGUMENT(w->entries.memory)};
+    const kernel_argument number[] = {ARGUMENT(r->s),
+                                      ARGUMENT(r->job),
+                                      ARGUMENT(w->active.memory),
+                                      ARGUMENT(w->cases.memory),
+                                      ARGUMENT(w->state.memory),
+                                      ARGUMENT(w->tiles.memory),
+                                      ARGUMENT(w->table.memory),
+                                      ARGUMENT(w->entries.memory)};
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, 6);
+    if (!status) status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number, 8);
+    return status ? status : head_read(r);
+}
+
+/* In most complexes an edge has five tetrahedra: a table half as large as the crossed edges, each counted for every
+ * tetrahedron, is then less than half full. Where it does not do, one that always does. */
+tc_status surface_number(complex_run *r) {
+    complex_buffers *w = r->work;
+    uint64_t entries = 64;
+    while (2 * entries < r->head[HEAD_CROSSED]) entries *= 2;
+    tc_status status = surface_reserve(r, &w->entries, 16ull * r->job.active_count, "crossed edges");
+    if (!status) status = surface_reserve(r, &w->tiles, 4ull * TILE_WORDS * r->job.active_tiles, "the scan");
+    if (!status) status = table_reserve(r, entries);
+    if (!status) status = active_list(r);
+    if (!status) status = edges_join(r);
+    if (status || !r->head[HEAD_FULL]) return status;
+    while (entries < 2ull * r->head[HEAD_CROSSED]) entries *= 2;
+    status = table_enlarge(r, entries);
+    if (!status) status = edges_join(r);
+    return status;
+}
+
+/* --------------------------------------------------------------------------------------------------------- emission */
+
+tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles) {
+    const complex_buffers *w = r->work;
+    const kernel_argument arguments[] = {ARGUMENT(r->s),
+                                         ARGUMENT(r->job),
+                                         ARGUMENT(r->part->samples.memory),
+                                         ARGUMENT(r->part->points.memory),
+                                         ARGUMENT(w->active.memory),
+                                         ARGUMENT(w->cases.memory),
+                                         ARGUMENT(w->state.memory),
+                                         ARGUMENT(w->tiles.memory),
+                                         ARGUMENT(w->table.memory),
+                                         ARGUMENT(w->entries.memory),
+                                         ARGUMENT(positions->memory),
+                                         ARGUMENT(triangles->memory)};
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments, 12);
+    cl_int error = cl->Finish(r->context->queue);
+    return !status && error ? context_fail(r->context, "kernel complex_emit", error) : status;
+}
