@@ -153,7 +153,7 @@ class Magnitude(ImageCase):
 
     def test_refused(self):
         scalars = self.write_scalars()
-        self.refuses(4, "extract", scalars, "--iso", "1", "--component", "magnitude", says="one value per sample")
+        self.refuses(2, "extract", scalars, "--iso", "1", "--component", "magnitude", says="one value per sample")
         legacy = self.write("a.vtk", legacy_text("", [1.0] * 60))
         self.refuses(2, "extract", legacy, "--iso", "1", "--component", "magnitude", says="no vectors")
         for text in ("length", "magnitudes", "", "-2", "1.5"):
@@ -163,7 +163,7 @@ class Magnitude(ImageCase):
 class Description(ImageCase):
     def test_values_per_sample(self):
         path = self.write_vectors()
-        self.refuses(4, "extract", path, "--iso", "1", says="--component 0 to 2.*magnitude")
+        self.refuses(2, "extract", path, "--iso", "1", says="--component 0 to 2.*magnitude")
         info = self.report("info", path)
         self.assertEqual(info["choices"], [{"option": "--component", "count": 3, "meaning": ""}])
         self.assertEqual((info["dims"], info["type"], info["range"]), ([5, 4, 3], None, None))
@@ -180,14 +180,14 @@ class Description(ImageCase):
     def test_frames(self):
         frames = struct.pack("<120h", *range(120))
         path = self.write_bytes("f.nrrd", NRRD.format("short", 4, "5 4 3 2", ""), frames)
-        self.refuses(4, "extract", path, "--iso", "1", says="2 frames; choose one with --frame 0 to 1")
+        self.refuses(2, "extract", path, "--iso", "1", says="2 frames; choose one with --frame 0 to 1")
         info = self.report("info", path)
         self.assertEqual(info["choices"], [{"option": "--frame", "count": 2}])
         self.assertEqual((info["dims"], info["type"], info["range"]), ([5, 4, 3], "i16", [0, 59]))
         self.assertRegex(self.expect(0, "info", path).stdout, r"(?m)^choose +one of 2 frames by --frame 0 to 1")
         second = self.report("info", path, "--frame", "1")
         self.assertEqual((second["choices"], second["range"]), ([], [60, 119]))
-        self.refuses(4, "info", path, "--frame", "2", says="--frame 0 to 1")
+        self.refuses(2, "info", path, "--frame", "2", says="--frame 0 to 1")
 
     def test_frames_of_colours(self):
         path = self.write_bytes("f.mha", "NDims = 4\nDimSize = 5 4 3 2\nElementType = MET_UCHAR\n"

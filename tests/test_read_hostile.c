@@ -65,9 +65,9 @@ static void test_nrrd(void) {
         {"a.nrrd", NRRD_222 "space directions: (1,0,0) (0,1,0) (0,0,1,2,3)\n\n" EIGHT, "vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space origin: (0,0,inf)\n\n" EIGHT, "vectors", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "space origin: (0,0,nan)\n\n" EIGHT, "vectors", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "kinds: vector domain domain\n\n" EIGHT, "--component 0 to 1", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "kinds: time domain domain\n\n" EIGHT, "--frame 0 to 1", STATUS_INPUT},
-        {"a.nrrd", NRRD_222 "kinds: time time domain\n\n" EIGHT, "--frame", STATUS_INPUT},
+        {"a.nrrd", NRRD_222 "kinds: vector domain domain\n\n" EIGHT, "--component 0 to 1", STATUS_USAGE},
+        {"a.nrrd", NRRD_222 "kinds: time domain domain\n\n" EIGHT, "--frame 0 to 1", STATUS_USAGE},
+        {"a.nrrd", NRRD_222 "kinds: time time domain\n\n" EIGHT, "more axes", STATUS_INPUT},
         {"a.nrrd",
          NRRD_222 "kinds: scalar space space\nsizes: 1 4 2\n\n"
                   "1234567",
@@ -167,7 +167,7 @@ static void test_metaimage(void) {
         {"a.mha", "NDims = 3\nDimSize = 2 2 -2\nElementType = MET_UCHAR\n" LOCAL EIGHT, "at least 1", STATUS_INPUT},
         {"a.mha", "NDims = 3\nDimSize = 9 9 9\nElementType = MET_UCHAR\n" LOCAL EIGHT, "asks for 729", STATUS_INPUT},
         {"a.mha", META "ElementNumberOfChannels = 0\n" LOCAL EIGHT, "Channels", STATUS_INPUT},
-        {"a.mha", META "ElementNumberOfChannels = 2\n" LOCAL EIGHT EIGHT, "--component 0 to 1", STATUS_INPUT},
+        {"a.mha", META "ElementNumberOfChannels = 2\n" LOCAL EIGHT EIGHT, "--component 0 to 1", STATUS_USAGE},
         {"a.mha", META "ElementSpacing = 1 0 1\n" LOCAL EIGHT, "axis 2", STATUS_INPUT},
         {"a.mha", META "ElementSpacing = 1 1 x\n" LOCAL EIGHT, "numbers are needed", STATUS_INPUT},
         {"a.mha", META "ElementSpacing = nan 1 1\n" LOCAL EIGHT, "axis 1", STATUS_INPUT},
@@ -186,11 +186,12 @@ static void test_metaimage(void) {
     test_texts(cases, sizeof cases / sizeof *cases);
 }
 
+/* The status is that of a bad file, unless the text asks for an option. */
 static void expect_nifti_failure(const char *what, const nifti_fields *f, size_t extra, const char *part) {
     bytes file = nifti_header_bytes(f);
     for (size_t i = 0; i < extra; i++) bytes_put(&file, i, 1, 0);
     read_request r = request_for(file_write("a.nii", file.data, file.size));
-    expect_failure(what, &r, STATUS_INPUT, part);
+    expect_failure(what, &r, strstr(part, "--") ? STATUS_USAGE : STATUS_INPUT, part);
     bytes_free(&file);
 }
 
@@ -222,10 +223,13 @@ static void test_nifti(void) {
         static const struct {
             int datatype;
             const char *part;
-        } types[] = {{0, "type 0"},          {1, "type 1"},
-                     {1536, "FLOAT128"},     {2048, "COMPLEX256"},
-                     {77, "type 77"},        {128, "red, green, blue); choose one with --component 0 to 2"},
-                     {32, "real, imaginary"}};
+        } types[] = {{0, "type 0"},
+                     {1, "type 1"},
+                     {1536, "FLOAT128"},
+                     {2048, "COMPLEX256"},
+                     {77, "type 77"},
+                     {128, "red, green, blue); choose one with --component 0 to 2"},
+                     {32, "real, imaginary); choose one with --component 0 to 1"}};
         for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
             f = good;
             f.datatype = types[i].datatype;
@@ -268,10 +272,10 @@ static void test_nifti(void) {
 static void test_choices_beyond(void) {
     read_request r = request_for(file_text("a.nrrd", NRRD_222 "kinds: vector domain domain\n\n" EIGHT));
     r.component = 2;
-    expect_failure("component 2 of 2", &r, STATUS_INPUT, "--component 0 to 1");
+    expect_failure("component 2 of 2", &r, STATUS_USAGE, "--component 0 to 1");
     r = request_for(file_text("a.nrrd", NRRD_222 "kinds: time domain domain\n\n" EIGHT));
     r.frame = 2;
-    expect_failure("frame 2 of 2", &r, STATUS_INPUT, "--frame 0 to 1");
+    expect_failure("frame 2 of 2", &r, STATUS_USAGE, "--frame 0 to 1");
 }
 
 static void test_raw(void) {
@@ -314,10 +318,10 @@ static void test_raw(void) {
     expect_failure("origin", &r, STATUS_USAGE, "--origin");
     r = good;
     r.component = 1;
-    expect_failure("component", &r, STATUS_INPUT, "--component");
+    expect_failure("component", &r, STATUS_USAGE, "--component");
     r = good;
     r.frame = 2;
-    expect_failure("frame", &r, STATUS_INPUT, "--frame");
+    expect_failure("frame", &r, STATUS_USAGE, "--frame");
 }
 
 static void test_other_files(void) {

@@ -24,7 +24,7 @@ static int choose(const char *path, const axes *from, int axis, const read_reque
         *index = (uint64_t)wanted;
         return 0;
     }
-    return fail(STATUS_INPUT, "%s: has %" PRId64 " %s%s%s%s; choose one with %s 0 to %" PRId64 "%s", path, size,
+    return fail(STATUS_USAGE, "%s: has %" PRId64 " %s%s%s%s; choose one with %s 0 to %" PRId64 "%s", path, size,
                 is_component ? "values per sample" : "frames", meaning ? " (" : "", meaning ? meaning : "",
                 meaning ? ")" : "", is_component ? "--component" : "--frame", size - 1,
                 is_component ? ", or their length with --component magnitude" : "");
@@ -37,12 +37,16 @@ static int are_together(const read_request *request) {
 
 /* Sizes multiplied, all checked, before any is acted on. */
 static int count_elements(const char *path, const axes *from, int element, layout *out) {
+    int several[3] = {0};
     for (int a = 0; a < from->count; a++) {
         if (from->size[a] < 1)
             return fail(STATUS_INPUT, "%s: says %" PRId64 " samples along axis %d; at least 1 is needed", path,
                         from->size[a], a + 1);
         if (__builtin_mul_overflow(out->count, (uint64_t)from->size[a], &out->count))
             return fail(STATUS_INPUT, "%s: its sizes multiply to more than 2^64 samples; the header is damaged", path);
+        if (from->role[a] != AXIS_SPACE && from->size[a] > 1 && several[from->role[a]]++)
+            return fail(STATUS_INPUT, "%s: has more axes than three of space, one of components and one of frames",
+                        path);
     }
     if (__builtin_mul_overflow(out->count, element_bytes(element), &out->bytes) || out->bytes > INT64_MAX / 8)
         return fail(STATUS_INPUT, "%s: its sizes ask for more than 2^60 bytes; the header is damaged", path);
@@ -61,9 +65,7 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
             continue;
         }
         if (from->size[a] == 1) continue;
-        if (chosen[from->role[a]]++)
-            return fail(STATUS_INPUT, "%s: has more axes than three of space, one of components and one of frames",
-                        path);
+        chosen[from->role[a]] = 1;
         if (from->role[a] == AXIS_FRAME && request->frame < 0) out->frames = from->size[a];
         if (from->role[a] == AXIS_COMPONENT && are_together(request) && from->size[a] <= INT32_MAX) {
             out->components = (int)from->size[a];
@@ -74,9 +76,9 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
         out->offset += index * stride;
     }
     if (!status && (request->component > 0 || request->component == COMPONENT_MAGNITUDE) && !chosen[AXIS_COMPONENT])
-        status = fail(STATUS_INPUT, "%s: has one value per sample; leave out --component", path);
+        status = fail(STATUS_USAGE, "%s: has one value per sample; leave out --component", path);
     if (!status && request->frame > 0 && !chosen[AXIS_FRAME])
-        status = fail(STATUS_INPUT, "%s: has one frame; leave out --frame", path);
+        status = fail(STATUS_USAGE, "%s: has one frame; leave out --frame", path);
     return status;
 }
 

@@ -215,7 +215,7 @@ static int check_placement(const read_request *request, const dataset *d) {
 /* Grids have one frame, as images of three axes do. */
 static int read_grid(int (*reader)(const read_request *request, const mapping *file, dataset *out),
                      const read_request *request, const mapping *file, dataset *out) {
-    if (request->frame > 0) return fail(STATUS_INPUT, "%s: has one frame; leave out --frame", request->path);
+    if (request->frame > 0) return fail(STATUS_USAGE, "%s: has one frame; leave out --frame", request->path);
     int status = reader(request, file, out);
     return status ? status : check_placement(request, out);
 }
