@@ -765,6 +765,41 @@ class Tetrahedralize(GridCase):
         self.refuses(2, "tetrahedralize", grid, "-o", grid, says="input itself")
 
 
+class Names(GridCase):
+    """Names of arrays that would steer a terminal, or break a file."""
+
+    def check(self, path, name):
+        values = [n[0] for n in lattice((3, 3, 3))]
+        info = self.report("info", path)
+        self.assertEqual([field["name"] for field in info["blocks"][0]["fields"]], ["f", name])
+        self.assertNotRegex(self.expect(0, "info", path).stdout, r"[\x00-\x09\x0b-\x1f\x7f-\x9f]")
+        said = self.expect(2, "info", path, "--field", "\x1b[2J").stderr
+        self.assertIn(name, said)
+        self.assertNotRegex(said, r"[\x00-\x09\x0b-\x1f\x7f-\x9f]")
+        self.assertEqual(self.report("info", path, "--field", name)["range"], [min(values), max(values)])
+        mesh = self.path("a.vtp")
+        self.expect(0, "extract", path, "--field", "f", "--iso", "0.5", "--carry", name, "--engine", "reference", "-o",
+                    mesh)
+        with open(mesh, "rb") as f:
+            head = f.read().partition(b"<AppendedData")[0].decode("utf-8")
+        self.assertIn(f'Name="{name}"', head)
+
+    def test_legacy(self):
+        values = numbers(float(p[0]) for p in lattice((3, 3, 3)))
+        arrays = "".join(f"SCALARS {name} float\nLOOKUP_TABLE default\n{values}\n"
+                         for name in ("f", "a%20b%09%0a%1B[2J%7f%C2%9B"))
+        path = self.write("a.vtk", "# vtk DataFile Version 3.0\nnone\nASCII\nDATASET STRUCTURED_POINTS\n"
+                          f"DIMENSIONS 3 3 3\nSPACING 1 1 1\nORIGIN 0 0 0\nPOINT_DATA 27\n{arrays}")
+        self.check(path, "a b%09%0A%1B[2J%7F%C2%9B")
+
+    def test_xml(self):
+        self.needs_xml()
+        values = [float(p[0]) for p in lattice((3, 3, 3))]
+        fields = [("f", "f32", values), ("a b&#9;&#10;&#127;&#155;", "f32", values)]
+        path = self.write("a.vti", vti_text((3, 3, 3), fields))
+        self.check(path, "a b%09%0A%7F%C2%9B")
+
+
 class Info(GridCase):
     def test_blocks(self):
         blocks = [((3, 2, 2), lattice((3, 2, 2)), [float(n) for n in range(12)]),

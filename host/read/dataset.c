@@ -1,5 +1,6 @@
 #include "dataset.h"
 
+#include "control.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
@@ -74,6 +75,7 @@ void dataset_notice(dataset *d, const char *format, ...) {
                      ? vasprintf(&text, format, arguments)
                      : asprintf(&text, "more notices than these %d are left out", NOTICES_MOST);
     va_end(arguments);
+    if (length >= 0) control_mask(text, 0);
     if (length < 0 || !add_notice(d, text)) {
         if (length >= 0) free(text);
         d->notice_lost = 1;

@@ -1,6 +1,7 @@
 /* vtk_legacy_text.c - words, numbers and lines of VTK legacy files; see vtk_legacy.h */
 #include "vtk_legacy.h"
 
+#include "control.h"
 #include "exit_status.h"
 #include "failure.h"
 
@@ -35,9 +36,10 @@ int legacy_word(legacy *r, char word[LEGACY_WORD]) {
                                "has a word longer than %d characters where a keyword, name or type must be; it is "
                                "damaged, or an array is longer than it says",
                                LEGACY_WORD - 1);
-        word[length++] = (char)(c < ' ' || c == 127 ? '?' : c);
+        word[length++] = (char)(c ? c : '?');
     }
     word[length] = 0;
+    control_mask(word, 0);
     return 0;
 }
 
@@ -83,21 +85,24 @@ static int hexadecimal(char c) {
     return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
 }
 
+/* Control characters stay encoded: names are printed, and chosen on a command line. */
 int legacy_name(legacy *r, char name[LEGACY_WORD]) {
-    int status = legacy_need(r, "the name of an array", name);
+    char word[LEGACY_WORD], plain[LEGACY_WORD];
+    size_t length = 0;
+    int status = legacy_need(r, "the name of an array", word);
+    name[0] = 0;
     if (status) return status;
-    char *to = name;
-    for (const char *from = name; *from; from++) {
+    for (const char *from = word; *from; from++) {
         int high = *from == '%' ? hexadecimal(from[1]) : -1, low = high >= 0 ? hexadecimal(from[2]) : -1;
-        int code = low >= 0 ? 16 * high + low : -1;
-        if (code >= ' ' && code != 127) { /* control characters stay encoded: names are printed */
-            *to++ = (char)code;
-            from += 2;
-        } else {
-            *to++ = *from;
-        }
+        int code = low >= 0 ? 16 * high + low : 0;
+        plain[length++] = (char)(code ? code : *from);
+        if (code) from += 2;
     }
-    *to = 0;
+    plain[length] = 0;
+    length = 0;
+    for (const char *from = plain; *from && length + (control_bytes(from) ? 6 : 1) < LEGACY_WORD;)
+        length += control_encode(&from, name + length);
+    name[length] = 0;
     return 0;
 }
 

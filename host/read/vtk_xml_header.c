@@ -7,6 +7,7 @@
  */
 #include "vtk_xml.h"
 
+#include "control.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "header_text.h"
@@ -100,14 +101,19 @@ static int no_memory(const xml_document *doc) {
     return fail(STATUS_FAILED, "%s: no memory for the description of its arrays", doc->path);
 }
 
+/* Control characters as %XX, as VTK's legacy files have them: names are printed, and chosen on a command line. */
 static int add_name(xml_document *doc, const char *name, size_t *at) {
     *at = doc->name_bytes;
-    do {
-        char *names = grow(doc->names, doc->name_bytes, 1);
-        if (!names) return no_memory(doc);
-        doc->names = names;
-        doc->names[doc->name_bytes++] = *name;
-    } while (*name++);
+    for (int is_end = 0; !is_end;) {
+        char code[8];
+        is_end = !*name;
+        for (size_t i = 0, bytes = control_encode(&name, code); i < bytes; i++) {
+            char *names = grow(doc->names, doc->name_bytes, 1);
+            if (!names) return no_memory(doc);
+            doc->names = names;
+            doc->names[doc->name_bytes++] = code[i];
+        }
+    }
     return 0;
 }
 

@@ -4,6 +4,7 @@
  * Results go to standard output, everything else to standard error; exit statuses are those of exit_status.h.
  */
 #include "commands.h"
+#include "control.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
@@ -138,13 +139,14 @@ static void print_version(FILE *out) {
 }
 
 void message(const char *format, ...) {
+    char text[8192]; /* no memory is asked for: there may be none */
     va_list arguments;
     progress_clear();
-    fputs("tetracubes: ", stderr);
     va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    fputc('\n', stderr);
+    control_mask(text, 1);
+    fprintf(stderr, "tetracubes: %s\n", text);
 }
 
 static volatile sig_atomic_t driver_failed; /* set by either thread of extract */
