@@ -353,6 +353,36 @@ static void test_other_files(void) {
     expect_failure("a zero byte", &r, STATUS_INPUT, "not text");
 }
 
+/* UTF-16 with and without its mark, in both byte orders, and marks of UTF-8; samples may begin with any bytes. */
+static void test_encodings(void) {
+    static const char *const texts[] = {"<?xml version=\"1.0\"?>", "NRRD0004\n", "# vtk DataFile Version 3.0\n",
+                                        "ObjectType = Image\n", "2 2 2\n1 2 3"};
+    static const char *const names[] = {"a.vti", "a.nrrd", "a.vtk", "a.mha", "a.xyz"};
+    for (size_t n = 0; n < sizeof texts / sizeof *texts; n++)
+        for (int form = 0; form < 4; form++) {
+            const int has_mark = form < 2, big = form % 2;
+            bytes b = {0};
+            if (!has_mark && *texts[n] != '<') continue;
+            if (has_mark) bytes_put(&b, 0xfeff, 2, big);
+            for (const char *c = texts[n]; *c; c++) bytes_put(&b, (uint64_t)*c, 2, big);
+            read_request r = request_for(file_write(names[n], b.data, b.size));
+            expect_failure(names[n], &r, STATUS_INPUT, "UTF-16");
+            r.dims[0] = (int64_t)b.size;
+            r.dims[1] = r.dims[2] = 1;
+            r.type = TC_U8;
+            volume v;
+            EXPECT(!volume_read(&r, &v), "%s as raw: %s", names[n], failure_text());
+            volume_release(&v);
+            bytes_free(&b);
+        }
+    read_request r = request_for(file_text("a.nrrd", "\xef\xbb\xbf" NRRD_222 "\n" EIGHT));
+    expect_failure("a mark", &r, STATUS_INPUT, "EF BB BF");
+    r = request_for(file_text("a.vtk", "\xef\xbb\xbf# vtk DataFile Version 3.0\n"));
+    expect_failure("a mark", &r, STATUS_INPUT, "EF BB BF");
+    r = request_for(file_write("a.xyz", "\xff\xfe\0\0\0\0\0\0", 8));
+    expect_failure("no text", &r, STATUS_INPUT, "no image");
+}
+
 /* A file cut after any byte, or with any one byte changed, is refused or read; it never does harm. */
 static void test_every_byte(const char *name, const bytes *file, int is_strict) {
     for (size_t size = 0; size < file->size; size++) {
@@ -428,6 +458,7 @@ int main(void) {
     test_choices_beyond();
     test_raw();
     test_other_files();
+    test_encodings();
     test_bytes();
     folder_remove();
     return EXPECT_DONE();

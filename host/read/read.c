@@ -128,6 +128,33 @@ static readers find_readers(const read_request *request, const mapping *file) {
     return readers_of_ending(request->path);
 }
 
+/* Whether the first characters are ASCII in UTF-16, behind its byte order mark, or the begin of an element without. */
+static int begins_as_utf16(const mapping *file) {
+    enum { UNITS = 4 };
+    if (file->size < 2 * UNITS) return 0;
+    const unsigned char *b = file->bytes;
+    const int has_mark = (b[0] == 0xff && b[1] == 0xfe) || (b[0] == 0xfe && b[1] == 0xff);
+    const int is_big = has_mark ? b[0] == 0xfe : !b[0];
+    if (!has_mark && b[is_big] != '<') return 0;
+    for (int n = has_mark; n < UNITS; n++)
+        if (b[2 * n + !is_big] || !b[2 * n + is_big] || b[2 * n + is_big] > 126) return 0;
+    return 1;
+}
+
+/* Texts in a form that no reader takes, where what is wrong would not show in a message. */
+static int refuse_encoding(const read_request *request, const mapping *file) {
+    const int64_t *d = request->dims;
+    if (d[0] || d[1] || d[2] || request->type >= 0) return 0;
+    if (begins_as_utf16(file))
+        return fail(STATUS_INPUT, "%s: is text in UTF-16, which is not read; convert it: iconv -f UTF-16 -t UTF-8",
+                    request->path);
+    if (starts_with(file, "\xef\xbb\xbfNRRD0") || starts_with(file, "\xef\xbb\xbf# vtk DataFile"))
+        return fail(STATUS_INPUT,
+                    "%s: begins with a byte order mark (EF BB BF), which its format does not have; remove these bytes",
+                    request->path);
+    return 0;
+}
+
 /* What a file that is not read is, where that can be told; NULL where not. */
 static const char *name_of_unread(const char *path, const mapping *file) {
     static const struct {
@@ -168,13 +195,15 @@ int volume_read(const read_request *request, volume *out) {
     int status = mapping_open(request->path, &file);
     if (status) return status;
     readers read = find_readers(request, &file);
-    if (read.image)
+    if ((status = refuse_encoding(request, &file))) {
+    } else if (read.image) {
         status = read.image(request, &file, out);
-    else if (read.grid)
+    } else if (read.grid) {
         status = fail(STATUS_INPUT, "%s: is no image; of images this program reads raw, NRRD, MetaImage and NIfTI",
                       request->path);
-    else
+    } else {
         status = refuse_unknown(request->path, &file);
+    }
     mapping_close(&file);
     if (status) volume_release(out);
     return status;
@@ -239,7 +268,8 @@ int dataset_read(const read_request *request, dataset *out) {
     int status = mapping_open(request->path, &file);
     if (status) return status;
     readers read = find_readers(request, &file);
-    if (request->path2) {
+    if ((status = refuse_encoding(request, &file))) {
+    } else if (request->path2) {
         status = may_be_plot3d(read) ? read_grid(plot3d_read, request, &file, out) : refuse_pair(request);
     } else if (read.image) {
         status = read.image(request, &file, &out->image);
