@@ -13,7 +13,7 @@ import sys
 import unittest
 
 import test_cli
-from test_cli_grids import GridCase, lattice, numbers, vti_text, vts_text
+from test_cli_grids import GridCase, lattice, numbers, structured_text, vti_text, vts_text
 
 DATA = os.environ.get("TETRACUBES_DATA")
 DIMS = (5, 4, 3)
@@ -89,6 +89,30 @@ class Placement(ImageCase):
         path = self.write("a.vti", vti_text(DIMS, [("s", "f32", values)], first=(3, 0, 0)))
         bounds = self.bounds(path, "--iso", "4.5", "--spacing", "2,1,1", "--origin", "100,0,0")
         self.assertEqual(bounds, [[109, 0, 0], [109, 3, 2]])
+
+    def test_extents_of_32_bits(self):
+        """Coordinates written are those of the extent; float32 holds neither its indices nor these."""
+        self.needs_xml()
+        first = (2 ** 31 - 5, -2 ** 31, 2 ** 25 + 1)
+        values = [float(x) for x, y, z in lattice(DIMS)]
+        text = structured_text("ImageData", DIMS, first, "", [("s", "f32", values)], (),
+                               ' Origin="7 0 0" Spacing="0.25 1 2"')
+        path = self.write("a.vti", text)
+        near = self.write("b.vti", vti_text(DIMS, [("s", "f32", values)], first=(1, 0, 1)))
+        meshes = []
+        for at, name in ((path, "a.obj"), (near, "b.obj")):
+            self.expect(0, "extract", at, "--iso", "1.5", "--engine", "reference", "--check", "-o", self.path(name))
+            with open(self.path(name), encoding="ascii") as f:
+                rows = [line.split() for line in f if line[:1] in "vf"]
+            meshes.append(([tuple(map(float, row[1:])) for row in rows if row[0] == "v"],
+                           [row[1:] for row in rows if row[0] == "f"]))
+        self.assertEqual(meshes[0][1], meshes[1][1])
+        moved = [(7 + 0.25 * (x - 1 + first[0]), y + first[1], 2 * (z - 1 + first[2])) for x, y, z in meshes[1][0]]
+        self.assertEqual(meshes[0][0], moved)
+        for beyond in ("2147483647 2147483648 0 1 0 1", "-2147483649 -2147483648 0 1 0 1"):
+            with open(path, encoding="ascii") as f:
+                text = f.read().replace(" ".join(f"{first[n]} {first[n] + DIMS[n] - 1}" for n in range(3)), beyond)
+            self.refuses(4, "info", self.write("c.vti", text), says="Extent.*of 32 bits")
 
     def test_grids_with_coordinates_refuse(self):
         pair = self.write_plot3d("a", [(DIMS, lattice(DIMS), [float(p[0]) for p in lattice(DIMS)])])

@@ -162,11 +162,17 @@ static void compare_places(enum kind kind, tc_context *context, surface *far) {
     surface near;
     subject_make(&here, kind, (double[3]){0, 0, 0});
     subject_make(&there, kind, far_place);
-    if (kind == INDEXED)
-        for (int axis = 0; axis < 3; axis++) {
-            there.grid.first[axis] = axis == 1 ? -9000000 : 12000000; /* even: cubes keep their parity */
-            there.grid.matrix[axis][3] = -0.25 * (double)there.grid.first[axis];
-        }
+    static const int64_t far_first[3] = {12000000, INT32_MIN, INT32_MAX - 31}; /* even: cubes keep their parity */
+    for (int axis = 0; axis < 3 && kind == INDEXED; axis++) {
+        there.grid.first[axis] = far_first[axis];
+        there.grid.matrix[axis][3] = -0.25 * (double)far_first[axis];
+    }
+    if (kind == RECTILINEAR || kind == CURVILINEAR) { /* nothing but the parity comes of it */
+        here.grid.first[0] = here.grid.first[1] = 1;
+        there.grid.first[0] = INT32_MAX - NX + 1;
+        there.grid.first[1] = INT32_MIN + 1;
+        there.grid.first[2] = INT32_MIN;
+    }
     if (surface_extract(&here, context, &near) && surface_extract(&there, context, far)) {
         EXPECT(!moved(&near), "%s: moved though near zero", kind_names[kind]);
         EXPECT(moved(far) == (kind != INDEXED), "%s: origin %g, %g, %g", kind_names[kind], far->data.origin[0],
@@ -337,6 +343,34 @@ static void test_long_grid(void) {
     }
 }
 
+/* Neither the size nor the place of a long grid decides where its indices leave those of float32. */
+static void test_long_far_grid(void) {
+    enum { LONG = 1 << 22, AT = LONG - 4 };
+    uint8_t *samples = calloc(4, LONG);
+    for (int n = 0; n < 4 * LONG; n++) samples[n] = n % LONG > AT ? 255 : 0;
+    for (int n = 0; n < 4; n++) {
+        static const int64_t firsts[4] = {(1 << 24) + 2, -(1 << 25), -LONG - (1 << 24), 1 << 26};
+        surface s;
+        subject made = {.kind = UNIFORM};
+        tc_grid_options_init(&made.grid);
+        tc_extract_options_init(&made.how);
+        made.how.isovalue = 127.5;
+        made.grid.type = TC_U8;
+        made.grid.samples = samples;
+        made.grid.dims[0] = LONG, made.grid.dims[1] = made.grid.dims[2] = 2;
+        made.grid.first[0] = firsts[n];
+        made.grid.matrix[0][3] = -(double)firsts[n];
+        surface_extract(&made, reference, &s);
+        EXPECT(s.data.vertex_count == 8, "from %lld on: %llu vertices", (long long)firsts[n],
+               (unsigned long long)s.data.vertex_count);
+        for (uint64_t v = 0; v < s.data.vertex_count; v++)
+            EXPECT(s.data.origin[0] + (double)s.data.positions[3 * v] == AT + 0.5, "from %lld on: a vertex at %.9g",
+                   (long long)firsts[n], s.data.origin[0] + (double)s.data.positions[3 * v]);
+        tc_mesh_destroy(s.mesh);
+    }
+    free(samples);
+}
+
 static void test_refusals(void) {
     static subject s;
     tc_grid *grid = NULL;
@@ -363,6 +397,7 @@ int main(void) {
     test_given_origin();
     test_rule();
     test_long_grid();
+    test_long_far_grid();
     test_refusals();
     tc_context_destroy(device);
     tc_context_destroy(reference);

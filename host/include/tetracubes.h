@@ -244,7 +244,7 @@ typedef struct tc_grid_options {
     size_t struct_size;
     int64_t dims[3];     /* samples along x, y, z; each at least 2 */
     int64_t first[3];    /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
-                            and the index space of positions count from it. |first| + dims at most 2^24 */
+                            and the index space of positions count from it. First and last index of 32 bits */
     tc_type type;        /* native byte order */
     const void *samples; /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
                             tc_grid_destroy, not copied where the device shares the host's memory */

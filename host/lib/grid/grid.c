@@ -11,7 +11,9 @@
 static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
 static const size_t type_bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
 
-static const int64_t index_limit = 1 << 24; /* indices up to here are exact in float32 */
+/* Indices up to here are exact in float32, as which vertices are placed: where a grid begins farther from 0 they count
+ * from a number near it, but as many samples along an axis have to be exact in any case. */
+static const int64_t index_limit = 1 << 24;
 
 size_t tc_type_bytes(tc_type type) { return (unsigned)type <= TC_F64 ? type_bytes[type] : 0; }
 
@@ -49,10 +51,13 @@ static tc_status sizes_check(const tc_grid_options *o) {
         if (o->dims[axis] < 1)
             return (tc_status)fail(TC_ERROR_ARGUMENT, "%lld samples along %c: a grid needs two or more",
                                    (long long)o->dims[axis], 'x' + axis);
-        const uint64_t first = o->first[axis] < 0 ? 0 - (uint64_t)o->first[axis] : (uint64_t)o->first[axis];
-        if (o->dims[axis] > index_limit || first > (uint64_t)(index_limit - o->dims[axis]))
+        if (o->dims[axis] > index_limit)
             return (tc_status)fail(TC_ERROR_DATA,
-                                   "%lld samples along %c from index %lld on: indices are limited to 2^24",
+                                   "%lld samples along %c: they are limited to 2^24, as float32 holds indices of "
+                                   "vertices; cut the grid in pieces",
+                                   (long long)o->dims[axis], 'x' + axis);
+        if (o->first[axis] < INT32_MIN || o->first[axis] > INT32_MAX - o->dims[axis] + 1)
+            return (tc_status)fail(TC_ERROR_DATA, "%lld samples along %c from index %lld on: indices are of 32 bits",
                                    (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);
     }
     int64_t count;
@@ -108,6 +113,9 @@ static void first_move(double matrix[3][4], tc_grid *grid) {
         e.cell[axis] = 1;
     }
     origin_choose(&e, base);
+    for (int axis = 0; axis < 3; axis++) /* large grids that are not far by that rule, but too far for float32 */
+        if (fmax(fabs(e.low[axis] - base[axis]), fabs(e.high[axis] - base[axis])) > (double)index_limit)
+            base[axis] = 2 * rint((e.low[axis] + e.high[axis]) / 4);
     for (int r = 0; r < 3; r++) matrix[r][3] = world_at((const double(*)[4])matrix, base, r);
     for (int axis = 0; axis < 3; axis++) grid->first[axis] -= (int64_t)base[axis];
 }
@@ -226,6 +234,8 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->given_points = (coordinate_array){o->points, o->points_f64};
     for (int axis = 0; axis < 3; axis++) grid->given_axes[axis] = (coordinate_array){o->axes[axis], o->axes_f64[axis]};
     const double *origin = o->has_origin ? o->origin : NULL;
+    for (int axis = 0; axis < 3 && grid->kind != GRID_UNIFORM; axis++)
+        grid->first[axis] &= 1; /* only the parity of cubes depends on it */
     return grid->kind == GRID_UNIFORM ? matrix_take(o->matrix, origin, grid) : coordinates_take(grid, origin);
 }
 
