@@ -800,6 +800,42 @@ class Names(GridCase):
         self.check(path, "a b%09%0A%7F%C2%9B")
 
 
+class LeftOut(GridCase):
+    """Arrays that are not read, or stand twice: told with their names."""
+
+    def check(self, path, absent, kind):
+        info = self.report("info", path)
+        self.assertEqual(info["notices"], [notice for notice in info["notices"] if notice.startswith(path)])
+        said = "\n".join(info["notices"])
+        self.assertIn(f"the array '{absent}' is left out: its type {kind} cannot be read", said)
+        self.assertEqual(said.count("several arrays of points have the name 'f': the first is taken"), 1)
+        self.assertEqual(info["range"], [0, 2])
+        for name in (absent, "point:" + absent):
+            self.refuses(4, "info", path, "--field", name, says=f"'{absent}' is left out: its type {kind} cannot be")
+        self.refuses(4, "extract", path, "--iso", "1", "--field", "f", "--carry", absent, "--engine", "reference",
+                     "-o", self.path("a.vtp"), says=f"its type {kind} cannot be read")
+        self.refuses(2, "info", path, "--field", "none", says="no field .*is named 'none'")
+
+    def test_legacy(self):
+        values = [numbers(float(p[n]) for p in lattice((3, 3, 3))) for n in range(3)]
+        head = ("# vtk DataFile Version 3.0\nnone\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\n"
+                "SPACING 1 1 1\nORIGIN 0 0 0\nPOINT_DATA 27\n")
+        words = "FIELD t 1\nwords 1 27 string\n" + "a\n" * 27
+        floats = "".join(f"SCALARS f float\nLOOKUP_TABLE default\n{text}\n" for text in values)
+        self.check(self.write("a.vtk", head + floats + words), "words", "string")
+        self.refuses(4, "info", self.write("b.vtk", head + words), "--field", "f", says="no field.*'words' is left out")
+
+    def test_xml(self):
+        self.needs_xml()
+        fields = [("f", "f32", [float(p[n]) for p in lattice((3, 3, 3))]) for n in range(3)]
+        text = vti_text((3, 3, 3), fields)
+        odd = '<DataArray type="Float16" Name="odd" format="ascii">' + "1 " * 27 + "</DataArray></PointData>"
+        self.check(self.write("a.vti", text.replace("</PointData>", odd)), "odd", "Float16")
+        start, _, end = text.partition("<PointData>")
+        alone = self.write("b.vti", start + "<PointData>" + odd + end.partition("</PointData>")[2])
+        self.refuses(4, "extract", alone, "--iso", "1", "--engine", "reference", says="no field.*'odd'.*Float16")
+
+
 class Info(GridCase):
     def test_blocks(self):
         blocks = [((3, 2, 2), lattice((3, 2, 2)), [float(n) for n in range(12)]),

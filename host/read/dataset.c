@@ -82,6 +82,25 @@ void dataset_notice(dataset *d, const char *format, ...) {
     }
 }
 
+int dataset_leave_out(dataset *d, const char *name, const char *format, ...) {
+    char reason[160];
+    va_list arguments;
+    for (int n = 0; n < d->absent_count; n++)
+        if (strcmp(d->absent[n].name, name) == 0) return 0;
+    if (d->absent_count == NOTICES_MOST) return 0; /* as many can be told */
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    control_mask(reason, 0);
+    dataset_absent *absent = realloc(d->absent, ((size_t)d->absent_count + 1) * sizeof *absent);
+    if (absent) d->absent = absent;
+    const dataset_absent added = {absent ? dataset_text(d, name) : NULL, absent ? dataset_text(d, reason) : NULL};
+    if (!added.name || !added.reason) return fail(STATUS_FAILED, "no memory for what is left out of the input");
+    absent[d->absent_count++] = added;
+    dataset_notice(d, "the array '%.60s' is left out: %s", name, reason);
+    return 0;
+}
+
 void dataset_release(dataset *d) {
     for (dataset_memory *entry = d->memory, *next; entry; entry = next) {
         next = entry->next;
@@ -90,6 +109,7 @@ void dataset_release(dataset *d) {
     }
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);
     free(d->blocks);
+    free(d->absent);
     mapping_close(&(mapping){d->mapping, d->mapping_bytes});
     volume_release(&d->image);
     for (int n = 0; n < d->notice_count; n++) free(d->notices[n]);

@@ -48,6 +48,11 @@ typedef struct dataset_block {
     int field_count;
 } dataset_block;
 
+/* An array that the file has and no block: what it lacks is told where it is asked for. */
+typedef struct dataset_absent {
+    const char *name, *reason; /* "its type String cannot be read" */
+} dataset_absent;
+
 typedef struct dataset {
     dataset_block *blocks;
     int block_count;
@@ -57,6 +62,9 @@ typedef struct dataset {
     char **notices;                /* what the user should know about how the file was read: dataset_notice */
     int notice_count, notice_lost; /* lost: there was no memory for one */
     char notice[256];              /* the same in one text, joined by "; ", as far as there is room; or "" */
+
+    dataset_absent *absent; /* each name once */
+    int absent_count;
 
     volume image; /* of the readers of uniform images: owns what their one block points to */
     void *mapping;
@@ -81,6 +89,10 @@ char *dataset_text(dataset *d, const char *text);
 /* Adds a zeroed block or field; *out stays valid until the next is added. 0 or STATUS_FAILED. */
 int dataset_block_add(dataset *d, dataset_block **out);
 int dataset_field_add(dataset_block *block, dataset_field **out);
+
+/* Notes an array that is left out, with a notice for the first of its name: format makes the reason. The texts are
+ * copied. 0 or STATUS_FAILED. */
+int dataset_leave_out(dataset *d, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* Adds a text to the notices: half a sentence that does not name the input, whose name is put before it. Of very many
  * the rest is left out, with a last one that says so. */

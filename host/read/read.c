@@ -241,11 +241,39 @@ static int check_placement(const read_request *request, const dataset *d) {
     return 0;
 }
 
+/* Whether an earlier block has two such fields, too. */
+static int was_told(const dataset *d, int block, const dataset_field *f) {
+    for (int n = 0; n < block; n++) {
+        int count = 0;
+        for (int m = 0; m < d->blocks[n].field_count; m++)
+            count += d->blocks[n].fields[m].on_cells == f->on_cells && !strcmp(d->blocks[n].fields[m].name, f->name);
+        if (count > 1) return 1;
+    }
+    return 0;
+}
+
+/* Of fields of one name the first is taken (select.h). */
+static void tell_repeated(dataset *d) {
+    for (int n = 0; n < d->block_count; n++)
+        for (int m = 1; m < d->blocks[n].field_count; m++) {
+            const dataset_field *f = &d->blocks[n].fields[m];
+            int earlier = 0;
+            for (int k = 0; k < m && earlier < 2; k++) {
+                const dataset_field *e = &d->blocks[n].fields[k];
+                earlier += e->on_cells == f->on_cells && !strcmp(e->name, f->name);
+            }
+            if (earlier != 1 || was_told(d, n, f)) continue; /* 2: told for the second */
+            dataset_notice(d, "several arrays of %s %s%.60s%s: the first is taken", f->on_cells ? "cells" : "points",
+                           *f->name ? "have the name '" : "have no name", f->name, *f->name ? "'" : "");
+        }
+}
+
 /* Grids have one frame, as images of three axes do. */
 static int read_grid(int (*reader)(const read_request *request, const mapping *file, dataset *out),
                      const read_request *request, const mapping *file, dataset *out) {
     if (request->frame > 0) return fail(STATUS_USAGE, "%s: has one frame; leave out --frame", request->path);
     int status = reader(request, file, out);
+    if (!status) tell_repeated(out);
     return status ? status : check_placement(request, out);
 }
 

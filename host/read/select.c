@@ -98,6 +98,14 @@ static void list_fields(const dataset *d, const char *const *names, int count, c
     }
 }
 
+/* An array that was left out, of that name, or any where it is NULL; NULL: none. */
+static const dataset_absent *find_absent(const dataset *d, const char *name) {
+    for (int n = 0; n < d->absent_count; n++)
+        if (!name || !strcmp(d->absent[n].name, name) || !strcmp(d->absent[n].name, name + field_prefix(name)))
+            return &d->absent[n];
+    return NULL;
+}
+
 /* A field that every block has, or why there is none. */
 static int choose(const dataset *d, const char *path, const char *option, const char *wanted, choice *out) {
     const char **names;
@@ -106,7 +114,12 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     if (count < 0) return STATUS_FAILED;
     list_fields(d, names, count, list, sizeof list);
     *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANYWHERE};
-    if (!count)
+    const dataset_absent *absent = wanted && !out->name ? find_absent(d, wanted) : NULL;
+    if (!count && !absent) absent = find_absent(d, NULL);
+    if (absent)
+        status = fail(STATUS_INPUT, "%s: %sthe array '%.60s' is left out: %s", path,
+                      count ? "" : "holds no field that can be read: ", absent->name, absent->reason);
+    else if (!count)
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
     else if (!out->name && count == 1 && !names[0][0])

@@ -1,8 +1,8 @@
 /*
  * vtk_legacy_attributes.c - fields at the points and cells of VTK legacy files; see vtk_legacy.h
  *
- * Texts, variants and colour tables are passed over. VTK's ghost flags do not become fields: hidden points, and cells
- * that are hidden or that another piece owns, are missing data.
+ * Texts and variants are left out, colour tables passed over. VTK's ghost flags do not become fields: hidden points,
+ * and cells that are hidden or that another piece owns, are missing data.
  */
 #include "vtk_legacy.h"
 
@@ -62,7 +62,12 @@ static int read_array(legacy *r, const char *name, int type, int64_t components)
     unsigned ghosts = ghost_mask(r, name, type, components);
     char what[LEGACY_WORD + 16];
     snprintf(what, sizeof what, "array '%.100s'", name);
-    if (type >= LEGACY_STRING) return legacy_array(r, what, type, count, components, 0, NULL, NULL);
+    if (type >= LEGACY_STRING) {
+        int failed = legacy_array(r, what, type, count, components, 0, NULL, NULL);
+        return failed ? failed
+                      : dataset_leave_out(r->out, name, "its type %s cannot be read",
+                                          type == LEGACY_STRING ? "string" : "variant");
+    }
     if (r->block->field_count == LEGACY_FIELDS)
         return legacy_fail(r, "has more than %d arrays; split it", LEGACY_FIELDS);
     int status = legacy_array(r, what, type, count, components, wanted, &values, wanted == type ? NULL : &rounded);

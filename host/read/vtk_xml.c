@@ -354,7 +354,7 @@ static int load_cells(xml_reader *r, const xml_piece *piece, dataset_block *bloc
 /* ----------------------------------------------------------------------------------------------------------- fields */
 
 static int is_integral(const xml_array *array) {
-    return array->element >= 0 && array->element != TC_F32 && array->element != TC_F64;
+    return array->element >= 0 && array->element != TC_F32 && array->element != TC_F64 && !array->is_bits;
 }
 
 /* Whether the array tells what is missing: vtkGhostType, or vtkGhostLevels of older files' cells. */
@@ -385,6 +385,21 @@ static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, d
     return 0;
 }
 
+/* A byte for every bit, 0 or 1. */
+static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, const void **values) {
+    const int is_text = array->format == FORMAT_TEXT;
+    const unsigned char *stored = NULL;
+    unsigned char *bits = NULL;
+    void *owned;
+    int status = load_briefly(r, array, is_text ? count : count / 8 + (count % 8 > 0), &stored, &owned);
+    if (!status && !(bits = reader_memory(r, count))) status = STATUS_FAILED;
+    for (uint64_t n = 0; n < count && !status; n++)
+        bits[n] = is_text ? stored[n] != 0 : stored[n / 8] >> (7 - n % 8) & 1;
+    *values = bits;
+    free(owned);
+    return status;
+}
+
 /* 64-bit integers become doubles where they lie; those that have none cost the field, not the file. */
 static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
     uint64_t count;
@@ -402,13 +417,12 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
         note_more(r, &v);
         layout convert = {.element = array->element, .dims = {(int64_t)count, 1, 1}, .stride = {1, 0, 0}};
         if (layout_gather(v.label, &convert, from, memory)) {
-            dataset_notice(r->out, "the field '%.60s' is left out: it has 64-bit integers that no double holds exactly",
-                           names + array->name);
-            return 0;
+            return dataset_leave_out(r->out, names + array->name,
+                                     "it has 64-bit integers that no double holds exactly");
         }
         values = memory;
     } else {
-        int status = load_stored(r, array, count, &values);
+        int status = array->is_bits ? load_bits(r, array, count, &values) : load_stored(r, array, count, &values);
         if (status) return status;
     }
     if (dataset_field_add(block, &field)) return STATUS_FAILED;
@@ -425,9 +439,11 @@ static int load_fields(xml_reader *r, const xml_piece *piece, const char *names,
     for (size_t i = 0; i < piece->array_count && !status; i++) {
         const xml_array *array = &r->doc.arrays[piece->first_array + i];
         uint64_t tuples = array->section == SECTION_CELL_DATA ? piece->cell_count : piece->point_count;
-        if ((array->section != SECTION_POINT_DATA && array->section != SECTION_CELL_DATA) || array->element < 0)
-            continue;
-        if (is_ghost_array(r, array))
+        if (array->section != SECTION_POINT_DATA && array->section != SECTION_CELL_DATA) continue;
+        if (array->element < 0)
+            status = dataset_leave_out(r->out, names + array->name,
+                                       *array->type ? "its type %s cannot be read" : "it has no type%s", array->type);
+        else if (is_ghost_array(r, array))
             status = load_blanked(r, array, tuples, block);
         else
             status = load_field(r, array, tuples, names, block);

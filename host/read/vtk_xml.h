@@ -26,6 +26,8 @@ typedef struct xml_array {
     enum xml_section section;
     size_t name;        /* where in the document's names */
     int element;        /* stored type as layout.h counts them; -1: strings and others that are no numbers */
+    int is_bits;        /* TC_U8 as text; else eight values to a byte, the first in the highest bit */
+    char type[24];      /* as the file names it */
     int64_t components; /* at least 1 */
     enum xml_format format;
     uint64_t offset;                      /* appended: from the first byte of the appended data */

@@ -228,7 +228,10 @@ int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_
     *out = (xml_values){.doc = doc, .array = array, .count = count};
     xml_values *v = out;
     v->label_array = make_label(doc, array, v->label, sizeof v->label);
-    if (array->element < 0) return fail(STATUS_INPUT, "%s holds no numbers of a type that is read", v->label);
+    if (array->element < 0)
+        return fail(STATUS_INPUT, "%s holds no numbers of a type that is read, but '%s'", v->label, array->type);
+    if (array->is_bits && array->section > SECTION_CELL_DATA)
+        return fail(STATUS_INPUT, "%s is of type Bit, which is read of fields alone", v->label);
     if (__builtin_mul_overflow(count, element_bytes(array->element), &v->bytes) || v->bytes > INT64_MAX / 8)
         return fail(STATUS_INPUT, "%s should have %" PRIu64 " values; the file is damaged", v->label, count);
     if (!count) return 0;

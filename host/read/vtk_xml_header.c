@@ -201,9 +201,9 @@ static int find_element(const char *type) {
     static const struct {
         const char *name;
         int element;
-    } types[] = {{"UInt8", TC_U8},    {"Int8", TC_I8},    {"UInt16", TC_U16},      {"Int16", TC_I16},
-                 {"UInt32", TC_U32},  {"Int32", TC_I32},  {"UInt64", ELEMENT_U64}, {"Int64", ELEMENT_I64},
-                 {"Float32", TC_F32}, {"Float64", TC_F64}};
+    } types[] = {{"UInt8", TC_U8},    {"Int8", TC_I8},     {"UInt16", TC_U16},      {"Int16", TC_I16},
+                 {"UInt32", TC_U32},  {"Int32", TC_I32},   {"UInt64", ELEMENT_U64}, {"Int64", ELEMENT_I64},
+                 {"Float32", TC_F32}, {"Float64", TC_F64}, {"Bit", TC_U8}};
     for (size_t i = 0; type && i < sizeof types / sizeof *types; i++)
         if (strcmp(type, types[i].name) == 0) return types[i].element;
     return -1;
@@ -221,16 +221,18 @@ static int parse_offset(const xml_document *doc, const char *text, uint64_t *off
 
 static int begin_array(header_parser *p, const char **attributes) {
     xml_document *doc = p->doc;
-    const char *name = attribute(attributes, "Name"), *components = attribute(attributes, "NumberOfComponents"),
-               *format = attribute(attributes, "format"), *offset = attribute(attributes, "offset");
+    const char *name = attribute(attributes, "Name"), *type = attribute(attributes, "type"),
+               *components = attribute(attributes, "NumberOfComponents"), *format = attribute(attributes, "format"),
+               *offset = attribute(attributes, "offset");
     if (doc->pieces[doc->piece_count - 1].array_count == ARRAYS_MOST)
         return fail(STATUS_INPUT, "%s: has a piece of more than %d arrays; split it", doc->path, ARRAYS_MOST);
     xml_array *arrays = grow(doc->arrays, doc->array_count, sizeof *arrays);
     if (!arrays) return no_memory(doc);
     doc->arrays = arrays;
     xml_array *array = &arrays[doc->array_count++];
-    *array =
-        (xml_array){.section = p->section, .element = find_element(attribute(attributes, "type")), .components = 1};
+    *array = (xml_array){.section = p->section, .element = find_element(type), .components = 1};
+    array->is_bits = type && strcmp(type, "Bit") == 0;
+    snprintf(array->type, sizeof array->type, "%s", type ? type : "");
     doc->pieces[doc->piece_count - 1].array_count++;
     p->in_array = 1;
     if (components && (parse_integers(components, &array->components, 1) != 1 || array->components < 1 ||
@@ -309,7 +311,8 @@ static void start_element(void *user, const char *name, const char **attributes)
         p->status = begin_piece(p, attributes);
     } else if (p->depth == LEVEL_SECTION && p->in_piece) {
         p->section = find_section(name);
-    } else if (p->depth == LEVEL_ARRAY && p->section && strcmp(name, "DataArray") == 0) {
+    } else if (p->depth == LEVEL_ARRAY && p->section &&
+               (strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0)) {
         p->status = begin_array(p, attributes);
         p->text = behind_tag(p);
     }
