@@ -836,6 +836,70 @@ class LeftOut(GridCase):
         self.refuses(4, "extract", alone, "--iso", "1", "--engine", "reference", says="no field.*'odd'.*Float16")
 
 
+class Obstacles(GridCase):
+    """Where no isovalue gives a surface info advises on none, and says why; extract agrees."""
+
+    def check(self, why, *inputs, status=0):
+        info = self.report("info", *inputs)
+        self.assertEqual(info["isovalues"], [])
+        self.assertRegex("\n".join(info["notices"]), "nothing can be extracted: .*" + why)
+        self.assertRegex(self.expect(0, "info", *inputs).stdout, "isovalues +none: .*" + why)
+        if status:
+            self.refuses(status, "extract", *inputs, "--iso", "0.5", "--engine", "reference")
+        else:
+            report = self.report("extract", *inputs, "--iso", "0.5", "--engine", "reference")
+            self.assertEqual(report["surfaces"][0]["triangles"], 0)
+        return info
+
+    def raw(self, dims, values, *more):
+        with open(self.path("a.raw"), "wb") as f:
+            f.write(struct.pack(f"<{len(values)}f", *values))
+        return [self.path("a.raw"), "--dims", ",".join(map(str, dims)), "--type", "f32", *more]
+
+    def test_images(self):
+        for dims in ((8, 8, 1), (1, 8, 8), (8, 1, 8)):
+            self.check("one sample along an axis", *self.raw(dims, [float(n) for n in range(64)]), status=4)
+        self.check("every sample is missing", *self.raw((4, 4, 4), [math.nan] * 64))
+        self.check("every sample is missing", *self.raw((4, 4, 4), [7.0] * 64, "--nodata", "7"))
+        board = [float(sum(p)) if sum(p) % 2 else math.nan for p in lattice((4, 4, 4))]
+        self.check("no cell of three dimensions has samples at all", *self.raw((4, 4, 4), board))
+        cell = [float(sum(p)) if min(p) > 1 else math.nan for p in lattice((4, 4, 4))]
+        self.assertNotEqual(self.report("info", *self.raw((4, 4, 4), cell))["isovalues"], [])
+
+    def test_blanked(self):
+        self.needs_xml()
+        values = [("f", "f32", [float(p[0]) for p in lattice((3, 3, 3))])]
+        ghosts = ("vtkGhostType", "u8", [32] * 8)
+        self.check("no cell of three dimensions has samples", self.write("a.vti", vti_text((3, 3, 3), values, [ghosts])))
+        ghosts = ("vtkGhostType", "u8", [2] * 27)
+        self.check("every sample is missing", self.write("b.vti", vti_text((3, 3, 3), values + [ghosts])))
+
+    def test_blocks(self):
+        points = lattice((3, 3, 3))
+        good, bad = [float(p[0]) for p in points], ["nan"] * 27
+        grid, solution = plot3d_texts([((3, 3, 3), points, good), ((3, 3, 3), points, bad)])
+        pair = [self.write("a.xyz", grid), self.write("a.q", solution.replace("'", ""))]
+        info = self.report("info", *pair, "--field", "density")
+        self.assertIn("every sample is missing in 1 of 2 blocks", "\n".join(info["notices"]))
+        self.assertNotEqual(info["isovalues"], [])
+        grid, solution = plot3d_texts([((3, 3, 3), points, bad)])
+        pair = [self.write("b.xyz", grid), self.write("b.q", solution.replace("'", ""))]
+        self.check("every sample is missing", *pair, "--field", "density")
+
+    def test_unstructured(self):
+        self.needs_xml()
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1)]
+        fields = [("f", "f32", [0.0, 1.0, 2.0, 3.0, 4.0])]
+        flat = self.write("a.vtu", vtu_text(points, [[0, 1, 2], [1, 3, 2]], [TRIANGLE] * 2, fields))
+        info = self.check("no cell of three dimensions", flat)
+        self.assertRegex("\n".join(info["notices"]), "2 cells of fewer than three dimensions are skipped")
+        inverted = self.write("b.vtu", vtu_text(points, [[0, 2, 1, 4]], [TETRAHEDRON], fields))
+        info = self.report("info", inverted)
+        self.assertRegex("\n".join(info["notices"]), "1 cells of negative volume are turned over")
+        self.assertNotEqual(info["isovalues"], [])
+        self.check("cell 0 is of type 41", self.write("c.vtu", vtu_text(points, [[0, 1, 2, 4]], [41], fields)), status=4)
+
+
 class Info(GridCase):
     def test_blocks(self):
         blocks = [((3, 2, 2), lattice((3, 2, 2)), [float(n) for n in range(12)]),

@@ -6,6 +6,7 @@
 #include "failure.h"
 #include "input.h"
 #include "notice.h"
+#include "obstacle.h"
 #include "progress.h"
 #include "report.h"
 #include "statistics.h"
@@ -24,6 +25,7 @@ typedef struct facts {
     const scalar *field; /* NULL where there is a choice that was not made, of fields or components */
     choices open;
     statistics s;
+    char obstacle[OBSTACLE_BYTES]; /* why there can be no surface, or "" */
 } facts;
 
 static json_t *histogram_json(const statistics *s) {
@@ -32,9 +34,13 @@ static json_t *histogram_json(const statistics *s) {
     return json_pack("{s:o, s:o, s:o}", "low", report_real(s->low), "width", report_real(s->width), "counts", counts);
 }
 
-static json_t *suggestions_json(const statistics *s) {
+static int suggest(const facts *f, suggestion good[SUGGESTIONS_MAX]) {
+    return *f->obstacle ? 0 : statistics_suggest(&f->s, good);
+}
+
+static json_t *suggestions_json(const facts *f) {
     suggestion good[SUGGESTIONS_MAX];
-    int count = statistics_suggest(s, good);
+    int count = suggest(f, good);
     json_t *array = json_array();
     for (int n = 0; n < count; n++)
         json_array_append_new(array, json_pack("{s:o, s:s, s:s}", "iso", report_real(good[n].isovalue), "name",
@@ -69,7 +75,7 @@ static void add_field(json_t *object, const facts *f) {
     json_object_set_new(object, "nonfinite", json_integer((json_int_t)s->nonfinite_count));
     json_object_set_new(object, "missing", json_integer((json_int_t)s->missing_count));
     json_object_set_new(object, "histogram", histogram_json(s));
-    json_object_set_new(object, "isovalues", suggestions_json(s));
+    json_object_set_new(object, "isovalues", suggestions_json(f));
 }
 
 static int print_json(const facts *f) {
@@ -103,10 +109,13 @@ static void print_chart(const statistics *s) {
     }
 }
 
-static void print_suggestions(const statistics *s) {
+static void print_suggestions(const facts *f) {
     suggestion good[SUGGESTIONS_MAX];
-    int count = statistics_suggest(s, good);
-    printf("isovalues     %s\n", count ? "worth trying:" : "none: no value separates the samples");
+    int count = suggest(f, good);
+    printf("isovalues     %s%s\n", *f->obstacle ? "none: " : "",
+           *f->obstacle ? f->obstacle
+           : count      ? "worth trying:"
+                        : "none: no value separates the samples");
     for (int n = 0; n < count; n++) printf("  %22s %s\n", report_number(good[n].isovalue).text, good[n].reason);
 }
 
@@ -124,8 +133,9 @@ static void print_field(const facts *f) {
     const statistics *s = &f->s;
     choices_text(&f->open);
     if (!f->field) {
-        printf("isovalues     %s\n", f->d->block_count && f->d->blocks->field_count ? "none before that is chosen"
-                                                                                    : "none: there is no field");
+        const int has_field = f->d->block_count && f->d->blocks->field_count;
+        printf("isovalues     none%s%s\n", has_field && !*f->obstacle ? " before that is chosen" : ": ",
+               !has_field ? "there is no field" : f->obstacle);
         return;
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
@@ -134,7 +144,7 @@ static void print_field(const facts *f) {
     if (s->nonfinite_count) printf("not finite    %" PRIu64 " samples, treated as missing\n", s->nonfinite_count);
     if (s->missing_count) printf("missing       %" PRIu64 " samples, blanked or equal to --nodata\n", s->missing_count);
     if (s->bin_count) print_chart(s);
-    print_suggestions(s);
+    print_suggestions(f);
 }
 
 static void print_text(const facts *f) {
@@ -174,6 +184,8 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
         f->field = field;
     }
     if (!status) status = find_statistics(f);
+    if (!status) status = obstacle_find(o, d, f->field, f->obstacle);
+    if (!status && *f->obstacle) notice("%s: nothing can be extracted: %s", f->path, f->obstacle);
     return status ? status : progress_status();
 }
 
