@@ -141,6 +141,16 @@ static inline const char *file_write(const char *name, const void *data, size_t 
 
 static inline const char *file_text(const char *name, const char *text) { return file_write(name, text, strlen(text)); }
 
+/* A file of a header and what stands behind it. */
+static inline const char *file_behind(const char *name, const char *header, const bytes *data) {
+    bytes file = {0};
+    bytes_add(&file, header, strlen(header));
+    bytes_add(&file, data->data, data->size);
+    const char *path = file_write(name, file.data, file.size);
+    bytes_free(&file);
+    return path;
+}
+
 static inline double volume_value(const volume *v, uint64_t i) {
     switch (v->type) {
     case TC_U8:

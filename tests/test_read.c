@@ -111,11 +111,8 @@ static void test_nrrd_world(void) {
 
 /* Writes header text and the samples behind it. */
 static read_request write_with_samples(const char *name, const char *header, int type, uint64_t count, int big) {
-    bytes file = {0}, samples = test_samples(type, count, big);
-    bytes_add(&file, header, strlen(header));
-    bytes_add(&file, samples.data, samples.size);
-    read_request r = request_for(file_write(name, file.data, file.size));
-    bytes_free(&file);
+    bytes samples = test_samples(type, count, big);
+    read_request r = request_for(file_behind(name, header, &samples));
     bytes_free(&samples);
     return r;
 }

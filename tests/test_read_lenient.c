@@ -19,15 +19,6 @@ static void expect_noticed(const char *what, const read_request *request, const 
     volume_release(&v);
 }
 
-static const char *write_behind(const char *name, const char *header, const bytes *data) {
-    bytes file = {0};
-    bytes_add(&file, header, strlen(header));
-    bytes_add(&file, data->data, data->size);
-    const char *path = file_write(name, file.data, file.size);
-    bytes_free(&file);
-    return path;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ NRRD */
 
 #define NRRD_U8 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n"
@@ -40,7 +31,7 @@ typedef struct header_case {
 static void check_headers(const char *name, const header_case *cases, size_t count) {
     bytes samples = test_samples(TC_U8, COUNT, 0);
     for (size_t n = 0; n < count; n++) {
-        read_request r = request_for(write_behind(name, cases[n].header, &samples));
+        read_request r = request_for(file_behind(name, cases[n].header, &samples));
         expected e = plain(TC_U8, cases[n].matrix);
         expect_noticed(cases[n].header, &r, &e, cases[n].notice);
     }
@@ -73,6 +64,23 @@ static void test_nrrd_headers(void) {
 }
 
 /* Axes that are none of space, told by NaN alone. */
+/* What stands twice is taken as it stands last, with a notice. */
+static void test_repeated(void) {
+    static const header_case nrrd[] = {
+        {NRRD_U8 "spacings: 1 1 1\nspacings: 2 3 4\n\n",
+         "'spacings' twice: the last",
+         {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0}},
+        {NRRD_U8 "dimension: 2\n\n", "'dimension' twice: the first", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+        {NRRD_U8 "content: a\ncontent: b\n\n", NULL, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}};
+    static const header_case meta[] = {
+        {"NDims = 3\nDimSize = 5 4 3\nElementSpacing = 1 1 1\nelementspacing = 2 3 4\nElementType = MET_UCHAR\n"
+         "Comment = a\nComment = b\nElementDataFile = LOCAL\n",
+         "'ElementSpacing' twice: the last",
+         {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0}}};
+    check_headers("a.nrrd", nrrd, sizeof nrrd / sizeof *nrrd);
+    check_headers("a.mha", meta, sizeof meta / sizeof *meta);
+}
+
 static void test_nrrd_outside(void) {
     static const struct {
         const char *fields;
@@ -88,7 +96,7 @@ static void test_nrrd_outside(void) {
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         char header[512];
         snprintf(header, sizeof header, "NRRD0005\ntype: uchar\ndimension: 4\nencoding: raw\n%s\n", cases[n].fields);
-        read_request r = request_for(write_behind("a.nrrd", header, &samples));
+        read_request r = request_for(file_behind("a.nrrd", header, &samples));
         expected e = {.stored = TC_U8, .dims = {5, 4, 3}, .offset = cases[n].offset, .stride = cases[n].stride};
         r.component = cases[n].component;
         r.frame = cases[n].frame;
@@ -111,11 +119,11 @@ static void test_nrrd_hex(void) {
         snprintf(header, sizeof header,
                  "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nendian: %s\nencoding: %s\n\n",
                  big ? "big" : "little", big ? "HEX" : "hex");
-        read_request r = request_for(write_behind("a.nrrd", header, &text));
+        read_request r = request_for(file_behind("a.nrrd", header, &text));
         expected e = plain(TC_I16, NULL);
         expect_noticed("hexadecimal", &r, &e, NULL);
         bytes_text(&text, " 0");
-        r = request_for(write_behind("a.nrrd", header, &text));
+        r = request_for(file_behind("a.nrrd", header, &text));
         expect_noticed("hexadecimal, with more behind it", &r, &e, "more data");
         bytes_free(&samples);
         bytes_free(&text);
@@ -127,7 +135,7 @@ static void test_nrrd_text(void) {
     bytes text = {0};
     for (uint64_t n = 0; n < COUNT; n++) bytes_text(&text, n % 2 ? "%.1f " : "%.17e\n", test_value(TC_I16, n));
     read_request r = request_for(
-        write_behind("a.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nencoding: ascii\n\n", &text));
+        file_behind("a.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nencoding: ascii\n\n", &text));
     expected e = plain(TC_I16, NULL);
     expect_noticed("integers with a point", &r, &e, NULL);
     bytes_free(&text);
@@ -233,7 +241,7 @@ static void test_packed_masks(void) {
         char header[256];
         snprintf(header, sizeof header, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: %d %d %d\nencoding: %s\n\n", SIDE,
                  SIDE, SIDE, bzip2 ? "bzip2" : "gzip");
-        read_request r = request_for(write_behind("m.nrrd", header, &packed));
+        read_request r = request_for(file_behind("m.nrrd", header, &packed));
         volume v;
         int status = volume_read(&r, &v);
         EXPECT(status == 0 && !memcmp(v.samples, mask, size), "a mask of %zu packed bytes: %s", packed.size,
@@ -277,7 +285,7 @@ static void test_metaimage(void) {
                                         "TransformMatrix has 9",
                                         {0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0}}};
     bytes samples = test_samples(TC_U8, COUNT, 0);
-    read_request r = request_for(write_behind("a.mha", flat[0].header, &samples));
+    read_request r = request_for(file_behind("a.mha", flat[0].header, &samples));
     expected e = {.stored = TC_U8, .dims = {20, 3, 1}, .matrix = flat[0].matrix};
     expect_noticed("a matrix for three axes of two", &r, &e, flat[0].notice);
     bytes_free(&samples);
@@ -296,13 +304,13 @@ static void test_metaimage_data(void) {
         snprintf(header, sizeof header, "%sHeaderSize = %3d\n" LOCAL, order, n == 2 ? -1 : length + padding);
         bytes_add(&file, "padding", (size_t)padding);
         bytes_add(&file, samples.data, samples.size);
-        read_request r = request_for(write_behind("a.mha", header, &file));
+        read_request r = request_for(file_behind("a.mha", header, &file));
         expect_noticed(header, &r, &e, NULL);
         bytes_free(&file);
     }
     for (uint64_t n = 0; n < COUNT; n++) bytes_text(&text, "%.0f ", test_value(TC_I16, n));
     snprintf(header, sizeof header, "%sBinaryData = False\nCompressedData = True\n" LOCAL, order);
-    read_request r = request_for(write_behind("a.mha", header, &text));
+    read_request r = request_for(file_behind("a.mha", header, &text));
     expect_noticed("text that is said to be packed", &r, &e, NULL);
     for (int n = 0; n < 4; n++) {
         char name[16];
@@ -532,7 +540,7 @@ static void test_replaced(void) {
     };
     bytes samples = test_samples(TC_U8, COUNT, 0);
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        read_request r = request_for(write_behind(cases[n].name, cases[n].header, &samples));
+        read_request r = request_for(file_behind(cases[n].name, cases[n].header, &samples));
         r.has_spacing = r.has_origin = 1;
         for (int a = 0; a < 3; a++) r.spacing[a] = a + 2;
         for (int a = 0; a < 3; a++) r.origin[a] = 10 * (a + 1);
@@ -570,7 +578,7 @@ static void test_described(void) {
             bytes samples = test_samples(type, 6 * (uint64_t)COUNT, big);
             snprintf(header, sizeof header, "NRRD0005\ntype: %s\n%sendian: %s\nencoding: raw\n\n", names[type],
                      cases[n / 2].fields, big ? "big" : "little");
-            read_request r = request_for(write_behind("a.nrrd", header, &samples));
+            read_request r = request_for(file_behind("a.nrrd", header, &samples));
             volume v;
             r.describe = 1;
             int status = volume_read(&r, &v);
@@ -590,6 +598,7 @@ int main(void) {
     folder_make("read-lenient");
     test_nrrd_headers();
     test_nrrd_outside();
+    test_repeated();
     test_nrrd_hex();
     test_nrrd_text();
     test_nrrd_byte_skip();

@@ -39,6 +39,8 @@ typedef struct meta_header {
     number_list size, spacing, element_size, offset, direction;
     char orientation[16];
     source from;
+    uint32_t seen;     /* a bit per key that was met */
+    char repeated[32]; /* one that stands there again, or "" */
 } meta_header;
 
 static int parse_type(meta_header *h, const char *text) {
@@ -141,8 +143,35 @@ static int parse_geometry(meta_header *h, const char *key, const char *value) {
     return 0;
 }
 
+static void note_key(meta_header *h, const char *key) {
+    static const char *const keys[] = {"NDims",
+                                       "DimSize",
+                                       "ElementType",
+                                       "ElementNumberOfChannels",
+                                       "HeaderSize",
+                                       "ElementByteOrderMSB",
+                                       "CompressedData",
+                                       "BinaryData",
+                                       "ElementSpacing",
+                                       "ElementSize",
+                                       "Offset",
+                                       "Position",
+                                       "Origin",
+                                       "TransformMatrix",
+                                       "Rotation",
+                                       "Orientation",
+                                       "AnatomicalOrientation",
+                                       "BinaryDataByteOrderMSB"};
+    for (size_t n = 0; n < sizeof keys / sizeof *keys; n++) {
+        if (strcasecmp(key, keys[n])) continue;
+        if (h->seen >> n & 1 && !*h->repeated) snprintf(h->repeated, sizeof h->repeated, "%s", keys[n]);
+        h->seen |= 1u << n;
+    }
+}
+
 static int parse_field(meta_header *h, header_text *text, const char *key, const char *value) {
     int64_t number;
+    note_key(h, key);
     if (!strcasecmp(key, "NDims")) {
         int status = parse_integer(h, key, value, 1, MAX_DIMENSION, &number);
         if (!status) h->dimension = (int)number;
@@ -324,6 +353,7 @@ int metaimage_read(const read_request *request, const mapping *file, volume *out
     if ((status = parse_header(&h, &text)) || (status = check_header(&h, out)) ||
         (status = fill_matrix(&h, out->matrix)) || (status = place_data(&h, text.position)))
         goto cleanup;
+    if (*h.repeated) volume_notice(out, "its header has '%s' twice: the last is taken", h.repeated);
     list_axes(&h, &stored);
     if ((status = layout_make(h.path, &stored, h.element, request, &l))) goto cleanup;
     h.from.axes = &stored;

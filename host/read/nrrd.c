@@ -197,6 +197,9 @@ static int parse_field(nrrd_header *h, header_text *text, const char *name, char
     enum field field = field_of(name);
     if (field > FIELD_PER_AXIS && !h->dimension)
         return fail(STATUS_INPUT, "%s: its header has no 'dimension' field; add it", h->path);
+    if (field != FIELD_OTHER && h->seen >> field & 1 && !*h->repeated)
+        snprintf(h->repeated, sizeof h->repeated, "%.31s", name);
+    h->seen |= 1u << field;
     switch (field) {
     case FIELD_TYPE:
         return parse_type(h, value);
@@ -310,6 +313,9 @@ int nrrd_read(const read_request *request, const mapping *file, volume *out) {
     layout l;
     int status;
     if ((status = parse_header(&h, &text)) || (status = check_header(&h))) goto cleanup;
+    if (*h.repeated)
+        volume_notice(out, "its header has '%s' twice: the %s is taken", h.repeated,
+                      field_of(h.repeated) == FIELD_DIMENSION ? "first" : "last");
     nrrd_axes(&h, &stored);
     h.from.axes = &stored;
     h.from.start = text.position;

@@ -27,6 +27,8 @@ typedef struct nrrd_header {
     double origin[3];               /* NaN: not known */
     int has_sizes, has_spacings, has_mins, has_maxs, has_kinds, has_directions, has_origin;
     char space[64];
+    uint32_t seen;     /* a bit per field that was met */
+    char repeated[32]; /* the name of one that stands there again, or "" */
 } nrrd_header;
 
 /* Parses "space directions" or "space origin": count vectors "(x,y,z)", or "none" or "(nan,nan,nan)" (NaN). In a space

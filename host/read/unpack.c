@@ -29,12 +29,16 @@ int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_
 #ifndef HAVE_BZIP2
     if (packed == ENCODING_BZIP2) return missing(path, "bzip2", "TETRACUBES_BZIP2");
 #endif
-    uint64_t limit = packed == ENCODING_DEFLATE ? DEFLATE_LIMIT : BZIP2_LIMIT;
-    if (unpacked_bytes / limit <= packed_bytes && packed_bytes) return 0;
+    return unpack_ratio_check(path, packed_bytes, unpacked_bytes,
+                              packed == ENCODING_DEFLATE ? DEFLATE_LIMIT : BZIP2_LIMIT);
+}
+
+int unpack_ratio_check(const char *path, uint64_t packed_bytes, uint64_t unpacked_bytes, uint64_t most) {
+    if (unpacked_bytes / most <= packed_bytes && packed_bytes) return 0;
     return fail(STATUS_INPUT,
-                "%s: declares %" PRIu64 " bytes, but its %zu compressed bytes cannot hold more than %" PRIu64
+                "%s: declares %" PRIu64 " bytes, but its %" PRIu64 " compressed bytes cannot hold more than %" PRIu64
                 " times as many; the header is wrong or the file is cut (or store it uncompressed)",
-                path, unpacked_bytes, packed_bytes, limit);
+                path, unpacked_bytes, packed_bytes, most);
 }
 
 /* Where the next unpacked bytes go: first into a scratch buffer, then into the result, then one more byte of scratch,
@@ -47,12 +51,12 @@ typedef struct target {
     int is_counted;       /* the stream may end before what is wanted */
 } target;
 
-static int damaged(const char *path, const char *detail) {
+int unpack_damaged(const char *path, const char *detail) {
     return fail(STATUS_INPUT, "%s: its compressed data is damaged (%s); get the file again", path, detail);
 }
 
 static int ends_early(const char *path, uint64_t got, uint64_t wanted) {
-    if (got == wanted) return damaged(path, "it is cut before its check sum");
+    if (got == wanted) return unpack_damaged(path, "it is cut before its check sum");
     return fail(STATUS_INPUT,
                 "%s: its compressed data ends after %" PRIu64 " of %" PRIu64
                 " bytes; the header is wrong or the file is cut",
@@ -117,7 +121,7 @@ static int inflate_stream(const char *path, const unsigned char *in, size_t in_b
         else if (code == Z_BUF_ERROR && !left)
             status = ends_early(path, wanted - t->bytes - t->skip, wanted);
         else if (code != Z_OK)
-            status = damaged(path, stream.msg ? stream.msg : "zlib");
+            status = unpack_damaged(path, stream.msg ? stream.msg : "zlib");
         if (status) break;
     }
     inflateEnd(&stream);
@@ -156,7 +160,7 @@ static int bunzip_stream(const char *path, const unsigned char *in, size_t in_by
         if (code == BZ_MEM_ERROR)
             status = fail(STATUS_FAILED, "bzip2: out of memory");
         else if (code != BZ_OK)
-            status = damaged(path, "bzip2");
+            status = unpack_damaged(path, "bzip2");
         else if (!left && !used && !came)
             status = ends_early(path, wanted - t->bytes - t->skip, wanted);
         if (status) break;

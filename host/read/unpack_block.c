@@ -41,19 +41,8 @@ int unpack_block_check(const char *path, packing packed, uint64_t packed_bytes, 
     if (packed == PACKING_LZMA) return missing(path, "LZMA", "TETRACUBES_LZMA");
 #endif
     if (packed == PACKING_ZLIB) return unpack_check(path, ENCODING_DEFLATE, (size_t)packed_bytes, unpacked_bytes);
-    uint64_t limit = packed == PACKING_LZ4 ? LZ4_RATIO : LZMA_RATIO;
-    if (unpacked_bytes / limit <= packed_bytes && packed_bytes) return 0;
-    return fail(STATUS_INPUT,
-                "%s: declares %" PRIu64 " bytes, but its %" PRIu64 " compressed bytes cannot hold more than %" PRIu64
-                " times as many; the file is damaged or cut",
-                path, unpacked_bytes, packed_bytes, limit);
+    return unpack_ratio_check(path, packed_bytes, unpacked_bytes, packed == PACKING_LZ4 ? LZ4_RATIO : LZMA_RATIO);
 }
-
-#if defined(HAVE_LZ4) || defined(HAVE_LZMA)
-static int damaged(const char *path, const char *what) {
-    return fail(STATUS_INPUT, "%s: its compressed data is damaged (%s); get the file again", path, what);
-}
-#endif
 
 #ifdef HAVE_LZ4
 static int unpack_lz4(const char *path, const unsigned char *in, uint64_t in_bytes, unsigned char *out,
@@ -62,7 +51,7 @@ static int unpack_lz4(const char *path, const unsigned char *in, uint64_t in_byt
         return fail(STATUS_INPUT, "%s: has compressed blocks larger than LZ4's, of up to %d bytes; the file is damaged",
                     path, LZ4_MAX_INPUT_SIZE);
     int made = LZ4_decompress_safe_partial((const char *)in, (char *)out, (int)in_bytes, (int)bytes, (int)bytes);
-    return made == (int)bytes ? 0 : damaged(path, "LZ4");
+    return made == (int)bytes ? 0 : unpack_damaged(path, "LZ4");
 }
 #endif
 
@@ -100,8 +89,8 @@ static int unpack_lzma(const char *path, const unsigned char *in, uint64_t in_by
                     "%s: its compressed data asks for a dictionary of more than %d MiB; the file is "
                     "damaged, or write it at a lower level of compression",
                     path, LZMA_MEMORY >> 20);
-    return damaged(path, code == LZMA_STREAM_END || code == LZMA_BUF_ERROR || code == LZMA_OK ? "LZMA, it ends early"
-                                                                                              : "LZMA");
+    return unpack_damaged(
+        path, code == LZMA_STREAM_END || code == LZMA_BUF_ERROR || code == LZMA_OK ? "LZMA, it ends early" : "LZMA");
 }
 #endif
 
