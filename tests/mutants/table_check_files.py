@@ -77,7 +77,7 @@ MUTANTS = [
            ("(int64_t)value != v.i64) *exact = 0;", "0) *exact = 0;", "64-bit integers are rounded"),
            ("(!l->swapped || bytes == 1) &&", "", "samples in the other byte order are used in place"),
            ("(uintptr_t)stored % bytes == 0", "1", "samples that are not aligned are used in place"),
-           ("if (chosen[from->role[a]]++)", "if (0 && chosen[from->role[a]]++)", "two axes of frames are taken")),
+           ("&& several[from->role[a]]++)", "&& 0)", "two axes of frames are taken")),
     *group("host/read/source.c",
            ("m.bytes ? m.bytes + start : m.bytes;", "m.bytes;", "data begin with the file"),
            ("*skip = total - needed;", "*skip = total - bytes;", "compressed data: bytes behind it count"),
