@@ -15,6 +15,7 @@
 #include "coarse.h"
 #include "commands.h"
 #include "drop.h"
+#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -45,17 +46,9 @@ typedef struct job {
 } job;
 
 static int check_usage(const options *o) {
-    static const char *const need_mesh[] = {"--output", "--verify", "--check", "--normals",        "--soup",
-                                            "--format", "--blocks", "--carry", "--drop-degenerate"};
     if (!o->isovalue_count)
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
-    for (size_t n = 0; n < sizeof need_mesh / sizeof *need_mesh; n++)
-        if (o->count && options_given(o, need_mesh[n]))
-            return fail(STATUS_USAGE, "--count makes no mesh: leave out %s, or --count", need_mesh[n]);
-    if (o->verify && o->engine != TC_ENGINE_OPENCL)
-        return fail(STATUS_USAGE, "--verify compares with the reference engine: it proves nothing about that engine "
-                                  "itself; leave out --verify or --engine");
     read_request request;
     int status = input_request(o, &request);
     return status ? status : surface_files_check(o);
@@ -63,24 +56,11 @@ static int check_usage(const options *o) {
 
 /* ---------------------------------------------------------------------------------------------------------- stages */
 
-static int check_kinds(const job *j) {
-    for (int n = 0; n < j->data.block_count; n++) {
-        if (j->data.blocks[n].kind != GRID_UNSTRUCTURED) continue;
-        if (j->o->normals)
-            return fail(STATUS_USAGE, "%s: is unstructured: --normals are made of structured grids only",
-                        j->o->operands[0]);
-        if (j->o->method == TC_METHOD_HYBRID)
-            return fail(STATUS_USAGE, "%s: is unstructured: --method hybrid is for structured grids only",
-                        j->o->operands[0]);
-    }
-    return 0;
-}
-
 static int read_input(job *j) {
     double begin = now_ms();
     int status = input_read(j->o, &j->data);
     if (!status) status = surface_files_check(j->o);
-    if (!status) status = check_kinds(j);
+    if (!status) status = effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(j->o, &j->data, &j->field);
     if (!status) status = carry_select(j->o, &j->data, &j->carried);
     j->report.read_ms = now_ms() - begin;
@@ -296,7 +276,6 @@ int extract_run(const options *o) {
     j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
     int status = check_usage(o);
     if (status) goto cleanup;
-    if (o->engine == TC_ENGINE_REFERENCE && o->device) notice("--device has no effect with --engine reference");
     if ((status = read_and_start(&j))) goto cleanup;
     if ((status = cut(&j))) goto cleanup;
     if ((status = upload(&j))) goto cleanup;

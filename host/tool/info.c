@@ -2,6 +2,7 @@
 #include "choices.h"
 #include "commands.h"
 #include "describe.h"
+#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -179,6 +180,7 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     if (!status) status = dataset_read(&request, d);
     if (!status) status = progress_status();
     if (!status) status = choices_find(o, d, &f->open);
+    if (!status) status = effects_check_input(o, d, !f->open.can_select);
     if (!status && f->open.can_select) {
         status = input_select(o, d, field);
         f->field = field;

@@ -24,12 +24,8 @@ static int check_operands(const options *o) {
 }
 
 int input_request(const options *o, read_request *request) {
-    static const char *const raw[] = {"--type", "--endian", "--skip"};
     int status = check_operands(o), is_raw = options_given(o, "--dims");
     if (status) return status;
-    for (size_t n = 0; n < sizeof raw / sizeof *raw; n++)
-        if (!is_raw && options_given(o, raw[n]))
-            return fail(STATUS_USAGE, "%s describes raw input: give --dims NX,NY,NZ too, or leave it out", raw[n]);
     if (is_raw && o->type < 0) return fail(STATUS_USAGE, "raw input needs --type beside --dims, as in --type u8");
     read_request_init(request, o->operands[0]);
     if (o->operand_count > 1) request->path2 = o->operands[1];

@@ -6,7 +6,7 @@
 #include "options.h"
 #include "select.h"
 
-/* The options of the inputs as their reader wants them; refuses none or too many, and raw options without --dims. */
+/* The options of the inputs as their reader wants them; refuses none or too many, and --dims without --type. */
 int input_request(const options *o, read_request *request);
 
 /* Reads the inputs; notices of the reader become notices of the run. *d is to be released where 0 is returned. */

@@ -5,6 +5,7 @@
  */
 #include "commands.h"
 #include "control.h"
+#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
@@ -198,7 +199,8 @@ static int run_command(const command *c, int argc, char **argv) {
         report_begin();
         notice_begin(o.quiet, o.json);
         output_stop_when(progress_cancelled);
-        status = c->run(&o);
+        status = effects_check(&o);
+        if (!status) status = c->run(&o);
         if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();
         if (status && truncation_seen()) status = truncation_status(); /* whatever came of it */
         progress_clear();

@@ -372,7 +372,12 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
 }
 
 int options_parse(enum command_bit command, const char *name, int argc, char **argv, options *o) {
-    *o = (options){.command = name, .component = COMPONENT_OPEN, .frame = -1, .type = -1, .spacing = {1.0, 1.0, 1.0}};
+    *o = (options){.command = name,
+                   .bit = command,
+                   .component = COMPONENT_OPEN,
+                   .frame = -1,
+                   .type = -1,
+                   .spacing = {1.0, 1.0, 1.0}};
     int only_operands = 0;
     o->operands = calloc((size_t)argc + 1, sizeof *o->operands);
     if (!o->operands) return fail(STATUS_FAILED, "out of memory for the command line");

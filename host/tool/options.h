@@ -30,6 +30,7 @@ typedef struct typed_isovalue {
 
 typedef struct options {
     const char *command;
+    enum command_bit bit;
     char **operands; /* what is no option: input files, the field of generate */
     int operand_count;
 

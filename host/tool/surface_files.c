@@ -50,8 +50,6 @@ int surface_files_check(const options *o) {
     const mesh_field some = {.name = "", .components = 1};
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
-    if (o->carry && !o->output) return fail(STATUS_USAGE, "--carry puts fields into the mesh's file: give -o FILE");
-    if (o->separate_blocks && !o->output) return fail(STATUS_USAGE, "--blocks names files: give -o FILE");
     if (!o->output) return 0;
     if (o->separate_blocks && output_is_dash(o->output))
         return fail(STATUS_USAGE, "--blocks separate writes several files: -o - is one stream; name files");

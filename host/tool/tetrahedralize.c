@@ -5,6 +5,7 @@
  */
 #include "blocks.h"
 #include "commands.h"
+#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "faces.h"
@@ -42,6 +43,7 @@ static int read_input(conversion *c) {
     int has_choice = 0, status = input_read(c->o, &c->data);
     if (!status) status = input_overwrite_check(c->o, c->o->output);
     if (!status) status = input_has_choice(c->o, &c->data, &has_choice);
+    if (!status) status = effects_check_input(c->o, &c->data, !has_choice);
     if (!status && has_choice) status = input_select(c->o, &c->data, &c->field);
     return status ? status : progress_status();
 }

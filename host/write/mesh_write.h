@@ -44,6 +44,9 @@ int mesh_write_check(const char *path, const mesh_write_options *options);
 /* Whether the format has coordinates in double precision. */
 int mesh_write_has_doubles(const char *path, const mesh_write_options *options);
 
+/* Whether the format, one that is known, has no place for normals of vertices. */
+int mesh_write_lacks_normals(const char *path, const mesh_write_options *options);
+
 /* Whether the file would hold coordinates relative to the mesh's origin, because its format has no other. */
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 

@@ -17,13 +17,14 @@ typedef struct format {
     void (*write)(output *o, const shown_mesh *s);
     int takes_fields;
     int has_doubles; /* for coordinates */
+    int has_normals; /* of vertices */
 } format;
 
-static const format formats[] = {{"ply", ply_write, 1, 1},
-                                 {"stl", stl_write, 0, 0},
-                                 {"obj", obj_write, 0, 1},
-                                 {"vtp", vtp_write, 1, 1},
-                                 {NULL, NULL, 0, 0}};
+static const format formats[] = {{"ply", ply_write, 1, 1, 1},
+                                 {"stl", stl_write, 0, 0, 0},
+                                 {"obj", obj_write, 0, 1, 1},
+                                 {"vtp", vtp_write, 1, 1, 1},
+                                 {NULL, NULL, 0, 0, 0}};
 
 /* Values per vertex, of all fields together: a vertex must fit a block of the output many times. */
 enum { FIELD_VALUES_MOST = 4096 };
@@ -96,6 +97,11 @@ static int is_far(const tc_mesh_data *mesh, const mesh_write_options *options) {
 int mesh_write_has_doubles(const char *path, const mesh_write_options *options) {
     const format *f;
     return !choose_format(path, options, &f) && f->has_doubles;
+}
+
+int mesh_write_lacks_normals(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return !choose_format(path, options, &f) && !f->has_normals;
 }
 
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {

@@ -226,7 +226,8 @@ class Sound(TrialCase):
 
     def test_children_ignored(self):
         """A shell may have set SIGCHLD to be ignored: then nobody learns how a child ends."""
-        result = subprocess.run([test_cli.TOOL, *self.arguments], env={**os.environ, **self.layer("lacks fame")},
+        result = subprocess.run([test_cli.TOOL, *self.arguments, "-o", self.path("a.ply")],
+                                env={**os.environ, **self.layer("lacks fame")},
                                 preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN), timeout=1000,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, b""))

@@ -1,0 +1,19 @@
+/*
+ * effects.h - options that have no effect beside the other options, or on the input that was read
+ *
+ * One table (effects.c) has them all: what can only be a mistake is refused, the rest is told in a notice. What readers
+ * and writers of files know alone (fields that are not there, formats that hold no fields) they refuse themselves.
+ */
+#ifndef EFFECTS_H
+#define EFFECTS_H
+
+#include "dataset.h"
+#include "options.h"
+
+/* By the command line alone, before any work: 0, or STATUS_USAGE with its text. */
+int effects_check(const options *o);
+
+/* Likewise of what depends on the input. is_open: no field is chosen, as there are several, or several values. */
+int effects_check_input(const options *o, const dataset *d, int is_open);
+
+#endif

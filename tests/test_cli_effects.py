@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""test_cli_effects.py TOOL [reference] - options without effect, reports true of what is written, standard input
+
+Every row of the table of host/tool/effects.c has a case here, which the test finds in the source. Figures of reports are
+compared with files read back by code of the tests. Standard library only.
+"""
+import gzip
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+import unittest
+
+import test_cli
+from test_cli_grids import GridCase, HEXAHEDRON, hexahedra, lattice, vti_text, vtu_text
+from test_results import DataCase, ply_read
+
+SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "host", "tool", "effects.c")
+RAW = ["--dims", "8,8,8", "--type", "u8"]
+VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
+          "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
+          "--method": ["hybrid"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"]}
+REFERENCE = ["--engine", "reference"]
+
+# Per case of the source: command, operand, more arguments. That of the option itself is added.
+CASES = {
+    "has_no_mesh": ("extract", "u8.nrrd", ["--iso", "100", "--count"]),
+    "has_no_output": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_output_nor_reference": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "file_has_no_normals": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.stl"]),
+    "has_no_main_engine": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_device": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "is_not_raw": ("info", "u8.nrrd", []),
+    "has_bytes": ("info", "u8.raw", RAW),
+    "is_not_noise": ("generate", "sphere", [*RAW, "-o", "new.nrrd"]),
+    "has_no_time": ("selftest", None, []),
+    "has_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "-o", "a.ply"]),
+    "is_hybrid_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
+    "has_no_cells": ("tetrahedralize", "u8.nrrd", ["-o", "new.vtu"]),
+}
+OPEN = {"COMMAND_TETRAHEDRALIZE": ("tetrahedralize", "two.vti", ["-o", "new.vtu"]), "COMMAND_INFO": ("info", "two.vti", [])}
+ROW = re.compile(r'{([A-Z_| ]+), "(--[a-z-]+)", (BEFORE|AFTER)_READING, (\w+), (REFUSED|TOLD),\s')
+
+
+class Effects(GridCase):
+    def setUp(self):
+        super().setUp()
+        self.generate("sphere", "u8.nrrd", "8,8,8")
+        self.generate("sphere", "u8.raw", "8,8,8")
+        values = [float(n) for n in range(64)]
+        self.write("two.vti", vti_text((4, 4, 4), [("f", "f32", values), ("g", "f32", values)]))
+        self.write("cells.vtu", vtu_text(lattice((4, 4, 4)), hexahedra((4, 4, 4)), [HEXAHEDRON] * 27,
+                                         [("f", "f32", [8 * value for value in values])]))
+
+    def test_every_row(self):
+        with open(SOURCE, encoding="ascii") as file:
+            rows = ROW.findall(file.read())
+        self.assertGreater(len(rows), 30)
+        before = set(self.files())
+        for commands, option, _, case, verdict in rows:
+            command, operand, more = OPEN[commands] if case == "has_no_field" else CASES[case]
+            words = [command, *([operand] if operand else []), *more, option, *VALUES.get(option, [])]
+            with self.subTest(words=words):
+                if verdict == "REFUSED":
+                    result = self.expect(2, *words, cwd=self.folder.name, says=f"{option}\\b")
+                    self.assertEqual(set(self.files()), before)
+                    continue
+                told = self.expect(0, *words, cwd=self.folder.name, says=f"^tetracubes: .*{option}\\b").stderr
+                self.assertEqual(len(told.splitlines()), 1, told)
+                quiet = self.expect(0, *words, *([] if command == "info" else ["--quiet"]), cwd=self.folder.name)
+                self.assertEqual(quiet.stderr, told if command == "info" else "")
+                if command != "generate":
+                    report = self.report(*words, cwd=self.folder.name)
+                    self.assertEqual(["tetracubes: " + text for text in report["notices"]], told.splitlines())
+                for name in set(self.files()) - before:
+                    os.unlink(self.path(name))
+
+    def test_no_word_where_there_is_an_effect(self):
+        out = self.path("o.ply")
+        volume, cells, two = map(self.path, ("u8.nrrd", "cells.vtu", "two.vti"))
+        for words in (["extract", volume, "--iso", "100", *REFERENCE, "--normals", "--soup", "--origin-at", "1,2,3",
+                       "--format", "obj", "--blocks", "joined", "-o", out],
+                      ["extract", volume, "--iso", "100", *REFERENCE, "--soup", "-o", self.path("o.stl")],
+                      ["extract", cells, "--iso", "100", *REFERENCE, "--skip-unsupported", "--method", "tetra"],
+                      ["tetrahedralize", two, "--field", "f", "--nodata", "3", "-o", self.path("o.vtu")],
+                      ["info", two, "--field", "f", "--nodata", "3"],
+                      ["info", self.path("u8.raw"), "--dims", "4,8,8", "--type", "u16", "--endian", "big"],
+                      ["generate", "noise", "--seed", "3", *RAW, "-o", self.path("o.nrrd")]):
+            self.assertNotIn("--", self.expect(0, *words).stderr, words)
+
+
+if __name__ == "__main__":
+    test_cli.TOOL = os.path.abspath(sys.argv[1])
+    test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]
+    print("all checks" if test_cli.HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
+    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])
