@@ -69,8 +69,8 @@ class Effects(GridCase):
                     continue
                 told = self.expect(0, *words, cwd=self.folder.name, says=f"^tetracubes: .*{option}\\b").stderr
                 self.assertEqual(len(told.splitlines()), 1, told)
-                quiet = self.expect(0, *words, *([] if command == "info" else ["--quiet"]), cwd=self.folder.name)
-                self.assertEqual(quiet.stderr, told if command == "info" else "")
+                quiet = self.expect(0, *words, "--quiet", cwd=self.folder.name)
+                self.assertEqual(quiet.stderr, "")
                 if command != "generate":
                     report = self.report(*words, cwd=self.folder.name)
                     self.assertEqual(["tetracubes: " + text for text in report["notices"]], told.splitlines())
@@ -89,6 +89,63 @@ class Effects(GridCase):
                       ["info", self.path("u8.raw"), "--dims", "4,8,8", "--type", "u16", "--endian", "big"],
                       ["generate", "noise", "--seed", "3", *RAW, "-o", self.path("o.nrrd")]):
             self.assertNotIn("--", self.expect(0, *words).stderr, words)
+
+
+class Reports(DataCase, GridCase):
+    def test_vertices_of_a_soup(self):
+        volume = [self.generate("sphere", "a.nrrd")]
+        shared = self.extract(volume, "100")["surfaces"][0]
+        soup = self.extract(volume, "100", "--soup", "--check", "-o", self.path("o.ply"))["surfaces"][0]
+        rows, triangles = ply_read(self.path("o.ply"))
+        self.assertEqual((soup["vertices"], soup["triangles"]), (len(rows), len(triangles)))
+        self.assertEqual(soup["vertices"], 3 * shared["triangles"])
+        self.assertEqual((soup["shared_vertices"], soup["hash"]), (shared["vertices"], shared["hash"]))
+        self.assertEqual(soup["euler_characteristic"], 2)
+        self.assertNotIn("shared_vertices", shared)
+        text = self.expect(0, "extract", *volume, "--iso", "100", *REFERENCE, "--soup", "-o", self.path("o.ply")).stdout
+        self.assertRegex(text, rf"mesh +{len(rows)} vertices, {len(triangles)} triangles")
+        self.assertRegex(text, rf"soup .* {shared['vertices']} shared")
+        alone = self.extract(volume, "100", "--soup")["surfaces"][0]
+        self.assertEqual(alone["vertices"], shared["vertices"])
+
+    def test_open_surfaces_have_no_volume(self):
+        volume = [self.generate("sphere", "a.nrrd")]
+        for iso, is_closed in (("100", True), ("40", False)):
+            surface = self.extract(volume, iso, "--check")["surfaces"][0]
+            self.assertEqual(surface["boundary_edges"] == 0, is_closed)
+            self.assertEqual(surface["volume"] is not None, is_closed)
+            text = self.expect(0, "extract", *volume, "--iso", iso, *REFERENCE, "--check").stdout
+            self.assertRegex(text, r", volume [0-9.]+\n" if is_closed else r", open: no volume\n")
+
+    def test_surfaces_without_an_outside_have_no_volume(self):
+        """Two cubes that share four points but wind against each other: a surface through both is not oriented."""
+        points = [(x, y, z) for z in range(4) for y in range(3) for x in range(3)]
+        cells = hexahedra((3, 3, 4))
+        folded = [(cell[4:] + cell[:4]) for cell in cells[:4]] + cells[4:]
+        values = [10.0 if p == (1, 1, 1) or p == (1, 1, 2) else 0.0 for p in points]
+        volume = [self.write("f.vtu", vtu_text(points, [*folded, cells[0]], [HEXAHEDRON] * 13, [("f", "f32", values)]))]
+        result = test_cli.tool("extract", *volume, "--iso", "5", *REFERENCE, "--check", "--json")
+        surface = json.loads(result.stdout)["surfaces"][0]
+        self.assertGreater(surface["boundary_edges"] + surface["misoriented_edges"] + surface["nonmanifold_edges"], 0)
+        self.assertIsNone(surface["volume"])
+
+    def test_info_is_as_quiet_as_extract(self):
+        volume = self.raw("c.raw", "u8", (4, 4, 4), [7] * 64)
+        loud = self.expect(0, "info", *volume, says="^tetracubes: .*constant")
+        self.assertNotIn("constant", loud.stdout)
+        quiet = self.expect(0, "info", *volume, "--quiet")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+        both = self.expect(0, "info", *volume, "--quiet", "--json")
+        self.assertEqual(both.stderr, "")
+        self.assertRegex(json.loads(both.stdout)["notices"][0], "constant")
+
+    def test_notices_of_readers_are_no_results(self):
+        with open(self.path("a.nrrd"), "wb") as file:
+            file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 nan 1\nencoding: raw\n\n"
+                       + bytes(range(8)))
+        result = self.expect(0, "info", self.path("a.nrrd"), says="^tetracubes: .*spacing along axis 2 is not known")
+        self.assertNotIn("not known", result.stdout)
+        self.assertIn("format        NRRD", result.stdout)
 
 
 if __name__ == "__main__":

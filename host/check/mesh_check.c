@@ -183,6 +183,7 @@ static void inspect_vertex(workspace *w, uint64_t vertex, const corner *corners,
         result->boundary_edges += end - first == 1;
         result->misoriented_edges += end - first == 2 && incoming != 1;
         result->nonmanifold_edges += end - first > 2;
+        result->unbalanced_edges += 2 * incoming != end - first;
     }
     result->nonmanifold_vertices += fan_count > 1;
 }

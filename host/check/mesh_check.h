@@ -16,13 +16,15 @@ typedef struct mesh_topology {
     uint64_t nonmanifold_vertices; /* vertices whose triangles form more than one fan; a fan is joined through edges
                                       at the vertex, however many triangles such an edge has */
     uint64_t misoriented_edges;    /* edges with two triangles that pass them in the same direction */
+    uint64_t unbalanced_edges;     /* edges that are not passed as often in one direction as in the other: those of the
+                                      border, misoriented ones, and some of three triangles or more */
     uint64_t orphan_vertices;      /* vertices that no triangle uses */
     uint64_t invalid_triangles;    /* an index out of range, or the same vertex twice */
     int64_t euler_characteristic;  /* vertices (orphans too) - edges + triangles */
     uint64_t components;           /* connected by shared vertices; orphans do not count */
     double area;                   /* this and volume: without triangles that have a non-finite corner */
-    double volume;                 /* enclosed, by the divergence theorem; positive where triangles face outward. Of an
-                                      open surface: closed by a cone to the origin */
+    double volume;                 /* enclosed, by the divergence theorem; positive where triangles face outward. No
+                                      volume where edges are unbalanced: that of a cone to the origin is added */
 } mesh_topology;
 
 /* What every report shows: cheap, one pass. */

@@ -81,7 +81,6 @@ static void add_field(json_t *object, const facts *f) {
 
 static int print_json(const facts *f) {
     json_t *object = json_object();
-    for (int n = 0; n < f->d->notice_count; n++) notice("%s: %s", f->path, f->d->notices[n]);
     json_object_set_new(object, "input", report_string(f->path));
     json_object_set_new(object, "format", json_string(f->d->format));
     add_grid(object, only_block(f->d));
@@ -155,7 +154,6 @@ static void print_text(const facts *f) {
         print_image(f);
     else
         describe_blocks_text(f->d);
-    for (int n = 0; n < f->d->notice_count; n++) printf("notice        %s\n", f->d->notices[n]);
     print_field(f);
 }
 
@@ -178,6 +176,7 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     int status = input_request(o, &request);
     request.describe = 1;
     if (!status) status = dataset_read(&request, d);
+    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", f->path, d->notices[n]);
     if (!status) status = progress_status();
     if (!status) status = choices_find(o, d, &f->open);
     if (!status) status = effects_check_input(o, d, !f->open.can_select);
@@ -199,7 +198,7 @@ int info_run(const options *o) {
     if (status) goto cleanup;
     if (o->json)
         status = print_json(&f);
-    else
+    else if (!o->quiet)
         print_text(&f);
 cleanup:
     choices_release(&f.open);

@@ -154,7 +154,7 @@ static const option table[] = {
      "write a JUnit file too: a suite per group, a case per trial"},
     {"--json", NULL, NULL, REPORTS, VALUE_NONE, IN(json), NULL,
      "print the results as one JSON object"},
-    {"--quiet", NULL, NULL, COMMAND_EXTRACT | COMMAND_GENERATE | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(quiet), NULL,
+    {"--quiet", NULL, NULL, READS | COMMAND_GENERATE, VALUE_NONE, IN(quiet), NULL,
      "no progress, no notices, no report but that of --json"},
     {"--help", "-h", NULL, ALL, VALUE_NONE, IN(help), NULL,
      "print this"},

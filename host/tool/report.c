@@ -103,15 +103,22 @@ static json_t *count_json(uint64_t count) { return json_integer((json_int_t)coun
 /* Milliseconds to the microsecond. */
 static json_t *ms_json(double ms) { return report_real(round(ms * 1e3) / 1e3); }
 
-static void add_topology(json_t *object, const mesh_topology *t) {
+/* Whether the surface encloses one: it has no border, and one side of it is the outer one everywhere. */
+static int has_volume(const surface_report *s) {
+    return !s->topology.unbalanced_edges && !s->topology.invalid_triangles && !s->summary.nonfinite_vertices;
+}
+
+static void add_topology(json_t *object, const surface_report *s) {
+    const mesh_topology *t = &s->topology;
     json_object_set_new(object, "boundary_edges", count_json(t->boundary_edges));
     json_object_set_new(object, "nonmanifold_edges", count_json(t->nonmanifold_edges));
     json_object_set_new(object, "nonmanifold_vertices", count_json(t->nonmanifold_vertices));
     json_object_set_new(object, "misoriented_edges", count_json(t->misoriented_edges));
+    json_object_set_new(object, "coarse_vertices", count_json(s->coarse_vertices));
     json_object_set_new(object, "euler_characteristic", json_integer((json_int_t)t->euler_characteristic));
     json_object_set_new(object, "components", count_json(t->components));
     json_object_set_new(object, "area", report_real(t->area));
-    json_object_set_new(object, "volume", report_real(t->volume));
+    json_object_set_new(object, "volume", has_volume(s) ? report_real(t->volume) : json_null());
 }
 
 /* An empty surface has none. */
@@ -132,7 +139,8 @@ static void add_mesh(json_t *object, const surface_report *s) {
 static json_t *surface_json(const surface_report *s) {
     json_t *object = json_object(), *timings = json_object();
     json_object_set_new(object, "iso", report_real(s->iso->value));
-    json_object_set_new(object, "vertices", count_json(s->vertex_count));
+    json_object_set_new(object, "vertices", count_json(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count));
+    if (s->soup_vertex_count) json_object_set_new(object, "shared_vertices", count_json(s->vertex_count));
     json_object_set_new(object, "triangles", count_json(s->triangle_count));
     json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
     if (s->has_mesh) add_mesh(object, s);
@@ -143,8 +151,7 @@ static json_t *surface_json(const surface_report *s) {
         json_object_set_new(timings, "readback", ms_json(s->readback_ms));
     }
     json_object_set_new(object, "timings_ms", timings);
-    if (s->has_topology) add_topology(object, &s->topology);
-    if (s->has_topology) json_object_set_new(object, "coarse_vertices", count_json(s->coarse_vertices));
+    if (s->has_topology) add_topology(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
     return object;
 }
@@ -183,7 +190,8 @@ int report_extract_json(const extract_report *r) {
 
 /* ------------------------------------------------------------------------------------------------------------ text */
 
-static void topology_text(const mesh_topology *t) {
+static void topology_text(const surface_report *s) {
+    const mesh_topology *t = &s->topology;
     printf("  check       %s, %s: %" PRIu64 " boundary edges, %" PRIu64 " non-manifold edges, %" PRIu64
            " non-manifold vertices, %" PRIu64 " misoriented edges\n",
            t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
@@ -191,8 +199,10 @@ static void topology_text(const mesh_topology *t) {
            t->misoriented_edges);
     printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g", t->euler_characteristic,
            t->components, t->area);
-    if (!t->boundary_edges) printf(", volume %.7g", t->volume);
-    printf("\n");
+    if (has_volume(s))
+        printf(", volume %.7g\n", t->volume);
+    else
+        printf(", %s: no volume\n", t->boundary_edges ? "open" : "not oriented");
 }
 
 static void bounds_text(const surface_report *s) {
@@ -206,9 +216,14 @@ static void bounds_text(const surface_report *s) {
 static void surface_text(const surface_report *s, const char *cells) {
     const mesh_summary *m = &s->summary;
     printf("isovalue %s\n", s->iso->text);
-    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles", s->vertex_count, s->triangle_count);
+    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles",
+           s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count, s->triangle_count);
     if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
     printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
+    if (s->soup_vertex_count)
+        printf("  soup        three vertices of its own for every triangle; hash and check are of %" PRIu64
+               " shared ones\n",
+               s->vertex_count);
     if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
     if (s->has_mesh) {
         bounds_text(s);
@@ -224,7 +239,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     }
     if (s->slab_count > 1) printf(", in %" PRIu32 " slabs", s->slab_count);
     printf("\n");
-    if (s->has_topology) topology_text(&s->topology);
+    if (s->has_topology) topology_text(s);
     if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
     if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
 }

@@ -23,8 +23,9 @@ typedef struct surface_report {
     int has_mesh;         /* 0: counted only; then the rest is not filled */
     mesh_summary summary; /* bounds in world space. This and the hash: not where no report is printed */
     uint64_t hash;
-    int has_origin;   /* 0: blocks that lie far from each other have origins of their own */
-    double origin[3]; /* that positions in memory, and so hash and volume of an open surface, are relative to */
+    int has_origin;             /* 0: blocks that lie far from each other have origins of their own */
+    double origin[3];           /* that positions in memory, and so the hash, are relative to */
+    uint64_t soup_vertex_count; /* of the file: three of its own for every triangle; 0 where it shares them */
     int has_dropped;
     uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
     int has_topology;
