@@ -148,6 +148,34 @@ class Reports(DataCase, GridCase):
         self.assertIn("format        NRRD", result.stdout)
 
 
+class Carried(DataCase, GridCase):
+    def told(self, kind, values, components=1):
+        count = 125
+        ramp = [float(n % 5) for n in range(count)]
+        grid = self.write("c.vti", vti_text((5, 5, 5), [("f", "f32", ramp), ("g", kind, values, components)]))
+        return self.notices([grid], "1.5", "--field", "f", "--carry", "g", "-o", self.path("o.vtp"))
+
+    def test_constant_fields(self):
+        for kind, value in (("f64", 0.1), ("f32", 0.5), ("u8", 7), ("i32", -3), ("f64", float("-1e-300"))):
+            self.assertEqual(self.told(kind, [value] * 125), [f"field 'g' is constant: every value is {value!r}"])
+        [told] = self.told("f32", [0.0, 0.0, 1.0] * 125, 3)
+        self.assertRegex(told, "every point has the same 3 values")
+        self.assertEqual(self.told("f32", [x for n in range(125) for x in (0.0, 0.0, float(n))], 3), [])
+
+    def test_fields_that_float32_makes_constant(self):
+        for values in ([1e9 + n / 100 for n in range(125)], [(1 + n) * 1e-50 for n in range(125)],
+                       [-5.0 - n * 1e-15 for n in range(125)]):
+            [told] = self.told("f64", values)
+            self.assertRegex(told, "field 'g' is carried as float32, which has steps of")
+            low, high = (float(word) for word in re.search(r"values, (\S+) to (\S+), differ", told).groups())
+            self.assertEqual((low, high), (min(values), max(values)))
+
+    def test_fields_that_vary(self):
+        self.assertEqual(self.told("f64", [n / 7 for n in range(125)]), [])
+        self.assertEqual(self.told("f32", [n / 7 for n in range(125)]), [])
+        self.assertEqual(self.told("u8", [n for n in range(125)]), [])
+
+
 if __name__ == "__main__":
     test_cli.TOOL = os.path.abspath(sys.argv[1])
     test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]

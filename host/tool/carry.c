@@ -1,9 +1,11 @@
 #include "carry.h"
 
+#include "average.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
 #include "notice.h"
+#include "report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +33,54 @@ static size_t name_length(const char *text, const char *const *known, int known_
     return longest ? longest : strcspn(text, ",");
 }
 
+enum { STEPS_MOST = 4096 }; /* of float32, within the range of a field: fewer show */
+
+/* Of float32 among such values: half of the distance of two neighbours. */
+static double step_between(double low, double high) { return fmax(fmax(fabs(low), fabs(high)) * 0x1p-24, 0x1p-150); }
+
+/* The least and the greatest finite value of a component in all blocks. Ends early, with 0, where the values differ by
+ * so much that float32 does no harm: the range is then not the whole one. */
+static int has_narrow_range(const dataset *d, const point_field *from, int component, double range[2]) {
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int n = 0; n < d->block_count; n++) {
+        const dataset_field *f = &from->blocks[n];
+        const uint64_t count = (uint64_t)d->blocks[n].point_count * (uint64_t)from->components;
+        for (uint64_t at = (uint64_t)component; at < count; at += (uint64_t)from->components) {
+            const double value = value_at(f->type, f->values, at);
+            if (!isfinite(value)) continue;
+            range[0] = fmin(range[0], value);
+            range[1] = fmax(range[1], value);
+            if (range[1] - range[0] > step_between(range[0], range[1]) * STEPS_MOST) return 0;
+        }
+    }
+    return range[0] <= range[1];
+}
+
+/* A field that tells nothing is none that anybody wants: it is constant, or becomes so, nearly, as float32. Whether it
+ * is, in any component; that is told. */
+static int tell_narrow(const dataset *d, const point_field *from) {
+    int constant_count = 0, is_narrow = 0;
+    double value = 0;
+    for (int c = 0; notice_wanted() && c < from->components; c++) {
+        double range[2];
+        if (!has_narrow_range(d, from, c, range)) continue;
+        value = range[0];
+        constant_count += range[0] == range[1];
+        if (range[0] == range[1] || from->blocks->type == TC_F32) continue;
+        is_narrow = 1;
+        notice("field '%s'%s is carried as float32, which has steps of %.2g there, and its values, %s to %s, differ by "
+               "%.2g",
+               from->name, from->components > 1 ? ", a component of it," : "", step_between(range[0], range[1]),
+               report_number(range[0]).text, report_number(range[1]).text, range[1] - range[0]);
+    }
+    if (constant_count == from->components && constant_count == 1)
+        notice("field '%s' is constant: every value is %s", from->name, report_number(value).text);
+    else if (constant_count == from->components && constant_count)
+        notice("field '%s' is constant: every point has the same %d values", from->name, constant_count);
+    return is_narrow;
+}
+
 static int select_one(const options *o, dataset *d, carried *out, const char *name) {
     point_field *from = &out->from[out->count];
     int status = point_field_select(d, o->operands[0], name, from);
@@ -38,6 +88,7 @@ static int select_one(const options *o, dataset *d, carried *out, const char *na
     for (int n = 0; n < out->count; n++)
         if (strcmp(out->from[n].name, from->name) == 0) return fail(STATUS_USAGE, "--carry: '%s' is given twice", name);
     if (from->is_averaged) input_tell_average(d, from->name);
+    out->is_narrow[out->count] = (uint8_t)tell_narrow(d, from);
     out->fields[out->count++] = (mesh_field){from->name, from->components, NULL};
     return 0;
 }
@@ -65,7 +116,8 @@ int carry_select(const options *o, dataset *d, carried *out) {
     out->from = calloc(count, sizeof *out->from);
     out->fields = calloc(count, sizeof *out->fields);
     out->values = calloc(count, sizeof *out->values);
-    int is_there = names && out->from && out->fields && out->values;
+    out->is_narrow = calloc(count, sizeof *out->is_narrow);
+    int is_there = names && out->from && out->fields && out->values && out->is_narrow;
     int status = is_there ? select_all(o, d, out, names) : fail(STATUS_FAILED, "out of memory for the fields to carry");
     free(names);
     return status;
@@ -76,11 +128,13 @@ void carry_release(carried *c) {
     free(c->from);
     free(c->fields);
     free(c->values);
+    free(c->is_narrow);
     *c = (carried){0};
 }
 
-/* Carried values are float32: a notice where that shows, as more than 1/4096 of their range, or as infinity. */
-static void tell_rounded(const point_field *from, uint64_t vertex_count, const float *values) {
+/* Carried values are float32: a notice where that shows, as more than 1/4096 of their range, or as infinity. The
+ * first not again where it has been told of the whole field. */
+static void tell_rounded(const point_field *from, int is_told, uint64_t vertex_count, const float *values) {
     const uint64_t count = vertex_count * (uint64_t)from->components;
     const tc_type type = from->blocks->type;
     double low = INFINITY, high = -INFINITY;
@@ -92,10 +146,10 @@ static void tell_rounded(const point_field *from, uint64_t vertex_count, const f
         low = fmin(low, (double)values[n]);
         high = fmax(high, (double)values[n]);
     }
-    const double step = fmax(fabs(low), fabs(high)) * 0x1p-24;
+    const double step = step_between(low, high);
     if (is_beyond)
         notice("field '%s': values beyond float32, as which fields are carried, are infinite", from->name);
-    else if (high > low && step * 4096 > high - low)
+    else if (!is_told && high > low && step * STEPS_MOST > high - low)
         notice("field '%s' is carried as float32, which has steps of %.2g there, and its values differ by %.2g",
                from->name, step, high - low);
 }
@@ -108,7 +162,7 @@ int carry_to_mesh(carried *c, engine *e, const tc_extract_options *how, const tc
         if (!c->values[n]) return fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
         int status = engine_carry(e, how, &c->from[n], c->values[n]);
         if (status) return status;
-        tell_rounded(&c->from[n], mesh->vertex_count, c->values[n]);
+        tell_rounded(&c->from[n], c->is_narrow[n], mesh->vertex_count, c->values[n]);
         c->fields[n].values = c->values[n];
     }
     return 0;

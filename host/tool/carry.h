@@ -8,6 +8,7 @@ typedef struct carried {
     point_field *from;  /* what the input has */
     mesh_field *fields; /* of the vertices of the mesh last carried to */
     float **values;
+    uint8_t *is_narrow; /* whose values float32 hardly tells apart, as has been told */
     int count;
 } carried;
 
