@@ -176,6 +176,108 @@ class Carried(DataCase, GridCase):
         self.assertEqual(self.told("u8", [n for n in range(125)]), [])
 
 
+class StandardInput(DataCase, GridCase):
+    def pipe(self, status, data, *words, says="^"):
+        run = subprocess.run([test_cli.TOOL, *words], input=data, capture_output=True, timeout=600, cwd=self.folder.name)
+        self.assertEqual(run.returncode, status, run)
+        self.assertRegex(run.stderr.decode(), says)
+        return run.stdout
+
+    def same(self, name, iso, *more):
+        with open(self.path(name), "rb") as file:
+            data = file.read()
+        expected = self.extract([self.path(name)], iso, *more)["surfaces"][0]
+        words = ["extract", "-", "--iso", iso, *REFERENCE, "--json", *more, "-o", "o.ply"]
+        surface = json.loads(self.pipe(0, data, *words))["surfaces"][0]
+        self.assertEqual(surface["hash"], expected["hash"])
+        self.assertEqual(len(ply_read(self.path("o.ply"))[0]), expected["vertices"])
+        with open(self.path(name), "rb") as file:  # a file that the shell has opened
+            run = subprocess.run([test_cli.TOOL, *words], stdin=file, capture_output=True, cwd=self.folder.name)
+        self.assertEqual(json.loads(run.stdout)["surfaces"][0]["hash"], expected["hash"], run)
+
+    def test_formats(self):
+        values = [float(n % 16) for n in range(4096)]
+        self.generate("sphere", "a.nrrd")
+        self.same("a.nrrd", "100")
+        self.generate("sphere", "a.raw", "20,19,18", "u16")
+        self.same("a.raw", "100", "--dims", "20,19,18", "--type", "u16", "--spacing", "1,2,3")
+        self.write("a.vti", vti_text((16, 16, 16), [("f", "f32", values)]))
+        self.same("a.vti", "3.5")
+        cells = hexahedra((4, 4, 4))
+        self.write("a.vtu", vtu_text(lattice((4, 4, 4)), cells, [HEXAHEDRON] * len(cells), [("f", "f32", values[:64])]))
+        self.same("a.vtu", "3.5")
+        head = "# vtk DataFile Version 3.0\nx\n{}\nDATASET STRUCTURED_POINTS\nDIMENSIONS 64 64 64\nORIGIN 0 0 0\n" \
+               "SPACING 1 1 1\nPOINT_DATA 262144\nSCALARS f unsigned_char 1\nLOOKUP_TABLE default\n"
+        with open(self.path("a.vtk"), "wb") as file:  # large enough to be used where it lies
+            file.write(head.format("BINARY").encode() + bytes(n % 64 for n in range(64 ** 3)))
+        self.same("a.vtk", "3.5")
+        with open(self.path("a.mha"), "wb") as file:
+            file.write(b"NDims = 3\nDimSize = 8 8 8\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
+                       + bytes(n % 8 for n in range(512)))
+        self.same("a.mha", "3.5")
+        header = bytearray(352)
+        struct.pack_into("<i", header, 0, 348)
+        struct.pack_into("<8h", header, 40, 3, 8, 8, 8, 1, 1, 1, 1)
+        struct.pack_into("<2h", header, 70, 2, 8)
+        struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+        struct.pack_into("<f", header, 108, 352)
+        header[344:348] = b"n+1\0"
+        nifti = bytes(header) + bytes(n % 8 for n in range(512))
+        if "NIfTI" in self.expect(0, "--version").stdout:
+            for name, data in (("a.nii", nifti), ("a.nii.gz", gzip.compress(nifti))):
+                with open(self.path(name), "wb") as file:
+                    file.write(data)
+                self.same(name, "3.5")
+
+    def test_other_commands(self):
+        self.generate("sphere", "a.nrrd")
+        with open(self.path("a.nrrd"), "rb") as file:
+            data = file.read()
+        facts = json.loads(self.pipe(0, data, "info", "-", "--json"))
+        self.assertEqual((facts["input"], facts["dims"]), ("-", [20, 19, 18]))
+        self.pipe(0, data, "tetrahedralize", "-", "-o", "o.vtu", "--quiet")
+        expected = self.path("e.vtu")
+        self.expect(0, "tetrahedralize", self.path("a.nrrd"), "-o", expected, "--quiet")
+        with open(expected, "rb") as one, open(self.path("o.vtu"), "rb") as other:
+            self.assertEqual(one.read(), other.read())
+
+    def test_refusals(self):
+        self.pipe(4, b"", "info", "-", says="standard input is empty")
+        self.pipe(4, b"what", "info", "-", says="format is not known")
+        self.pipe(2, b"", "info", "-", "-", says="Plot3D grid and its solution: give the names")
+        self.pipe(2, b"", "info", "a.xyz", "-", says="Plot3D grid and its solution: give the names")
+        head = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: x.raw\n\n"
+        self.pipe(4, head, "info", "-", says="names a data file, 'x.raw', and nothing lies beside standard input")
+        mhd = b"NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = x.raw\n"
+        self.pipe(4, mhd, "info", "-", says="names a data file, 'x.raw', and nothing lies beside standard input")
+        self.pipe(4, bytes(7), "info", "-", "--dims", "2,2,2", "--type", "u8", says="7 bytes")
+        volume = self.generate("sphere", "a.nrrd")
+        with open(volume, "rb") as file:
+            run = subprocess.run([test_cli.TOOL, "extract", "-", "--iso", "1", *REFERENCE, "-o", volume, "--format",
+                                  "ply"], stdin=file, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 2, run)
+        self.assertRegex(run.stderr, "name another file")
+        self.assertEqual(self.files(), ["a.nrrd"])
+
+    def test_terminal(self):
+        master, slave = os.openpty()
+        run = subprocess.run([test_cli.TOOL, "info", "-"], stdin=slave, capture_output=True, text=True)
+        os.close(master)
+        os.close(slave)
+        self.assertEqual(run.returncode, 2, run)
+        self.assertRegex(run.stderr, "standard input is a terminal")
+
+    def test_interrupted(self):
+        with subprocess.Popen([test_cli.TOOL, "info", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+            run.stdin.write(b"NRRD")
+            run.stdin.flush()
+            with self.assertRaises(subprocess.TimeoutExpired):
+                run.wait(timeout=1)
+            run.terminate()
+            self.assertEqual(run.wait(timeout=60), 1)
+            self.assertRegex(run.stderr.read().decode(), "cancelled")
+
+
 if __name__ == "__main__":
     test_cli.TOOL = os.path.abspath(sys.argv[1])
     test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]

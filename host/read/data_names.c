@@ -21,6 +21,10 @@ static int has_parent(const char *name) {
 }
 
 int data_names_add(data_names *names, const char *header_path, const char *name) {
+    if (mapping_is_standard_input(header_path))
+        return fail(
+            STATUS_INPUT,
+            "-: names a data file, '%.200s', and nothing lies beside standard input: give the header's own name", name);
     size_t length = strlen(name);
     if (!length || length >= NAME_BYTES)
         return fail(STATUS_INPUT, "%s: names a data file of %zu characters; 1 to %d are possible", header_path, length,

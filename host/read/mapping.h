@@ -1,4 +1,4 @@
-/* mapping.h - whole files mapped into memory, read-only */
+/* mapping.h - whole files, or standard input, mapped into memory, read-only */
 #ifndef MAPPING_H
 #define MAPPING_H
 
@@ -9,8 +9,12 @@ typedef struct mapping {
     size_t size;
 } mapping;
 
-/* Maps a regular file. 0 or a status with text, *m zeroed. */
+/* Maps a regular file, or "-": all of standard input, which is read into memory once and mapped as often as one likes.
+ * 0 or a status with text, *m zeroed. */
 int mapping_open(const char *path, mapping *m);
+
+/* Whether path stands for standard input: no other files lie beside it. */
+int mapping_is_standard_input(const char *path);
 
 /* Nonzero where path is one of the million files mapped last in this process, under whatever name. */
 int mapping_was_opened(const char *path);

@@ -386,6 +386,11 @@ int nifti_read(const read_request *request, const mapping *file, volume *out) {
         if ((status = mapping_open(partner, &other))) goto cleanup;
         image_path = partner;
         image = &other;
+    } else if (!h.is_single && !has_data && mapping_is_standard_input(request->path)) {
+        status =
+            fail(STATUS_INPUT, "-: is the header of a pair .hdr/.img, and nothing lies beside standard input: give "
+                               "the header's own name");
+        goto cleanup;
     } else if (!by_image && !h.is_single && !has_data) {
         status =
             fail(STATUS_INPUT, "%s: is the header of a pair .hdr/.img, but the .img file is missing; put it beside",

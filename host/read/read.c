@@ -125,6 +125,7 @@ static readers find_readers(const read_request *request, const mapping *file) {
     if (starts_with(file, "# vtk DataFile Version")) return (readers){NULL, vtk_legacy_read};
     if (begins_as_vtk_xml(file)) return (readers){NULL, vtk_xml_read};
     if (begins_as_nifti(file)) return (readers){nifti_read, NULL};
+    if (mapping_is_standard_input(request->path) && starts_with(file, "\x1f\x8b")) return (readers){nifti_read, NULL};
     return readers_of_ending(request->path);
 }
 
@@ -175,6 +176,8 @@ static const char *name_of_unread(const char *path, const mapping *file) {
 
 static int refuse_unknown(const char *path, const mapping *file) {
     const char *name = name_of_unread(path, file);
+    if (mapping_is_standard_input(path) && !file->size)
+        return fail(STATUS_INPUT, "-: standard input is empty: what should send to it may have failed");
     if (name)
         return fail(STATUS_INPUT, "%s: is %s, which this program does not read; it reads %s", path, name,
                     volume_formats());
@@ -292,6 +295,9 @@ static int refuse_pair(const read_request *request) {
 int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
     mapping file;
+    if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
+        return fail(STATUS_USAGE, "-: standard input is one file, and two inputs are a Plot3D grid and its solution: "
+                                  "give the names of both");
     if (request->path2 && !may_be_plot3d(readers_of_ending(request->path))) return refuse_pair(request);
     int status = mapping_open(request->path, &file);
     if (status) return status;

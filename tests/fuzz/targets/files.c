@@ -66,6 +66,11 @@ int mapping_open(const char *path, mapping *m) {
     return 0;
 }
 
+int mapping_is_standard_input(const char *path) {
+    (void)path;
+    return 0;
+}
+
 void mapping_close(mapping *m) {
     if (m->bytes) munmap((void *)(uintptr_t)m->bytes, m->size);
     *m = (mapping){0};
