@@ -176,6 +176,44 @@ class Carried(DataCase, GridCase):
         self.assertEqual(self.told("u8", [n for n in range(125)]), [])
 
 
+class WideIntegers(DataCase, GridCase):
+    """64-bit integers become doubles: told where a field that is used, or the isovalue, is not the same any more."""
+
+    def both(self, last):
+        """An image as VTK XML and as VTK legacy, with a plain field and one of 64-bit integers."""
+        plain, wide = [n % 3 for n in range(27)], [n % 3 for n in range(26)] + [last]
+        arrays = "".join(f'<DataArray type="{kind}" Name="{name}">{" ".join(map(str, values))}</DataArray>'
+                         for name, kind, values in (("f", "UInt8", plain), ("ids", "Int64", wide)))
+        xml = self.write("a.vti", '<VTKFile type="ImageData"><ImageData WholeExtent="0 2 0 2 0 2"><Piece '
+                                  f'Extent="0 2 0 2 0 2"><PointData>{arrays}</PointData></Piece></ImageData></VTKFile>')
+        legacy = self.write("a.vtk", "# vtk DataFile Version 4.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3"
+                                     "\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 27\nSCALARS f unsigned_char 1\n"
+                                     f"LOOKUP_TABLE default\n{' '.join(map(str, plain))}\nSCALARS ids vtktypeint64 1\n"
+                                     f"LOOKUP_TABLE default\n{' '.join(map(str, wide))}\n")
+        return [legacy, xml] if "VTK XML" in self.expect(0, "--version").stdout else [legacy]
+
+    def test_fields(self):
+        rounds = ["field 'ids' has 64-bit integers that no double holds: each is taken as the nearest double"]
+        for last, expected in ((2 ** 53 + 1, rounds), (2 ** 60, []), (2 ** 63 - 1, rounds), (5, [])):
+            for path in self.both(last):
+                self.assertEqual(self.notices([path], "1.5", "--field", "f"), [])
+                self.assertEqual(self.notices([path], "1.5", "--field", "ids"), expected)
+                self.assertEqual(self.report("info", path)["notices"], expected)
+                self.assertEqual(self.report("info", path, "--field", "ids")["notices"], expected)
+                cut = self.report("tetrahedralize", path, "--field", "ids", "-o", self.path("o.vtu"))
+                self.assertEqual(cut["notices"], expected)
+                cut = self.report("tetrahedralize", path, "-o", self.path("o.vtu"))
+                self.assertEqual(cut["notices"], expected)
+
+    def test_isovalues(self):
+        [path] = self.both(2 ** 60)[:1]
+        for typed, taken in (("9007199254740993", "9007199254740992"), ("+009007199254740993", "9007199254740992"),
+                             ("-9007199254740993", "-9007199254740992"), ("9007199254740992", None), ("1", None),
+                             ("-0", None), ("00", None), ("1152921504606846976", None), ("0.1", None), ("1e23", None)):
+            told = [text for text in self.notices([path], typed, "--field", "ids") if "taken as" in text]
+            self.assertEqual(told, [f"isovalue {typed} is taken as {taken}, the nearest double"] if taken else [])
+
+
 class StandardInput(DataCase, GridCase):
     def pipe(self, status, data, *words, says="^"):
         run = subprocess.run([test_cli.TOOL, *words], input=data, capture_output=True, timeout=600, cwd=self.folder.name)

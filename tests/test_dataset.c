@@ -61,7 +61,7 @@ static void add_field(dataset_block *b, const char *name, int on_cells, int comp
                       const void *values) {
     dataset_field *f;
     if (dataset_field_add(b, &f)) abort();
-    *f = (dataset_field){name, on_cells, components, type, values};
+    *f = (dataset_field){name, on_cells, components, type, 0, values};
 }
 
 static void says(const char *text) { EXPECT(strstr(failure_text(), text), "'%s' is not in: %s", text, failure_text()); }

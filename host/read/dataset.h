@@ -14,7 +14,8 @@ typedef struct dataset_field {
     const char *name; /* "" where the format has no names */
     int on_cells;     /* a tuple per cell, not per point */
     int components;   /* values per tuple: 1 for a scalar */
-    tc_type type;     /* 64-bit integers have become f64 */
+    tc_type type;     /* 64-bit integers have become f64, */
+    int is_rounded;   /* some of them to the nearest, as no double holds them */
     const void *values;
 } dataset_field;
 

@@ -54,7 +54,7 @@ tc_type layout_type(const layout *l);
 int layout_is_plain(const layout *l, const unsigned char *stored);
 
 /* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of so many components, of layout_type.
- * STATUS_INPUT where a 64-bit integer has no exact double. */
+ * STATUS_INPUT where a 64-bit integer has no exact double, its row and those before it filled with the nearest. */
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
 
 /* Memory for samples, to be freed: page-aligned, so that devices can use it in place, and in huge pages where large,

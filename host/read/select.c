@@ -250,6 +250,7 @@ int scalar_select(dataset *d, const char *path, const field_request *request, sc
         status = check_component(d, path, f, request->component);
         if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n], &out->has_nodata);
         if (f->components > 1) out->component = request->component;
+        out->is_rounded |= f->is_rounded;
         out->is_averaged |= f->on_cells;
     }
     return status;

@@ -32,6 +32,7 @@ typedef struct scalar {
     const char *name;
     int component;   /* -1 of a field that has one; or COMPONENT_MAGNITUDE */
     int is_averaged; /* of cells */
+    int is_rounded;  /* as that of dataset_field, in some block */
     int has_nodata;  /* some value equals the request's nodata */
     scalar_block *blocks;
 } scalar;

@@ -33,7 +33,7 @@ int legacy_blank(legacy *r, int on_cells, const uint8_t *flags, int64_t count, u
     return 0;
 }
 
-static int add_field(legacy *r, const char *name, int type, int64_t components, const void *values) {
+static int add_field(legacy *r, const char *name, int type, int64_t components, const void *values, int is_rounded) {
     dataset_field *field;
     const char *kept = dataset_text(r->out, name);
     if (!kept || dataset_field_add(r->block, &field)) return STATUS_FAILED;
@@ -41,6 +41,7 @@ static int add_field(legacy *r, const char *name, int type, int64_t components, 
                              .on_cells = r->section == SECTION_CELLS,
                              .components = (int)components,
                              .type = (tc_type)type,
+                             .is_rounded = is_rounded,
                              .values = values};
     return 0;
 }
@@ -72,9 +73,8 @@ static int read_array(legacy *r, const char *name, int type, int64_t components)
         return legacy_fail(r, "has more than %d arrays; split it", LEGACY_FIELDS);
     int status = legacy_array(r, what, type, count, components, wanted, &values, wanted == type ? NULL : &rounded);
     if (status) return status;
-    if (rounded) dataset_notice(r->out, "%" PRIu64 " integers of '%.60s' beyond 2^53 were rounded", rounded, name);
     if (ghosts) return legacy_blank(r, r->section == SECTION_CELLS, values, count, ghosts);
-    return add_field(r, name, wanted, components, values);
+    return add_field(r, name, wanted, components, values, rounded > 0);
 }
 
 /* NAME TYPE, then the values. */
@@ -118,7 +118,7 @@ static int read_colors(legacy *r) {
         double scaled = 255.0 * (double)shares[i] + 0.5;
         bytes[i] = scaled >= 255 ? 255 : scaled > 0 ? (uint8_t)scaled : 0;
     }
-    return add_field(r, name, TC_U8, components, bytes);
+    return add_field(r, name, TC_U8, components, bytes, 0);
 }
 
 static int read_texture(legacy *r) {

@@ -400,11 +400,11 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     return status;
 }
 
-/* 64-bit integers become doubles where they lie; those that have none cost the field, not the file. */
+/* 64-bit integers become doubles where they lie; the nearest where none is the same. */
 static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
     uint64_t count;
     const void *values;
-    int wide = array->element > TC_F64;
+    int wide = array->element > TC_F64, is_rounded = 0;
     dataset_field *field;
     if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
     if (wide) {
@@ -416,10 +416,7 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
         if (!v.in_place && (status = vtk_xml_take(&v, memory))) return status;
         note_more(r, &v);
         layout convert = {.element = array->element, .dims = {(int64_t)count, 1, 1}, .stride = {1, 0, 0}};
-        if (layout_gather(v.label, &convert, from, memory)) {
-            return dataset_leave_out(r->out, names + array->name,
-                                     "it has 64-bit integers that no double holds exactly");
-        }
+        is_rounded = layout_gather(v.label, &convert, from, memory) != 0; /* one row, which is filled in any case */
         values = memory;
     } else {
         int status = array->is_bits ? load_bits(r, array, count, &values) : load_stored(r, array, count, &values);
@@ -430,6 +427,7 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
                              .on_cells = array->section == SECTION_CELL_DATA,
                              .components = (int)array->components,
                              .type = wide ? TC_F64 : (tc_type)array->element,
+                             .is_rounded = is_rounded,
                              .values = values};
     return 0;
 }

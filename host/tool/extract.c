@@ -256,6 +256,7 @@ static int make_surfaces(job *j) {
     for (size_t n = 0; n < count; n++) {
         surface_report *s = &j->report.surfaces[j->report.surface_count++];
         s->iso = &j->o->isovalues[n];
+        surface_tell_isovalue(s->iso);
         int status = make_surface(j, s);
         if (status) return status;
     }

@@ -15,6 +15,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define CHART_ROWS  16
 #define CHART_WIDTH 50
@@ -157,6 +158,21 @@ static void print_text(const facts *f) {
     print_field(f);
 }
 
+/* Fields are told of once, in whatever blocks they are; that which is chosen elsewhere. */
+static void tell_rounded(const facts *f) {
+    const dataset_block *first = f->d->blocks;
+    for (int n = 0; f->d->block_count && n < first->field_count; n++) {
+        const char *name = first->fields[n].name;
+        int is_rounded = 0;
+        for (int b = 0; b < f->d->block_count; b++) {
+            const dataset_field *same = block_field(&f->d->blocks[b], name);
+            is_rounded |= same && same->is_rounded;
+        }
+        if (is_rounded && !(f->field && f->field->is_rounded && strcmp(f->field->name, name) == 0))
+            input_tell_rounded(name);
+    }
+}
+
 /* Over the points of all blocks. */
 static int find_statistics(facts *f) {
     if (!f->field) return 0;
@@ -184,6 +200,7 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
         status = input_select(o, d, field);
         f->field = field;
     }
+    if (!status) tell_rounded(f);
     if (!status) status = find_statistics(f);
     if (!status) status = obstacle_find(o, d, f->field, f->obstacle);
     if (!status && *f->obstacle) notice("%s: nothing can be extracted: %s", f->path, f->obstacle);

@@ -58,9 +58,14 @@ void input_tell_average(const dataset *d, const char *name) {
            d->block_count > 1 ? ", in each piece alone: surfaces of neighbouring pieces may not meet" : "");
 }
 
+void input_tell_rounded(const char *name) {
+    notice("field '%s' has 64-bit integers that no double holds: each is taken as the nearest double", name);
+}
+
 int input_select(const options *o, dataset *d, scalar *out) {
     const field_request request = {o->field, o->component, o->has_nodata, o->nodata};
     int status = scalar_select(d, o->operands[0], &request, out);
+    if (!status && out->is_rounded) input_tell_rounded(out->name);
     if (!status && out->is_averaged) input_tell_average(d, out->name);
     if (!status && o->has_nodata && !out->has_nodata)
         notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", report_number(o->nodata).text,

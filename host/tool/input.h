@@ -19,6 +19,9 @@ int input_select(const options *o, dataset *d, scalar *out);
 /* The field's samples, an array per block, for statistics; from malloc, NULL with its failure's text without memory. */
 struct sample_array *input_samples(const dataset *d, const scalar *field);
 
+/* The notice that 64-bit integers of a field, one that is used, are no longer what the file says. */
+void input_tell_rounded(const char *name);
+
 /* The notice that a field of cells was averaged. */
 void input_tell_average(const dataset *d, const char *name);
 

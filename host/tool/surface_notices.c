@@ -11,6 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* -------------------------------------------------------------------------------------------------------- isovalue */
+
+void surface_tell_isovalue(const typed_isovalue *iso) {
+    char taken[400]; /* the digits of any double */
+    const char *text = iso->text + (*iso->text == '-' || *iso->text == '+');
+    if (text[strspn(text, "0123456789")]) return;
+    text += strspn(text, "0");
+    snprintf(taken, sizeof taken, "%.0f", fabs(iso->value));
+    if (strcmp(*text ? text : "0", taken) != 0)
+        notice("isovalue %s is taken as %s%s, the nearest double", iso->text, iso->value < 0 ? "-" : "", taken);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- empty */
 
 static void tell_empty(const surface_report *s, int has_range, const double range[2]) {

@@ -10,6 +10,9 @@
 #include "report.h"
 #include "select.h"
 
+/* An isovalue typed as a whole number that no double is: samples next to it may be on the wrong side. */
+void surface_tell_isovalue(const typed_isovalue *iso);
+
 /* An empty surface, with its reason: the range of the samples, where the isovalue is outside it. Returns 0 or
  * STATUS_FAILED. */
 int surface_tell_empty(const dataset *d, const scalar *field, const surface_report *s);

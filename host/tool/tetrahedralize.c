@@ -180,6 +180,10 @@ static int join_field(conversion *c, const char *name, dataset_field *out) {
     point_field from;
     int status = point_field_select(&c->data, c->o->operands[0], name, &from);
     if (status) return status;
+    int is_rounded = 0;
+    for (int n = 0; n < c->data.block_count; n++) is_rounded |= block_field(&c->data.blocks[n], name)->is_rounded;
+    if (is_rounded && !(c->field.blocks && c->field.is_rounded && strcmp(c->field.name, name) == 0))
+        input_tell_rounded(name);
     *out = from.blocks[0];
     if (!name[0]) out->name = "samples"; /* arrays of the format have names */
     if (c->data.block_count == 1) return 0;
