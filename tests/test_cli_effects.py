@@ -44,6 +44,18 @@ OPEN = {"COMMAND_TETRAHEDRALIZE": ("tetrahedralize", "two.vti", ["-o", "new.vtu"
 ROW = re.compile(r'{([A-Z_| ]+), "(--[a-z-]+)", (BEFORE|AFTER)_READING, (\w+), (REFUSED|TOLD),\s')
 
 
+def nifti(sizes=(1, 1, 1)):
+    """8 x 8 x 8 bytes, a ramp along x, with these voxel sizes."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 8, 8, 8, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)
+    struct.pack_into("<8f", header, 76, 1, *sizes, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    header[344:348] = b"n+1\0"
+    return bytes(header) + bytes(n % 8 for n in range(512))
+
+
 class Effects(GridCase):
     def setUp(self):
         super().setUp()
@@ -146,6 +158,30 @@ class Reports(DataCase, GridCase):
         result = self.expect(0, "info", self.path("a.nrrd"), says="^tetracubes: .*spacing along axis 2 is not known")
         self.assertNotIn("not known", result.stdout)
         self.assertIn("format        NRRD", result.stdout)
+
+
+class Numbers(DataCase):
+    """What people may type back reads back as the same number."""
+
+    def test_voxel_sizes_of_notices(self):
+        if "NIfTI" not in self.expect(0, "--version").stdout:
+            self.skipTest("no NIfTI")
+        with open(self.path("a.nii"), "wb") as file:
+            file.write(nifti((0.123456789, float("nan"), 1234567.875)))
+        told = self.expect(0, "info", self.path("a.nii"), says="voxel sizes").stderr
+        given, taken = re.search("voxel sizes (.*) \\(pixdim\\) are taken for (.*)\n", told).groups()
+        expected = [struct.unpack("<f", struct.pack("<f", size))[0] for size in (0.123456789, 1.0, 1234567.875)]
+        read = [struct.unpack("<f", struct.pack("<f", float(word)))[0] for word in taken.split()]
+        self.assertEqual((given.split()[1], read), ("nan", expected))
+
+    def test_isovalues_of_trials(self):
+        if not test_cli.HAS_DEVICE:
+            self.skipTest("needs a device")
+        with open(self.path("v.txt"), "w") as file:
+            file.write("sphere 16 16 16 f32 100.0000001 tetra - 1 1 0123456789abcdef\n")
+        result = test_cli.tool("selftest", "--vectors", self.path("v.txt"))
+        self.assertEqual(result.returncode, 3, result)
+        self.assertIn("isovalue 100.0000001,", result.stdout)
 
 
 class Carried(DataCase, GridCase):
@@ -253,16 +289,8 @@ class StandardInput(DataCase, GridCase):
             file.write(b"NDims = 3\nDimSize = 8 8 8\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
                        + bytes(n % 8 for n in range(512)))
         self.same("a.mha", "3.5")
-        header = bytearray(352)
-        struct.pack_into("<i", header, 0, 348)
-        struct.pack_into("<8h", header, 40, 3, 8, 8, 8, 1, 1, 1, 1)
-        struct.pack_into("<2h", header, 70, 2, 8)
-        struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
-        struct.pack_into("<f", header, 108, 352)
-        header[344:348] = b"n+1\0"
-        nifti = bytes(header) + bytes(n % 8 for n in range(512))
         if "NIfTI" in self.expect(0, "--version").stdout:
-            for name, data in (("a.nii", nifti), ("a.nii.gz", gzip.compress(nifti))):
+            for name, data in (("a.nii", nifti()), ("a.nii.gz", gzip.compress(nifti()))):
                 with open(self.path(name), "wb") as file:
                     file.write(data)
                 self.same(name, "3.5")

@@ -13,6 +13,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "shortest.h"
 #include "source.h"
 #include "world.h"
 
@@ -239,8 +240,10 @@ static void take_voxel_sizes(const nifti_header *h, double sizes[3], volume *out
         is_changed |= i + 1 <= h->dim[0] && sizes[i] != given;
     }
     if (is_changed && !h->request->has_spacing)
-        volume_notice(out, "its voxel sizes %g %g %g (pixdim) are taken for %g %g %g", h->pixdim[1], h->pixdim[2],
-                      h->pixdim[3], sizes[0], sizes[1], sizes[2]);
+        volume_notice(out, "its voxel sizes %s %s %s (pixdim) are taken for %s %s %s",
+                      shortest_coordinate(h->pixdim[1]).text, shortest_coordinate(h->pixdim[2]).text,
+                      shortest_coordinate(h->pixdim[3]).text, shortest_coordinate(sizes[0]).text,
+                      shortest_coordinate(sizes[1]).text, shortest_coordinate(sizes[2]).text);
 }
 
 static double finite_or_zero(double value) { return isfinite(value) ? value : 0; }
@@ -287,7 +290,9 @@ static void fill_scaling(const nifti_header *h, layout *l, volume *out) {
     if (!isfinite(h->intercept))
         volume_notice(out, "its intercept (scl_inter) is not a finite number and is taken for 0");
     if (h->slope == 1 && intercept == 0) return;
-    if (h->is_analyze) volume_notice(out, "its values are multiplied by %g (funused1), as SPM does", h->slope);
+    if (h->is_analyze)
+        volume_notice(out, "its values are multiplied by %s (funused1), as SPM does",
+                      shortest_coordinate(h->slope).text);
     l->scaled = 1;
     l->slope = h->slope;
     l->intercept = intercept;

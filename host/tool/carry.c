@@ -72,10 +72,10 @@ static int tell_narrow(const dataset *d, const point_field *from) {
         notice("field '%s'%s is carried as float32, which has steps of %.2g there, and its values, %s to %s, differ by "
                "%.2g",
                from->name, from->components > 1 ? ", a component of it," : "", step_between(range[0], range[1]),
-               report_number(range[0]).text, report_number(range[1]).text, range[1] - range[0]);
+               shortest_number(range[0]).text, shortest_number(range[1]).text, range[1] - range[0]);
     }
     if (constant_count == from->components && constant_count == 1)
-        notice("field '%s' is constant: every value is %s", from->name, report_number(value).text);
+        notice("field '%s' is constant: every value is %s", from->name, shortest_number(value).text);
     else if (constant_count == from->components && constant_count)
         notice("field '%s' is constant: every point has the same %d values", from->name, constant_count);
     return is_narrow;

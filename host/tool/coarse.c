@@ -147,7 +147,7 @@ int coarse_check_file(const coarse_surface *s, const double zero[3], int digits)
     else
         notice("isovalue %s: --origin-at lies so far from the surface that the file's numbers have steps of %.2g where "
                "cells are %.2g wide: shapes are lost; choose a point near %s,%s,%s",
-               s->iso->text, found.step, found.size, report_number(origin[0]).text, report_number(origin[1]).text,
-               report_number(origin[2]).text);
+               s->iso->text, found.step, found.size, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
+               shortest_number(origin[2]).text);
     return 0;
 }

@@ -139,7 +139,7 @@ static void field_text(const dataset_block *b, const dataset_field *f) {
     for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
         double range[2];
         if (range_of(b, f, c, range))
-            printf("%s %s to %s", c ? ";" : ",", report_number(range[0]).text, report_number(range[1]).text);
+            printf("%s %s to %s", c ? ";" : ",", shortest_number(range[0]).text, shortest_number(range[1]).text);
         else
             printf("%s nothing finite", c ? ";" : ",");
     }
@@ -162,12 +162,12 @@ static void cells_text(const dataset_block *b) {
 
 void describe_place_text(const dataset *d, const dataset_block *b) {
     printf("spacing      ");
-    for (int axis = 0; axis < 3; axis++) printf(" %s", report_number(describe_spacing(b, axis)).text);
+    for (int axis = 0; axis < 3; axis++) printf(" %s", shortest_number(describe_spacing(b, axis)).text);
     printf("\nworld space   %s\n", d->space[0] ? d->space : "not named");
     for (int r = 0; r < 3; r++)
         printf("%s%s i + %s j + %s k + %s\n", r ? "              " : "index->world  ",
-               report_number(b->matrix[r][0]).text, report_number(b->matrix[r][1]).text,
-               report_number(b->matrix[r][2]).text, report_number(b->matrix[r][3]).text);
+               shortest_number(b->matrix[r][0]).text, shortest_number(b->matrix[r][1]).text,
+               shortest_number(b->matrix[r][2]).text, shortest_number(b->matrix[r][3]).text);
 }
 
 void describe_values_text(const dataset *d, const dataset_block *b) {
@@ -178,7 +178,7 @@ void describe_values_text(const dataset *d, const dataset_block *b) {
     for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
         double range[2];
         if (range_of(b, f, c, range))
-            printf("  %-11d %s to %s\n", c, report_number(range[0]).text, report_number(range[1]).text);
+            printf("  %-11d %s to %s\n", c, shortest_number(range[0]).text, shortest_number(range[1]).text);
     }
 }
 
@@ -197,10 +197,10 @@ static void block_text(const dataset *d, const dataset_block *b) {
     if (b->kind == GRID_UNIFORM) describe_place_text(d, b);
     if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
     if (b->point_count)
-        printf("bounds        %s %s %s to %s %s %s\n", report_coordinate(all.low[0]).text,
-               report_coordinate(all.low[1]).text, report_coordinate(all.low[2]).text,
-               report_coordinate(all.high[0]).text, report_coordinate(all.high[1]).text,
-               report_coordinate(all.high[2]).text);
+        printf("bounds        %s %s %s to %s %s %s\n", shortest_coordinate(all.low[0]).text,
+               shortest_coordinate(all.low[1]).text, shortest_coordinate(all.low[2]).text,
+               shortest_coordinate(all.high[0]).text, shortest_coordinate(all.high[1]).text,
+               shortest_coordinate(all.high[2]).text);
     printf(b->field_count ? "fields\n" : "fields        none\n");
     for (int n = 0; n < b->field_count; n++) field_text(b, &b->fields[n]);
 }

@@ -182,7 +182,7 @@ static void describe_mesh(const job *j, const shown_surface *shown, surface_repo
     s->vertex_count = m->vertex_count;
     s->triangle_count = m->triangle_count;
     s->active_cell_count = m->active_cell_count;
-    s->soup_vertex_count = o->soup && o->output ? 3 * m->triangle_count : 0;
+    s->soup_vertex_count = j->o->soup && j->o->output ? 3 * m->triangle_count : 0;
     s->classify_ms = m->timings.classify_ms;
     s->emit_ms = m->timings.emit_ms;
     s->readback_ms = m->timings.readback_ms;

@@ -105,7 +105,7 @@ static void print_chart(const statistics *s) {
     printf("histogram     (from, count, bar of its square root)\n");
     for (int r = 0; r * merged < s->bin_count; r++) {
         int width = (int)lround(CHART_WIDTH * sqrt((double)rows[r] / (double)most));
-        printf("  %22s %11" PRIu64 " %.*s\n", report_number(s->low + r * merged * s->width).text, rows[r], width,
+        printf("  %22s %11" PRIu64 " %.*s\n", shortest_number(s->low + r * merged * s->width).text, rows[r], width,
                "##################################################");
     }
 }
@@ -117,7 +117,7 @@ static void print_suggestions(const facts *f) {
            *f->obstacle ? f->obstacle
            : count      ? "worth trying:"
                         : "none: no value separates the samples");
-    for (int n = 0; n < count; n++) printf("  %22s %s\n", report_number(good[n].isovalue).text, good[n].reason);
+    for (int n = 0; n < count; n++) printf("  %22s %s\n", shortest_number(good[n].isovalue).text, good[n].reason);
 }
 
 static void print_image(const facts *f) {
@@ -141,7 +141,7 @@ static void print_field(const facts *f) {
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
     if (s->finite_count)
-        printf("range         %s to %s\n", report_number(s->minimum).text, report_number(s->maximum).text);
+        printf("range         %s to %s\n", shortest_number(s->minimum).text, shortest_number(s->maximum).text);
     if (s->nonfinite_count) printf("not finite    %" PRIu64 " samples, treated as missing\n", s->nonfinite_count);
     if (s->missing_count) printf("missing       %" PRIu64 " samples, blanked or equal to --nodata\n", s->missing_count);
     if (s->bin_count) print_chart(s);
@@ -181,7 +181,7 @@ static int find_statistics(facts *f) {
     statistics_of(arrays, f->d->block_count, &f->s);
     if (f->s.finite_count > 1 && f->s.minimum == f->s.maximum)
         notice("%s: the field%s%s is constant: every sample is %s", f->path, f->field->name[0] ? " " : "",
-               f->field->name, report_number(f->s.minimum).text);
+               f->field->name, shortest_number(f->s.minimum).text);
     free(arrays);
     return 0;
 }

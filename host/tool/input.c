@@ -68,7 +68,7 @@ int input_select(const options *o, dataset *d, scalar *out) {
     if (!status && out->is_rounded) input_tell_rounded(out->name);
     if (!status && out->is_averaged) input_tell_average(d, out->name);
     if (!status && o->has_nodata && !out->has_nodata)
-        notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", report_number(o->nodata).text,
+        notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", shortest_number(o->nodata).text,
                out->is_averaged ? "cell's value" : "sample", out->name[0] ? "field '" : "the input", out->name,
                out->name[0] ? "'" : "");
     return status;

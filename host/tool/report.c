@@ -45,29 +45,6 @@ int report_digits(double value) {
     return 17;
 }
 
-/* Whole numbers of up to 15 digits are printed as such: 20, not 2e+01. */
-static int is_plain(double value) { return value == floor(value) && fabs(value) < 1e15; }
-
-number_text report_number(double value) {
-    number_text number;
-    snprintf(number.text, sizeof number.text, "%.0f", value);
-    for (int digits = 1; digits <= 17 && !is_plain(value); digits++) {
-        snprintf(number.text, sizeof number.text, "%.*g", digits, value);
-        if (strtod(number.text, NULL) == value) break;
-    }
-    return number;
-}
-
-number_text report_coordinate(double value) {
-    number_text number;
-    if ((double)(float)value != value || is_plain(value)) return report_number(value);
-    for (int digits = 1; digits <= 9; digits++) {
-        snprintf(number.text, sizeof number.text, "%.*g", digits, value);
-        if (strtof(number.text, NULL) == (float)value) break;
-    }
-    return number;
-}
-
 void report_add_notices(json_t *object) {
     json_t *notices = notices_json();
     if (!notices) lacks_memory = 1;
@@ -209,7 +186,7 @@ static void bounds_text(const surface_report *s) {
     printf("  bounds     ");
     for (int end = 0; end < 2 && has_bounds(s); end++)
         for (int axis = 0; axis < 3; axis++)
-            printf("%s %s", end && !axis ? " to" : "", report_coordinate(s->summary.bounds[end][axis]).text);
+            printf("%s %s", end && !axis ? " to" : "", shortest_coordinate(s->summary.bounds[end][axis]).text);
     printf(has_bounds(s) ? "\n" : " none\n");
 }
 
@@ -229,8 +206,8 @@ static void surface_text(const surface_report *s, const char *cells) {
         bounds_text(s);
         if (!s->has_origin) printf("  origin      of each block its own\n");
         if (s->has_origin && (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0))
-            printf("  origin      %s %s %s\n", report_number(s->origin[0]).text, report_number(s->origin[1]).text,
-                   report_number(s->origin[2]).text);
+            printf("  origin      %s %s %s\n", shortest_number(s->origin[0]).text, shortest_number(s->origin[1]).text,
+                   shortest_number(s->origin[2]).text);
         printf("  hash        %016" PRIx64 "\n", s->hash);
         printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
                s->readback_ms);

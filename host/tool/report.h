@@ -10,6 +10,7 @@
 
 #include "mesh_check.h"
 #include "options.h"
+#include "shortest.h"
 #include "tetracubes.h"
 
 #include <jansson.h>
@@ -74,16 +75,6 @@ json_t *report_integers(const int64_t values[3]);
 
 /* Significant digits, 15 to 17, that read back the same double. */
 int report_digits(double value);
-
-/* The fewest digits that read back the same double. To be used within the expression that calls it:
- * printf("%s", report_number(value).text). */
-typedef struct number_text {
-    char text[32];
-} number_text;
-number_text report_number(double value);
-
-/* Likewise of a coordinate that a float holds: the fewest digits that read back the same float. */
-number_text report_coordinate(double value);
 
 /* Adds "notices": all that notice() has been called with. */
 void report_add_notices(json_t *object);

@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "selftest.h"
+#include "shortest.h"
 #include "verify.h"
 
 #include <inttypes.h>
@@ -69,9 +70,9 @@ static int run_trial(group_run *r, const trial *t, tc_context *device, char *tex
 }
 
 static void name_trial(const trial *t, const launch *l, char *name, size_t bytes) {
-    int length = snprintf(name, bytes, "%s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %g",
+    int length = snprintf(name, bytes, "%s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s",
                           t->field ? t->field : "quotients", t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type),
-                          t->isovalue);
+                          shortest_number(t->isovalue).text);
     const struct {
         const char *what;
         uint64_t value;
@@ -189,8 +190,8 @@ static int run_vectors(const selftest_job *job) {
         char text[700] = "";
         if (job->quick && !is_quick(v)) continue;
         if (number++ < job->first) continue;
-        child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %g, %s, %s", number - 1, v->field,
-                     v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), v->isovalue,
+        child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s, %s, %s", number - 1, v->field,
+                     v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), shortest_number(v->isovalue).text,
                      v->method == TC_METHOD_HYBRID ? "hybrid" : "tetra", v->options);
         status = vector_try(v, device, text, sizeof text);
         if (!status) report_trial(text);

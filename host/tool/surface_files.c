@@ -153,7 +153,7 @@ static int tell_origin(const options *o, const coarse_surface *source, const sho
     if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
         notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %s,%s,%s "
                "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
-               report_number(origin[0]).text, report_number(origin[1]).text, report_number(origin[2]).text);
+               shortest_number(origin[0]).text, shortest_number(origin[1]).text, shortest_number(origin[2]).text);
     return engine_origins_differ(source->engine) ? coarse_check_file(source, origin, digits) : 0;
 }
 

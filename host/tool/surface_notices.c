@@ -27,7 +27,7 @@ void surface_tell_isovalue(const typed_isovalue *iso) {
 
 static void tell_empty(const surface_report *s, int has_range, const double range[2]) {
     const char *iso = s->iso->text;
-    const number_text least = report_number(range[0]), most = report_number(range[1]);
+    const number_text least = shortest_number(range[0]), most = shortest_number(range[1]);
     if (!has_range)
         notice("isovalue %s: the surface is empty: every sample is missing", iso);
     else if (range[0] == range[1])
@@ -77,7 +77,7 @@ static void tell_zero_area(const scalar *field, const surface_report *s, uint64_
         notice("isovalue %s: %" PRIu64 " of %" PRIu64 " triangles have no area, as samples equal the isovalue: choose "
                "a value between those of the samples%s%s, or remove them by --drop-degenerate",
                s->iso->text, degenerate, s->triangle_count, has_half ? ", as " : "",
-               has_half ? report_number(s->iso->value - 0.5).text : "");
+               has_half ? shortest_number(s->iso->value - 0.5).text : "");
     else
         notice("isovalue %s: %" PRIu64 " of %" PRIu64 " triangles have no area, though no sample equals the isovalue: "
                "cells may be flat; --drop-degenerate removes such triangles",
