@@ -12,6 +12,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "mesh_separate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -249,17 +250,36 @@ static int compare_edges(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Edges of more than two triangles. Takes the memory of the fans. */
-static uint64_t count_crowded(const job *j) {
-    uint64_t *edges = j->around, count = 0, crowded = 0;
-    for (uint64_t c = 0; c < 3 * j->near_count; c++) {
-        if (j->is_dropped[c / 3]) continue;
-        const uint32_t a = new_vertex(j, c), b = new_vertex(j, next_corner(c));
-        edges[count++] = (uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a);
-    }
+/* Edges that are passed several times in one direction, rising, in the memory of the fans; how many there are. */
+static uint64_t find_crowded(const job *j) {
+    uint64_t *edges = j->around, count = 0, crowded = 0, kept = 0;
+    for (uint64_t c = 0; c < 3 * j->near_count; c++)
+        if (!j->is_dropped[c / 3]) edges[count++] = (uint64_t)new_vertex(j, c) << 32 | new_vertex(j, next_corner(c));
     qsort(edges, (size_t)count, sizeof *edges, compare_edges);
-    for (uint64_t n = 2; n < count; n++) crowded += edges[n] == edges[n - 2] && (n == 2 || edges[n] != edges[n - 3]);
-    return crowded;
+    for (uint64_t n = 1; n < count; n++) {
+        const uint64_t from = edges[n] >> 32, to = edges[n] & UINT32_MAX;
+        if (edges[n] == edges[n - 1]) edges[crowded++] = (from < to ? from : to) << 32 | (from < to ? to : from);
+    }
+    qsort(edges, (size_t)crowded, sizeof *edges, compare_edges);
+    for (uint64_t n = 0; n < crowded; n++)
+        if (!kept || edges[n] != edges[kept - 1]) edges[kept++] = edges[n];
+    return kept;
+}
+
+/* Whether it is a vertex whose corners stay together. */
+static int is_kept_whole(const job *j, const collapsed_mesh *mesh, uint64_t v) {
+    const uint32_t m = j->members[mesh->sources[v]];
+    return m != NO_MEMBER && j->is_whole[m];
+}
+
+/* Sheets that only dropped triangles held apart get edges of their own, but where the mesh had such edges before. */
+static int separate(const job *j, collapsed_mesh *mesh) {
+    uint64_t *edges = j->around, count = 0;
+    mesh->crowded_edges = find_crowded(j);
+    for (uint64_t n = 0; n < mesh->crowded_edges; n++)
+        if (!is_kept_whole(j, mesh, edges[n] >> 32) && !is_kept_whole(j, mesh, edges[n] & UINT32_MAX))
+            edges[count++] = edges[n];
+    return count ? mesh_separate(mesh, edges, count) : 0;
 }
 
 static int make_result(job *j, collapsed_mesh *result) {
@@ -273,8 +293,7 @@ static int make_result(job *j, collapsed_mesh *result) {
     if (!result->triangles || !result->sources) return fail(STATUS_FAILED, "out of memory for the smaller mesh");
     fill_sources(j, result->sources);
     fill_triangles(j, result->triangles);
-    result->crowded_edges = count_crowded(j);
-    return 0;
+    return separate(j, result);
 }
 
 int mesh_collapse(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count,

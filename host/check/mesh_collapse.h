@@ -5,7 +5,8 @@
  * is contracted: vertices that such edges join become one, and triangles with two corners there are dropped. What their
  * other two edges joined is joined to each other, so an edge keeps its two triangles, and the border stays what it was.
  * Vertices at one position that no such edge joins (two sheets that touch) stay apart. A sheet that is pinched off at a
- * point gets a vertex on each side; a component without any area goes.
+ * point gets a vertex on each side, one that is pinched off along an edge an edge on each side (mesh_separate.h); a
+ * component without any area goes.
  *
  * Not dropped: triangles whose three corners are apart on a line. Nothing is moved.
  */
@@ -20,7 +21,7 @@ typedef struct collapsed_mesh {
     uint32_t *sources;   /* the vertex of the mesh that each vertex is: its place, normal and values. Not falling; one
                             may stand several times, where a sheet was pinched off; from malloc */
     uint64_t dropped_count; /* triangles */
-    uint64_t crowded_edges; /* of more than two triangles: where sheets with only dropped ones between them meet */
+    uint64_t crowded_edges; /* passed twice or more in one direction: the mesh had such edges there before */
 } collapsed_mesh;
 
 /* positions and triangles as those of mesh_check, indices valid. Returns 0 and a mesh to be released, or STATUS_FAILED
