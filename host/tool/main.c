@@ -41,19 +41,21 @@ static const command commands[] = {
      "Extracts the surface that separates samples >= V from samples below it, by marching\n"
      "tetrahedra, from uniform, rectilinear, curvilinear and unstructured grids. Vertices are\n"
      "shared, triangles face the lower values, and the same input gives the same bytes on every\n"
-     "device. Two INPUTs are a Plot3D grid and its solution or function file.\n"
+     "device. Two INPUTs are a Plot3D grid and its solution or function file; - is standard input.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
      "  tetracubes extract dem.mha --iso 0 --nodata -9999 --verify --json\n"
+     "  gzip -dc ct.nrrd.gz | tetracubes extract - --iso 300 -o ct.ply\n"
      "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"
      "  tetracubes extract engine.vtu --field temperature --iso 400 -o hot.ply"},
     {"info", COMMAND_INFO, info_run, NULL, "what a file holds, and isovalues worth trying",
      "tetracubes info INPUT... [options]",
      "Prints the kind of grid, its sizes and place, cells by type and fields with their ranges, for\n"
      "every block; then, of the one field or the one that --field names, the histogram of the finite\n"
-     "samples and isovalues worth trying. Two INPUTs are a Plot3D grid and its solution.\n"
+     "samples and isovalues worth trying. Two INPUTs are a Plot3D grid and its solution; - is standard\n"
+     "input.\n"
      "\n"
      "  tetracubes info head.nii.gz\n"
      "  tetracubes info engine.vtu --field temperature\n"
@@ -63,7 +65,7 @@ static const command commands[] = {
      "Cuts the cells of a grid, structured or not, into a conforming complex of tetrahedra: the one\n"
      "that surfaces are extracted from. All fields at points are written, those of cells averaged;\n"
      "several blocks follow each other in one grid. Cells with a corner where the only field, or the\n"
-     "one that --field names, has no value are left out.\n"
+     "one that --field names, has no value are left out. An INPUT of - is standard input.\n"
      "\n"
      "  tetracubes tetrahedralize engine.vtk -o engine-tetrahedra.vtu\n"
      "  tetracubes tetrahedralize grid.xyz flow.q -o flow.vtu"},

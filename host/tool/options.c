@@ -111,8 +111,8 @@ static const option table[] = {
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
-     "check the mesh itself: manifold, oriented; Euler characteristic, area,\n"
-     "volume (boundary edges are reported, they are no fault)"},
+     "check the mesh itself: manifold, oriented; Euler characteristic, area, of\n"
+     "closed surfaces volume (boundary edges are reported, they are no fault)"},
     {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
      "a missing corner is left out; of f32 samples the float nearest to V counts"},
