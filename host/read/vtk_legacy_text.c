@@ -87,7 +87,7 @@ static int hexadecimal(char c) {
 
 /* Control characters stay encoded: names are printed, and chosen on a command line. */
 int legacy_name(legacy *r, char name[LEGACY_WORD]) {
-    char word[LEGACY_WORD], plain[LEGACY_WORD];
+    char word[LEGACY_WORD] = "", plain[LEGACY_WORD];
     size_t length = 0;
     int status = legacy_need(r, "the name of an array", word);
     name[0] = 0;
