@@ -129,8 +129,11 @@ static inline const char *file_path(const char *name) {
     return path;
 }
 
+/* A new file in place of one with this name: of one that is cut short and written again, file systems (ext4) wait for
+ * the disk. */
 static inline const char *file_write(const char *name, const void *data, size_t size) {
     const char *path = file_path(name);
+    unlink(path);
     FILE *file = fopen(path, "wb");
     if (!file || fwrite(data, 1, size, file) != size || fclose(file)) {
         printf("cannot write %s\n", path);

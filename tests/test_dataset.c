@@ -338,6 +338,7 @@ static void averages_agree_with_gathering(void) {
 static const char *file_of(const char *name, const void *bytes, size_t size) {
     static char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
+    unlink(path);
     FILE *f = fopen(path, "wb");
     if (!f || fwrite(bytes, 1, size, f) != size || fclose(f)) abort();
     return path;
