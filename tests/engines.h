@@ -22,6 +22,17 @@ static inline tc_context *context_open(const tc_context_options *options) {
     return context;
 }
 
+/* PoCL takes ten seconds to optimise a kernel for groups of work-items, which no CPU gets unless it is asked for. Where
+ * TEST_PLAIN_GROUPS is in the environment, as in the quick tier, what is built after this call is optimised for one
+ * work-item only; long_TEST runs the same tests with all kernels optimised. */
+static inline void build_for(uint32_t work_items) {
+    if (!getenv("TEST_PLAIN_GROUPS")) return;
+    if (work_items > 1)
+        setenv("POCL_EXTRA_BUILD_FLAGS", "-cl-opt-disable", 1);
+    else
+        unsetenv("POCL_EXTRA_BUILD_FLAGS");
+}
+
 static inline tc_context *reference_open(void) {
     tc_context_options options;
     tc_context_options_init(&options);

@@ -67,6 +67,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
     tc_context_options_init(&options);
     options.own_buffers = own_buffers;
     options.work_items = work_items;
+    build_for(work_items);
     if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
     tc_context *contexts[2] = {context_open(&options), reference_open()};
     tc_grid_options_init(&grid);
@@ -85,6 +86,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
         tc_grid_destroy(grids[n]);
         tc_context_destroy(contexts[n]);
     }
+    build_for(1);
     free(samples);
 }
 

@@ -121,11 +121,13 @@ static void expect_variation(const tc_context_options *options, const subject *s
     snprintf(how, sizeof how, "%u work-items, %u groups, tiles of %u, %u polls, division %d", options->work_items,
              options->work_groups, options->tile_bricks, options->spin_limit, options->division);
     if (!test_chosen(how)) return;
+    build_for(options->work_items);
     tc_context *context = context_open(options);
     for (uint32_t repeat = 0; repeat < (options->spin_limit ? 3 : 1); repeat++)
         if (extract(context, &s->grid, &s->how, &mesh, &data)) expect_mesh(s, &data, how);
     tc_mesh_destroy(mesh);
     tc_context_destroy(context);
+    build_for(1);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ work */
