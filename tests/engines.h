@@ -22,15 +22,12 @@ static inline tc_context *context_open(const tc_context_options *options) {
     return context;
 }
 
-/* PoCL takes ten seconds to optimise a kernel for groups of work-items, which no CPU gets unless it is asked for. Where
- * TEST_PLAIN_GROUPS is in the environment, as in the quick tier, what is built after this call is optimised for one
- * work-item only; long_TEST runs the same tests with all kernels optimised. */
-static inline void build_for(uint32_t work_items) {
-    if (!getenv("TEST_PLAIN_GROUPS")) return;
-    if (work_items > 1)
-        setenv("POCL_EXTRA_BUILD_FLAGS", "-cl-opt-disable", 1);
-    else
-        unsetenv("POCL_EXTRA_BUILD_FLAGS");
+/* From here on nothing but kernels for groups of work-items is built. PoCL takes ten seconds to optimise one, which no
+ * CPU gets unless it is asked for: where TEST_PLAIN_GROUPS is in the environment, as in the quick tier, they are not
+ * optimised; long_groups_TEST runs the same test with all kernels optimised. PoCL does not go back once it was told, so
+ * groups come last. */
+static inline void groups_begin(void) {
+    if (getenv("TEST_PLAIN_GROUPS")) setenv("POCL_EXTRA_BUILD_FLAGS", "-cl-opt-disable", 1);
 }
 
 static inline tc_context *reference_open(void) {

@@ -67,7 +67,6 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
     tc_context_options_init(&options);
     options.own_buffers = own_buffers;
     options.work_items = work_items;
-    build_for(work_items);
     if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
     tc_context *contexts[2] = {context_open(&options), reference_open()};
     tc_grid_options_init(&grid);
@@ -86,7 +85,6 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
         tc_grid_destroy(grids[n]);
         tc_context_destroy(contexts[n]);
     }
-    build_for(1);
     free(samples);
 }
 
@@ -131,9 +129,10 @@ int main(int argc, char **argv) {
     random_state = 3;
     for (tc_type type = TC_U8; type <= TC_F64; type++)
         for (int n = 0; n < 4; n++) test_isovalues(type, n & 1, 1, n & 2);
+    if (test_chosen("unread")) test_unread();
+    groups_begin();
     test_isovalues(TC_U8, false, 64, true);
     test_isovalues(TC_F32, true, 32, false);
-    if (test_chosen("unread")) test_unread();
     EXPECT(slab_count_most > 2 || !test_chosen("slabs"), "no more than %u slabs", slab_count_most);
     return EXPECT_DONE();
 }

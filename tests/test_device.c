@@ -121,21 +121,19 @@ static void expect_variation(const tc_context_options *options, const subject *s
     snprintf(how, sizeof how, "%u work-items, %u groups, tiles of %u, %u polls, division %d", options->work_items,
              options->work_groups, options->tile_bricks, options->spin_limit, options->division);
     if (!test_chosen(how)) return;
-    build_for(options->work_items);
     tc_context *context = context_open(options);
     for (uint32_t repeat = 0; repeat < (options->spin_limit ? 3 : 1); repeat++)
         if (extract(context, &s->grid, &s->how, &mesh, &data)) expect_mesh(s, &data, how);
     tc_mesh_destroy(mesh);
     tc_context_destroy(context);
-    build_for(1);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ work */
 
-static void test_work_shapes(void) {
+static void test_work_shapes(int first, int end) {
     static const uint32_t items[] = {1, 32, 64, 256}, groups[] = {1, 2, 3, 16}, tiles[] = {1, 27, 7, 1000};
     tc_context_options options;
-    for (int i = 0; i < (method == TC_METHOD_TETRA ? 4 : 2); i++) { /* building for many work-items takes PoCL long */
+    for (int i = first; i < end; i++) {
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
         for (int n = 0; n < 4; n++) {
             tc_context_options_init(&options);
@@ -423,7 +421,7 @@ int main(int argc, char **argv) {
     tc_context_options_init(&options);
     options.own_buffers = own_buffers;
     tc_context *reference = reference_open(), *device = context_open(&options);
-    test_work_shapes();
+    test_work_shapes(0, 1);
     test_divisions();
     test_memory_budgets(&subjects[GENTLE]);
     test_memory_budgets(&subjects[GENTLE_MISSING]);
@@ -432,6 +430,8 @@ int main(int argc, char **argv) {
     if (test_chosen("description")) test_description(device);
     if (test_chosen("convergence")) test_sphere_converges(device);
     if (test_chosen("memory per sample")) test_memory_per_sample();
+    groups_begin();
+    test_work_shapes(1, method == TC_METHOD_TETRA ? 4 : 2); /* building for many work-items takes PoCL long */
     tc_context_destroy(reference);
     tc_context_destroy(device);
     for (int n = 0; n < SUBJECTS; n++) subject_close(&subjects[n]);
