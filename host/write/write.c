@@ -117,7 +117,8 @@ static int set_offsets(shown_mesh *s, const mesh_write_options *options, const f
     const int count = options ? options->part_count : 0;
     const mesh_part *from = count ? options->parts : &whole;
     const double *at = options ? options->origin_at : NULL;
-    const double *zero = at ? at : f->has_doubles ? (double[3]){0} : s->mesh->origin;
+    static const double world[3] = {0, 0, 0};
+    const double *zero = at ? at : f->has_doubles ? world : s->mesh->origin;
     uint64_t end = 0;
     s->parts = *parts = calloc((size_t)count + 1, sizeof **parts);
     s->part_count = count ? count : 1;
