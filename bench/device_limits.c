@@ -22,7 +22,7 @@
 #define LAUNCHES_MAX 64
 #define HOPELESS     2.0 /* a shape this many times slower than another is not timed */
 
-extern const char kernel_source_bandwidth[]; /* bandwidth.cl, embedded at build time */
+extern const char kernel_bandwidth[]; /* bandwidth.cl, embedded at build time */
 
 typedef struct shape {
     unsigned width; /* 32-bit words per access */
@@ -87,7 +87,7 @@ static cl_program program_build(const bench_memory *m, const shape *s) {
     cl_int error;
     snprintf(options, sizeof options, "-cl-std=CL1.2 -DVECTOR=uint%u -DWIDTH=%u%s", s->width, s->width,
              s->streaming ? " -DSTREAMING" : "");
-    const char *source = kernel_source_bandwidth;
+    const char *source = kernel_bandwidth;
     cl_program program = clCreateProgramWithSource(m->context, 1, &source, NULL, &error);
     if (error) return NULL;
     if (clBuildProgram(program, 1, &m->device, options, NULL, NULL) == CL_SUCCESS) return program;

@@ -5,6 +5,11 @@
  * is blanked. The cells buffer holds the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists
  * only on an edge of a present cube.
  */
+#ifndef CELLS_CL
+#define CELLS_CL
+
+#include "tetrahedra.cl"
+
 #if MISSING
 
 /* Present samples of a row, and those whose right-hand neighbour is present too. */
@@ -76,5 +81,7 @@ inline_always void crossings_keep(const slab *s, global const ulong *cells, uint
     k->type[4] &= here | low_y;
     k->type[5] &= before;
 }
+
+#endif
 
 #endif

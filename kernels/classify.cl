@@ -13,6 +13,12 @@
  * Loops over a group's items run equally often for all of them and test inside: PoCL 3.1 has been seen to run loops of
  * unequal length too often.
  */
+#ifndef CLASSIFY_CL
+#define CLASSIFY_CL
+
+#include "cells.cl"
+#include "count.cl"
+#include "scan.cl"
 
 /* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1
  * the tile before is always recomputed: that is how a test gets at the fallback. */
@@ -137,3 +143,5 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
     if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
     if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }
+
+#endif

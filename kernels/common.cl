@@ -10,6 +10,11 @@
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
  * WORK_ITEMS, of a group; MISSING; HYBRID.
  */
+#ifndef COMMON_CL
+#define COMMON_CL
+
+#include "slab.h"
+
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef FP64
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -42,4 +47,10 @@ typedef int signed_bits;
 #elif FLOATING == 64
 typedef long signed_bits;
 #define SIGNED16 long16
+#endif
+
+#if WORK_ITEMS == 1
+#include "extensions.cl"
+#endif
+
 #endif

@@ -2,6 +2,10 @@
  * complex_classify.cl - kernel 1 of complexes: which tetrahedra the surface passes through (complex_count.cl), and
  * prefix sums of them and their triangles; then a list of them
  */
+#ifndef COMPLEX_CLASSIFY_CL
+#define COMPLEX_CLASSIFY_CL
+
+#include "complex_count.cl"
 
 inline_always void cluster_tile_settle(tile_tools k, uint number, cluster_arrays a) {
     uint missing;
@@ -98,3 +102,5 @@ kernel void complex_list(complex_job c, global const uint *tetrahedra, global co
         }
     }
 }
+
+#endif

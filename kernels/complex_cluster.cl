@@ -3,6 +3,13 @@
  *
  * How its points are gone through: complex_cluster_alone.cl, complex_cluster_groups.cl.
  */
+#ifndef COMPLEX_CLUSTER_CL
+#define COMPLEX_CLUSTER_CL
+
+#include "complex_job.h"
+#include "ranges.cl"
+#include "words.cl"
+
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 
 /* The arrays of a complex, from their first item on. */
@@ -31,3 +38,11 @@ inline_always cluster_report report_of(ulong inside, ulong missing) {
     cluster_report report = {inside & mixed * 15, all, 2 * all - one, 4 * all - one};
     return report;
 }
+
+#if WORK_ITEMS == 1
+#include "complex_cluster_alone.cl"
+#else
+#include "complex_cluster_groups.cl"
+#endif
+
+#endif

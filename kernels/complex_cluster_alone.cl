@@ -1,6 +1,11 @@
 /*
  * complex_cluster_alone.cl - clusters where a work-item is alone: the samples of four tetrahedra make a vector
  */
+#ifndef COMPLEX_CLUSTER_ALONE_CL
+#define COMPLEX_CLUSTER_ALONE_CL
+
+#include "complex_cluster.cl"
+
 inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
     uint largest = 0, count = 4 * cluster_size(c, n);
     if (count == CLUSTER_POINTS) {
@@ -67,3 +72,5 @@ inline_always cluster_report cluster_count(const slab *s, const complex_job *c, 
     if (size < CLUSTER_TETRAHEDRA) missing |= ~0ul << 4 * size;
     return report_of(inside, missing);
 }
+
+#endif

@@ -1,6 +1,11 @@
 /*
  * complex_cluster_groups.cl - clusters where the work-items of a group take one each: point by point
  */
+#ifndef COMPLEX_CLUSTER_GROUPS_CL
+#define COMPLEX_CLUSTER_GROUPS_CL
+
+#include "complex_cluster.cl"
+
 inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
     const uint count = 4 * cluster_size(c, n);
     uint largest = 0;
@@ -43,3 +48,5 @@ inline_always cluster_report cluster_count(const slab *s, const complex_job *c, 
     }
     return report_of(inside, missing);
 }
+
+#endif

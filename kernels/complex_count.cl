@@ -5,6 +5,10 @@
  * clusters whose range holds the isovalue. How the clusters of a tile are gone through: complex_count_alone.cl,
  * complex_count_groups.cl.
  */
+#ifndef COMPLEX_COUNT_CL
+#define COMPLEX_COUNT_CL
+
+#include "complex_tile.cl"
 
 /* What kernel 1 works on. */
 typedef struct cluster_arrays {
@@ -61,3 +65,11 @@ inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a
     cluster_append(n, a, sums);
     sums->crossed += report.edges;
 }
+
+#if WORK_ITEMS == 1
+#include "complex_count_alone.cl"
+#else
+#include "complex_count_groups.cl"
+#endif
+
+#endif

@@ -1,6 +1,10 @@
 /*
  * complex_count_alone.cl - clusters of a tile where a work-item has it to itself: what the next ones need is asked for
  */
+#ifndef COMPLEX_COUNT_ALONE_CL
+#define COMPLEX_COUNT_ALONE_CL
+
+#include "complex_count.cl"
 
 /* Asks for samples of a cluster whose tetrahedra are there: those of every fourth one, which others are next to. */
 inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
@@ -55,3 +59,5 @@ inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool
     }
     return running;
 }
+
+#endif

@@ -1,6 +1,10 @@
 /*
  * complex_count_groups.cl - clusters of a tile where the work-items of a group share it: each takes one at a time
  */
+#ifndef COMPLEX_COUNT_GROUPS_CL
+#define COMPLEX_COUNT_GROUPS_CL
+
+#include "complex_count.cl"
 
 /* Active tetrahedra and triangles of a tile, for the whole group; recount: nothing is stored. */
 inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
@@ -12,3 +16,5 @@ inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool
     }
     return running;
 }
+
+#endif

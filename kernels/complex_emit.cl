@@ -1,6 +1,11 @@
 /*
  * complex_emit.cl - kernel 2 of complexes: every active tetrahedron makes the vertices that it owns and its triangles
  */
+#ifndef COMPLEX_EMIT_CL
+#define COMPLEX_EMIT_CL
+
+#include "complex_number.cl"
+#include "crossing.cl"
 
 /* The number of the vertex that belongs to place `owner`, of a tetrahedron that owns it. */
 inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
@@ -80,3 +85,5 @@ kernel void complex_emit(slab s, complex_job c, global const BITS *samples, glob
         }
     }
 }
+
+#endif

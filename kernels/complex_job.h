@@ -5,9 +5,7 @@
 #ifndef COMPLEX_JOB_H
 #define COMPLEX_JOB_H
 
-#ifndef __OPENCL_VERSION__
 #include "slab.h"
-#endif
 
 /* The unit that a range of samples is kept for: so many tetrahedra after each other, whose patterns fill 64 bits. */
 enum { CLUSTER_TETRAHEDRA = 16 };

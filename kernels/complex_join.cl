@@ -6,6 +6,10 @@
  * active tetrahedra, where its points are read, so that 32-bit atomics are enough: an entry once taken only changes
  * to an earlier place of the same edge. In the end it holds the first, whatever the order of the insertions.
  */
+#ifndef COMPLEX_JOIN_CL
+#define COMPLEX_JOIN_CL
+
+#include "complex_tile.cl"
 
 /* The two points of an edge, the lower first. */
 inline_always uint2 edge_points(global const active_tetrahedron *active, uint place, global const uchar *cases) {
@@ -45,3 +49,11 @@ inline_always uint edge_enter(const complex_job *c, uint place, uint entry, glob
     *full = 1;
     return 0;
 }
+
+#if WORK_ITEMS == 1
+#include "complex_join_alone.cl"
+#else
+#include "complex_join_groups.cl"
+#endif
+
+#endif

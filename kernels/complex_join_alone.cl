@@ -1,6 +1,10 @@
 /*
  * complex_join_alone.cl - edges joined where a work-item has a tile to itself
  */
+#ifndef COMPLEX_JOIN_ALONE_CL
+#define COMPLEX_JOIN_ALONE_CL
+
+#include "complex_join.cl"
 
 /* Edges that a work-item has met lately: neighbours in the list share most. One more is never met. */
 enum { RECENT_EDGES = 2048 };
@@ -80,3 +84,5 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
+
+#endif

@@ -1,6 +1,10 @@
 /*
  * complex_join_groups.cl - edges joined where the work-items of a group share a tile
  */
+#ifndef COMPLEX_JOIN_GROUPS_CL
+#define COMPLEX_JOIN_GROUPS_CL
+
+#include "complex_join.cl"
 
 kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
                          global uint *state, global uint *table, global uint *entries) {
@@ -20,3 +24,5 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
+
+#endif

@@ -1,6 +1,10 @@
 /*
  * complex_number.cl - numbers of vertices: those that a tetrahedron owns follow those of the tetrahedra before it
  */
+#ifndef COMPLEX_NUMBER_CL
+#define COMPLEX_NUMBER_CL
+
+#include "complex_join.cl"
 
 /* Which vertices tetrahedron a owns. */
 inline_always uint owned_edges(uint a, global const active_tetrahedron *active, global const uchar *cases,
@@ -63,3 +67,5 @@ kernel void complex_number(slab s, complex_job c, global active_tetrahedron *act
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
         active_tile_settle(k, n, active, cases, table, entries, state);
 }
+
+#endif

@@ -4,6 +4,12 @@
  * A tile's items are counted by the group's work-items, each taking one at a time; what comes before an item in its
  * tile is kept with the item, what comes before the tile with the tile.
  */
+#ifndef COMPLEX_TILE_CL
+#define COMPLEX_TILE_CL
+
+#include "complex_cluster.cl"
+#include "scan.cl"
+
 typedef struct tile_tools {
     const slab *s;
     const complex_job *c;
@@ -93,3 +99,5 @@ inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missi
     group_barrier();
     return done;
 }
+
+#endif

@@ -5,6 +5,12 @@
  * samples are where sign.cl left them; of the halo, the next row and the next plane of samples, which other tiles own,
  * they are in scratch. How a layer of bricks is gone through: count_alone.cl, count_groups.cl.
  */
+#ifndef COUNT_CL
+#define COUNT_CL
+
+#include "cells.cl"
+#include "sign.cl"
+#include "tetrahedra.cl"
 
 typedef struct tile {
     uint y0, y1, z0, z1; /* rows and planes of samples */
@@ -118,3 +124,11 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
     }
     return sums;
 }
+
+#if WORK_ITEMS == 1
+#include "count_alone.cl"
+#else
+#include "count_groups.cl"
+#endif
+
+#endif

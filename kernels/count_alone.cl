@@ -2,6 +2,10 @@
  * count_alone.cl - counting where a work-item has bricks to itself: it skips those that are uniform and whose
  * neighbours are the same
  */
+#ifndef COUNT_ALONE_CL
+#define COUNT_ALONE_CL
+
+#include "count.cl"
 
 /* Samples of rows that exist. */
 inline_always lanes rows_valid(const slab *s, uint y, uint w) {
@@ -170,3 +174,5 @@ inline_always void layer_count(const slab *s, tile t, uint z, tile_words k, glob
             }
         }
 }
+
+#endif

@@ -1,6 +1,10 @@
 /*
  * count_groups.cl - counting where the work-items of a group share bricks: each takes a row
  */
+#ifndef COUNT_GROUPS_CL
+#define COUNT_GROUPS_CL
+
+#include "count.cl"
 
 /* Brick n of a layer of the tile: x, then y. */
 typedef struct brick {
@@ -117,3 +121,5 @@ inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, glo
         group_barrier();
     }
 }
+
+#endif

@@ -7,6 +7,11 @@
  * From the build: REAL (float for u8 i8 u16 i16 f32, double for u32 i32 f64), FLOATING, WIDE, DIVISION (1: built in; 2:
  * through double; 3: in integers).
  */
+#ifndef CROSSING_CL
+#define CROSSING_CL
+
+#include "common.cl"
+
 #ifdef REAL
 
 #if DIVISION == 1
@@ -80,5 +85,7 @@ inline_always float crossing(REAL a, REAL b, REAL iso) {
 #endif
     return (float)DIVIDE(iso - a, b - a);
 }
+
+#endif
 
 #endif

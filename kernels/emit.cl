@@ -6,6 +6,14 @@
  * (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the
  * hybrid method has.
  */
+#ifndef EMIT_CL
+#define EMIT_CL
+
+#if WORK_ITEMS == 1
+#include "emit_brick.cl"
+#else
+#include "emit_rows.cl"
+#endif
 
 /* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,
  * page by page, and a new page does not hold up two of them. */
@@ -45,3 +53,5 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         }
     }
 }
+
+#endif

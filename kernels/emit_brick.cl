@@ -9,6 +9,11 @@
  * A row has three active cubes, more or less. So as many indices are copied as most cases have. Positions and triangles
  * go through private memory, batch by batch, and from there to the mesh in whole cache lines.
  */
+#ifndef EMIT_BRICK_CL
+#define EMIT_BRICK_CL
+
+#include "emit_numbers.cl"
+#include "vertex.cl"
 
 #define CASE_BITS  9
 #define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
@@ -260,3 +265,5 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     count = cubes_list(s, state.rows, work);
     triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
 }
+
+#endif

@@ -9,6 +9,12 @@
  * A row has an edge of each type, more or less. So lists get one item of a row at the least: a branch that cannot be
  * foreseen costs more. What is too much is overwritten by what comes next.
  */
+#ifndef EMIT_NUMBERS_CL
+#define EMIT_NUMBERS_CL
+
+#include "cells.cl"
+#include "mesh.cl"
+#include "tetrahedra.cl"
 
 #define NUMBER_STEP NUMBER_TYPES(HYBRID)
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
@@ -231,3 +237,5 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
     }
 }
+
+#endif

@@ -6,6 +6,14 @@
  * vertex is that beginning plus the crossed edges of its type at lower x: a population count, made where a triangle
  * names it. So nothing of a cube is kept, and nothing private is indexed by a variable, which would need memory.
  */
+#ifndef EMIT_ROWS_CL
+#define EMIT_ROWS_CL
+
+#include "cells.cl"
+#include "mesh.cl"
+#include "tetrahedra.cl"
+#include "vertex.cl"
+
 #define TABLE_ROWS_Y (BRICK_ROWS + 1)
 #define TABLE_ROWS   (TABLE_ROWS_Y * (BRICK_PLANES + 1))
 
@@ -180,3 +188,5 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     uint place = (uint)get_local_id(0) % BRICK_WORDS;
     if (wanted && k1.bricks[number].rows >> place & 1) row_emit(s, number, place, in, k1, cases, mesh, table);
 }
+
+#endif

@@ -2,6 +2,10 @@
  * extensions.cl - what the text for a work-item alone takes from compilers beyond OpenCL C 1.2: vectors of 64 elements,
  * built-in functions, hints. Compilers built on Clang know it; see host/lib/opencl/text.c
  */
+#ifndef EXTENSIONS_CL
+#define EXTENSIONS_CL
+
+#include "common.cl"
 
 /* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.
  */
@@ -93,5 +97,7 @@ inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
 inline_always int16 words_shuffled(words16 low, int16 lane, words16 high) {
     return __builtin_ia32_vpermi2vard512(as_int16(low), lane, as_int16(high));
 }
+
+#endif
 
 #endif

@@ -1,6 +1,11 @@
 /*
  * lanes_alone.cl - bit-sliced code where a work-item has bricks to itself: the eight rows of a plane of a brick at once
  */
+#ifndef LANES_ALONE_CL
+#define LANES_ALONE_CL
+
+#include "common.cl"
+
 #define LANES 8
 typedef ulong8 lanes;
 
@@ -42,3 +47,5 @@ inline_always lanes lanes_up(lanes x, ulong last) { return ulongs_joined(x, last
 
 /* Axes that normals are made of at once. */
 #define AXES_AT_ONCE 3
+
+#endif

@@ -1,6 +1,11 @@
 /*
  * lanes_groups.cl - bit-sliced code where the work-items of a group share bricks: a row at a time
  */
+#ifndef LANES_GROUPS_CL
+#define LANES_GROUPS_CL
+
+#include "common.cl"
+
 #define LANES 1
 typedef ulong lanes;
 
@@ -20,3 +25,5 @@ typedef ulong lanes;
 /* Axes that normals are made of at once: one after the other, so that what one needs is not kept beside what another
  * does. */
 #define AXES_AT_ONCE 1
+
+#endif

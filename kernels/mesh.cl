@@ -4,6 +4,11 @@
  * A vertex's number is what its slab and brick have before them, plus where its row's output begins, plus where its
  * edge type's does, plus the crossed edges of that type at lower x.
  */
+#ifndef MESH_CL
+#define MESH_CL
+
+#include "tetrahedra.cl"
+#include "vertex.cl"
 
 typedef struct mesh_buffers {
     global float *positions;
@@ -67,5 +72,7 @@ inline_always long place_step(const slab *s, uint place) {
     long x = (long)(place >> 14 & 3) - 1, y = (long)(place >> 16 & 3) - 1, z = (long)(place >> 18 & 3) - 1;
     return x + (y + z * s->ny) * s->nx;
 }
+
+#endif
 
 #endif

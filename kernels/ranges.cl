@@ -4,6 +4,11 @@
  *
  * Of 64-bit samples keys are the upper half, so that a key in doubt counts as mixed. From the build: BITS, FLOATING.
  */
+#ifndef RANGES_CL
+#define RANGES_CL
+
+#include "common.cl"
+
 #if FLOATING
 #define KEY_SIGN ((BITS)1 << (FLOATING - 1))
 /* From here on keys are infinite or NaN, up to its complement too. */
@@ -39,3 +44,9 @@ inline_always BITS key_of(BITS bits, const slab *s) {
     return bits ^ (BITS)s->key_flip;
 #endif
 }
+
+#if WORK_ITEMS == 1
+#include "ranges_alone.cl"
+#endif
+
+#endif

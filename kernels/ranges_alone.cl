@@ -1,6 +1,11 @@
 /*
  * ranges_alone.cl - keys where a work-item is alone: 16 at a time
  */
+#ifndef RANGES_ALONE_CL
+#define RANGES_ALONE_CL
+
+#include "ranges.cl"
+
 inline_always BITS16 keys16(BITS16 bits, const slab *s) {
 #if FLOATING
     return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
@@ -17,3 +22,5 @@ inline_always uint keys_least(BITS16 keys) {
 
 /* The largest upper half is the complement of the complement's least. */
 inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }
+
+#endif

@@ -10,6 +10,10 @@
  * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
  * Owens, "Decoupled Fallback" (2025).
  */
+#ifndef SCAN_CL
+#define SCAN_CL
+
+#include "common.cl"
 
 #define SCAN_EMPTY  0u
 #define SCAN_SUM    1u
@@ -68,3 +72,5 @@ inline_always void own_append(own_tiles *own, uint number, global uint *tiles) {
     tiles[TILE_WORDS * number + TILE_NEXT] = NO_TILE;
     own->last = number;
 }
+
+#endif

@@ -6,6 +6,11 @@
  * another isovalue read the bricks only whose range holds it. How a layer of bricks is gone through: sign_alone.cl,
  * sign_groups.cl.
  */
+#ifndef SIGN_CL
+#define SIGN_CL
+
+#include "ranges.cl"
+#include "words.cl"
 
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 
@@ -18,3 +23,11 @@ inline_always void brick_sign_store(uint number, uint sign, global brick_state *
     brick_state b = {0, 0, 0, sign};
     bricks[number] = b;
 }
+
+#if WORK_ITEMS == 1
+#include "sign_alone.cl"
+#else
+#include "sign_groups.cl"
+#endif
+
+#endif

@@ -2,6 +2,11 @@
  * sign_alone.cl - signs of bricks where a work-item has bricks to itself: it takes strips of them, so that samples are
  * read in long runs, 64 at a time
  */
+#ifndef SIGN_ALONE_CL
+#define SIGN_ALONE_CL
+
+#include "sign.cl"
+
 inline_always samples64 keys64(samples64 bits, const slab *s) {
 #if FLOATING
     return bits ^ (signs64(bits) | KEY_SIGN);
@@ -222,3 +227,5 @@ inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, globa
             out[BRICK_ROWS * w + n] = word_at(s, y + n, z, w, sign, samples);
     }
 }
+
+#endif

@@ -1,6 +1,11 @@
 /*
  * sign_groups.cl - signs of bricks where the work-items of a group share them: four take a row of 64 samples
  */
+#ifndef SIGN_GROUPS_CL
+#define SIGN_GROUPS_CL
+
+#include "sign.cl"
+
 #define BRICKS_AT_ONCE (WORK_ITEMS / BRICK_WORDS)
 #define ROW_PARTS      4 /* of 16 samples */
 
@@ -96,3 +101,5 @@ inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, globa
     for (uint n = 0; n < BRICK_ROWS && y + n < y1; n++)
         row_words_spread(s, y + n, z, samples, ranges, out + n, BRICK_ROWS);
 }
+
+#endif

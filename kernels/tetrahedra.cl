@@ -6,6 +6,10 @@
  * corners 0 3, 0 5, 0 6 (000 to 110, 101, 011), in an odd one the other two corners of the faces; see
  * host/lib/grid/tables.h. Lanes follow each other in y.
  */
+#ifndef TETRAHEDRA_CL
+#define TETRAHEDRA_CL
+
+#include "words.cl"
 
 /* Sign words of LANES rows, and the same shifted to x + 1. */
 typedef struct sample_rows {
@@ -146,3 +150,5 @@ inline_always uint offset_of_type(ulong packed, uint type) {
     const uint shift = (uint)(0x2e251d150e37ul >> (8 * type)) & 63, width = 0x998871u >> (4 * type) & 15;
     return ((uint)packed & 0x3fff) + ((uint)(packed >> shift) & ((1u << width) - 1));
 }
+
+#endif

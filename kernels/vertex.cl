@@ -3,6 +3,12 @@
  *
  * From the build: REAL, SAMPLE_VALUE(bits), NORMALS, GRID (0: uniform, 1: rectilinear, 2: curvilinear).
  */
+#ifndef VERTEX_CL
+#define VERTEX_CL
+
+#include "crossing.cl"
+#include "words.cl"
+
 /* What is known of a grid at its samples. */
 typedef struct grid_arrays {
     global const BITS *samples;
@@ -187,6 +193,8 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
 #pragma unroll
     for (uint row = 0; row < 3; row++) out[row] = (float)DIVIDE(n[row], length);
 }
+
+#endif
 
 #endif
 

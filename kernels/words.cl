@@ -6,6 +6,11 @@
  * the device does with subnormals, and the same text for all types. Bits past the end of a row are 0.
  * How words are made of samples: words_alone.cl, words_groups.cl.
  */
+#ifndef WORDS_CL
+#define WORDS_CL
+
+#include "lanes.cl"
+
 inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
 
 inline_always ulong row_start(const slab *s, uint y, uint z) {
@@ -48,3 +53,11 @@ inline_always bool bits_missing(BITS bits, const slab *s) {
 inline_always bool sample_missing(global const BITS *samples, global const uchar *blanked, const slab *s, ulong n) {
     return bits_missing(samples[n], s) || (s->has_blanked_samples && blanked[n + s->blanked_offset]);
 }
+
+#if WORK_ITEMS == 1
+#include "words_alone.cl"
+#else
+#include "words_groups.cl"
+#endif
+
+#endif

@@ -1,6 +1,11 @@
 /*
  * words_alone.cl - sign words where a work-item is alone: 16 samples at a time
  */
+#ifndef WORDS_ALONE_CL
+#define WORDS_ALONE_CL
+
+#include "words.cl"
+
 /* 0xFF or 0 per sample. */
 inline_always char16 inside_mask(BITS16 bits, const slab *s) {
     return convert_char16((bits - (BITS)s->inside_low) <= (BITS16)(BITS)s->inside_span);
@@ -79,3 +84,5 @@ inline_always ulong word_present(global const BITS *samples, global const uchar 
                             s->sample_offset + s->sample_count + s->blanked_offset);
     return word & word_valid(s, w);
 }
+
+#endif

@@ -4,6 +4,11 @@
  * Every work-item has samples of its own, so that a group has many loads under way; each needs few registers. Loops
  * stay loops for the same reason: unrolled, they need masks and addresses side by side.
  */
+#ifndef WORDS_GROUPS_CL
+#define WORDS_GROUPS_CL
+
+#include "words.cl"
+
 inline_always bool bits_inside(BITS bits, const slab *s) {
     return (BITS)(bits - (BITS)s->inside_low) <= (BITS)s->inside_span;
 }
@@ -46,3 +51,5 @@ inline_always ulong word_present(global const BITS *samples, global const uchar 
         word &= ~bytes_word(blanked, start + s->blanked_offset, start + s->blanked_offset + count);
     return word;
 }
+
+#endif

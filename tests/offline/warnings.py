@@ -4,7 +4,10 @@
 What a driver's compiler thinks of kernels it may print where users see it. So every program of both texts (TEXTS is
 kernel_texts, which writes them) is compiled by every clang there is, with -Wall, for processors with and without
 AVX-512. And the text for groups has to be plain OpenCL C: nothing stands in it that only some compilers know. quick:
-some of the programs. Exit status 77 where there is no clang.
+some of the programs.
+
+Each file says what it needs: it compiles by itself too, as editors see it, with the text that it belongs to. Exit status
+77 where there is no clang.
 """
 import concurrent.futures
 import glob
@@ -19,6 +22,9 @@ import tempfile
 PROCESSORS = ["x86-64", "haswell", "skylake-avx512"]
 SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "emit-u8-tetra-uniform",
           "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32"]
+
+ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals"  # its options define what any file looks at
+KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
 
 # Work-items of a group, of which one has the other text; quick: all processors for it, where most can differ.
 ALONE, GROUPS = "1", "32"
@@ -93,6 +99,24 @@ def jobs_list(tier, texts, folder, versions):
                            (clang, processor, options, path), work_items)
 
 
+def files_check(jobs, clang):
+    """What is wrong with files compiled by themselves; every file belongs to some program."""
+    options, seen, wrong = {}, {}, []
+    for _, (_, _, given, path), work_items in jobs:
+        if os.path.basename(path).startswith(ALL_DEFINED):
+            options[work_items] = given
+        with open(path, encoding="utf-8") as file:
+            seen.setdefault(work_items, set()).update(re.findall(r'#line 1 "(\w+\.cl)"', file.read()))
+    for work_items, names in seen.items():
+        for name in sorted(names):
+            said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items]],
+                            os.path.join(KERNELS, name))
+            if said:
+                wrong.append(f"{name} by itself, {work_items} work-items: {said}")
+    left = {os.path.basename(path) for path in glob.glob(os.path.join(KERNELS, "*.cl"))} - set().union(*seen.values())
+    return wrong + [f"{name}: in no program" for name in sorted(left)]
+
+
 def main():
     tier, texts = sys.argv[1:]
     versions = clangs()
@@ -110,6 +134,7 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             said = list(pool.map(lambda job: compiled(*job[1]), jobs))
         wrong += [f"{job[0]}: {text}" for job, text in zip(jobs, said) if text]
+        wrong += files_check(jobs, next(iter(versions.values())))
     if not jobs:
         sys.exit("no programs")
     print("\n".join(wrong[:10]))

@@ -28,7 +28,7 @@ typedef struct program {
     char asked[PROGRAM_OPTIONS_BYTES];   /* its options but for the work-items, which a kernel may allow fewer of */
     char options[PROGRAM_OPTIONS_BYTES]; /* those that it was built with */
     uint32_t work_items;                 /* per group: what its kernels are launched with */
-    const char *const *sources;
+    const char *source;
     bool cached; /* it came from the cache of built programs */
     cl_program program;
     cl_kernel kernels[KERNELS_MOST];

@@ -83,102 +83,39 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-/* Sources in order; the rest of a list is NULL. */
-enum { SOURCES_MOST = 24 };
-
 /* A program in both texts, and its kernels in order. */
 typedef struct program_text {
     const char *kernels[KERNELS_MOST];
-    const char *sources[2][SOURCES_MOST];
+    const char *sources[2];
 } program_text;
 
 static const program_text programs[PROGRAM_COUNT] = {
-    [PROGRAM_CLASSIFY] =
-        {.kernels = {"classify", "cells_mark"},
-         .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
-                                     kernel_source_lanes_alone, kernel_source_words, kernel_source_words_alone,
-                                     kernel_source_tetrahedra, kernel_source_cells, kernel_source_ranges,
-                                     kernel_source_ranges_alone, kernel_source_sign, kernel_source_sign_alone,
-                                     kernel_source_count, kernel_source_count_alone, kernel_source_scan,
-                                     kernel_source_classify},
-                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
-                                      kernel_source_words, kernel_source_words_groups, kernel_source_tetrahedra,
-                                      kernel_source_cells, kernel_source_ranges, kernel_source_sign,
-                                      kernel_source_sign_groups, kernel_source_count, kernel_source_count_groups,
-                                      kernel_source_scan, kernel_source_classify}}},
-    [PROGRAM_EMIT] = {.kernels = {"emit"},
-                      .sources = {[TEXT_ALONE] = {kernel_source_slab, kernel_source_common, kernel_source_extensions,
-                                                  kernel_source_lanes_alone, kernel_source_words,
-                                                  kernel_source_words_alone, kernel_source_tetrahedra,
-                                                  kernel_source_cells, kernel_source_crossing, kernel_source_vertex,
-                                                  kernel_source_mesh, kernel_source_emit_numbers,
-                                                  kernel_source_emit_brick, kernel_source_emit},
-                                  [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
-                                                   kernel_source_words, kernel_source_words_groups,
-                                                   kernel_source_tetrahedra, kernel_source_cells,
-                                                   kernel_source_crossing, kernel_source_vertex, kernel_source_mesh,
-                                                   kernel_source_emit_rows, kernel_source_emit}}},
-    [PROGRAM_COMPLEX] =
-        {.kernels = {"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
-         .sources = {[TEXT_ALONE] = {kernel_source_slab,
-                                     kernel_source_common,
-                                     kernel_source_extensions,
-                                     kernel_source_lanes_alone,
-                                     kernel_source_words,
-                                     kernel_source_words_alone,
-                                     kernel_source_ranges,
-                                     kernel_source_ranges_alone,
-                                     kernel_source_scan,
-                                     kernel_source_crossing,
-                                     kernel_source_complex_job,
-                                     kernel_source_complex_cluster,
-                                     kernel_source_complex_cluster_alone,
-                                     kernel_source_complex_tile,
-                                     kernel_source_complex_count,
-                                     kernel_source_complex_count_alone,
-                                     kernel_source_complex_classify,
-                                     kernel_source_complex_join,
-                                     kernel_source_complex_join_alone,
-                                     kernel_source_complex_number,
-                                     kernel_source_complex_emit},
-                     [TEXT_GROUPS] = {kernel_source_slab, kernel_source_common, kernel_source_lanes_groups,
-                                      kernel_source_words, kernel_source_words_groups, kernel_source_ranges,
-                                      kernel_source_scan, kernel_source_crossing, kernel_source_complex_job,
-                                      kernel_source_complex_cluster, kernel_source_complex_cluster_groups,
-                                      kernel_source_complex_tile, kernel_source_complex_count,
-                                      kernel_source_complex_count_groups, kernel_source_complex_classify,
-                                      kernel_source_complex_join, kernel_source_complex_join_groups,
-                                      kernel_source_complex_number, kernel_source_complex_emit}}},
+    [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
+                          {[TEXT_ALONE] = kernel_classify_alone, [TEXT_GROUPS] = kernel_classify_groups}},
+    [PROGRAM_EMIT] = {{"emit"}, {[TEXT_ALONE] = kernel_emit_alone, [TEXT_GROUPS] = kernel_emit_groups}},
+    [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
+                         {[TEXT_ALONE] = kernel_complex_alone, [TEXT_GROUPS] = kernel_complex_groups}},
 };
-
-static program_recipe recipe_of(const program *p) {
-    program_recipe recipe = {p->sources, 0, p->options};
-    while (recipe.source_count < SOURCES_MOST && p->sources[recipe.source_count]) recipe.source_count++;
-    return recipe;
-}
 
 uint64_t kernel_sources_hash(void) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++)
-        for (int name = 0; name < PROGRAM_COUNT; name++) {
-            const char *const *sources = programs[name].sources[text];
-            for (int n = 0; n < SOURCES_MOST && sources[n]; n++)
-                for (const char *c = sources[n]; *c; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
-        }
+        for (int name = 0; name < PROGRAM_COUNT; name++)
+            for (const char *c = programs[name].sources[text]; *c; c++)
+                hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
     return hash;
 }
 
 static tc_status source_build(const tc_context *context, program *p) {
     cl_int error;
-    p->program = cl->CreateProgramWithSource(context->context, recipe_of(p).source_count,
-                                             (const char **)(size_t)p->sources, NULL, &error);
+    p->program = cl->CreateProgramWithSource(context->context, 1, &p->source, NULL, &error);
     if (error) return context_fail(context, "handing the kernels to the device", error);
     error = cl->BuildProgram(p->program, 1, &context->device, p->options, NULL, NULL);
     return error ? build_fail(context, p, error) : TC_OK;
 }
 
 static tc_status program_build(const tc_context *context, program *p) {
-    program_recipe recipe = recipe_of(p);
+    const program_recipe recipe = {p->source, p->options};
     p->program = program_cache_load(context, &recipe);
     p->cached = p->program != NULL;
     return p->cached ? TC_OK : source_build(context, p);
@@ -232,7 +169,7 @@ static void program_release(program *p) {
 
 /* Keeps what was built here in the cache. */
 static void program_keep(const tc_context *context, const program *p) {
-    program_recipe recipe = recipe_of(p);
+    const program_recipe recipe = {p->source, p->options};
     if (!p->cached) program_cache_store(context, &recipe, p->program);
 }
 
@@ -282,7 +219,7 @@ tc_status program_get(tc_context *context, program_name name, kernel_kind kind, 
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
     snprintf(p->asked, sizeof p->asked, "%s", options);
-    p->sources = text->sources[text_for(context->launch.work_items)];
+    p->source = text->sources[text_for(context->launch.work_items)];
     memcpy(kernels, text->kernels, sizeof kernels);
     if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
     tc_status status = program_make(context, p, kernels);

@@ -57,7 +57,7 @@ static cache_text key_make(const tc_context *context, const program_recipe *reci
     if (!out) return (cache_text){0};
     bool failed = !device_lines_write(out, context);
     line_write(out, recipe->options);
-    for (cl_uint n = 0; n < recipe->source_count; n++) line_write(out, recipe->sources[n]);
+    line_write(out, recipe->source);
     failed |= ferror(out) != 0;
     if (!fclose(out) && !failed) return key;
     free(key.bytes);

@@ -8,9 +8,7 @@
 
 /* What a program is made from. */
 typedef struct program_recipe {
-    const char *const *sources;
-    cl_uint source_count;
-    const char *options;
+    const char *source, *options;
 } program_recipe;
 
 /* The program, built for the context's device; NULL where the cache has none that the device takes. */

@@ -1,0 +1,8 @@
+# The programs of kernels, each for work-items alone in their group and for groups of them: sets kernels, the files, and
+# programs, what embed.cmake makes of them. Needs kernel_folder.
+file(GLOB kernels CONFIGURE_DEPENDS ${kernel_folder}/*.cl ${kernel_folder}/*.h)
+set(programs)
+foreach(program classify emit complex)
+    list(APPEND programs ${program}_alone=${kernel_folder}/${program}.cl=1
+         ${program}_groups=${kernel_folder}/${program}.cl=0)
+endforeach()
