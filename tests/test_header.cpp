@@ -1,8 +1,29 @@
-// test_header.cpp - the public header serves C++ programs: it compiles alone, and its functions have C names
-#include "tetracubes.h"
-
+// test_header.cpp - the public header serves C++ programs: it compiles after the standard headers that C++ shares with
+// C, and its functions have C names
+#include <cassert>
+#include <cctype>
+#include <cerrno>
+#include <cfenv>
+#include <cfloat>
+#include <cinttypes>
+#include <climits>
+#include <clocale>
+#include <cmath>
+#include <complex.h> // as C++ has it: <complex>, and in some libraries the macros of C
+#include <csetjmp>
+#include <csignal>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
+#include <cwchar>
+#include <cwctype>
+#include <tgmath.h>
+
+#include "tetracubes.h"
 
 int main() {
     const unsigned char samples[8] = {255, 0, 0, 0, 0, 0, 0, 0};

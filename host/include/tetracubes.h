@@ -434,12 +434,12 @@ typedef struct tc_complex {
  * that are not finite or 2^127 and beyond, cells with too few points, 3D types that are none of these, and polyhedra
  * whose faces are not closed; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The complex, zeroed on
  * failure, is freed by tc_complex_release. */
-TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex);
+TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *tetrahedra);
 
 /* The same of a structured grid: five tetrahedra per cube, mirrored on alternate cubes, as the structured path does. Of
  * the options only sizes, parity (first), coordinates and what is missing matter. Points are the samples. */
-TC_API tc_status tc_tetrahedralize_grid(const tc_grid_options *grid, tc_complex *complex);
-TC_API void tc_complex_release(tc_complex *complex);
+TC_API tc_status tc_tetrahedralize_grid(const tc_grid_options *grid, tc_complex *tetrahedra);
+TC_API void tc_complex_release(tc_complex *tetrahedra);
 
 typedef struct tc_complex_options {
     size_t struct_size; /* set by tc_complex_options_init */
