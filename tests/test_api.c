@@ -19,6 +19,10 @@ static void test_types_and_version(void) {
     EXPECT(tc_type_bytes((tc_type)8) == 0 && !tc_type_name((tc_type)8), "8 is a type");
     EXPECT(tc_type_bytes((tc_type)-1) == 0 && !tc_type_name((tc_type)-1), "-1 is a type");
     EXPECT(sscanf(tc_version(), "%u.%u.%u%c", &major, &minor, &patch, &rest) == 3, "version %s", tc_version());
+    EXPECT(major == TC_VERSION_MAJOR && minor == TC_VERSION_MINOR && patch == TC_VERSION_PATCH,
+           "the library is %s, its header %d.%d.%d", tc_version(), TC_VERSION_MAJOR, TC_VERSION_MINOR,
+           TC_VERSION_PATCH);
+    EXPECT(TC_VERSION_NUMBER == major * 10000 + minor * 100 + patch, "the header's number is %d", TC_VERSION_NUMBER);
 }
 
 static void test_null_everywhere(tc_context *context, tc_grid *grid) {

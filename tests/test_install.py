@@ -289,8 +289,8 @@ def main():
     parser.add_argument("build", type=Path, help="folder of a finished build")
     arguments = parser.parse_args()
     arguments.source, arguments.build = arguments.source.resolve(), arguments.build.resolve()
-    project = (arguments.source / "CMakeLists.txt").read_text(encoding="utf-8")
-    arguments.version = re.search(r"project\(tetracubes VERSION (\S+)", project).group(1)
+    header = (arguments.source / "host" / "include" / "tetracubes.h").read_text(encoding="utf-8")
+    arguments.version = ".".join(re.findall(r"#define TC_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
     if cached(arguments.build, "TETRACUBES_SANITIZE"):
         print("skipped: consumers would need the sanitizers of this build")
         return 77

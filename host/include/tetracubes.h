@@ -57,6 +57,19 @@ extern "C" {
 #define TC_API
 #endif
 
+/* --------------------------------------------------------------------------------------------------------- version */
+
+/* Of this header, and of the library that it comes with: the only place where the version is written. */
+#define TC_VERSION_MAJOR 0
+#define TC_VERSION_MINOR 1
+#define TC_VERSION_PATCH 0
+
+/* One number that grows with the version, for #if TC_VERSION_NUMBER >= 10203, which is 1.2.3. */
+#define TC_VERSION_NUMBER (TC_VERSION_MAJOR * 10000 + TC_VERSION_MINOR * 100 + TC_VERSION_PATCH)
+
+/* "major.minor.patch" of the library that runs, which may be newer than the header. Never NULL; valid forever. */
+TC_API const char *tc_version(void);
+
 /* ---------------------------------------------------------------------------------------------------------- status */
 
 typedef enum tc_status {
@@ -74,9 +87,6 @@ typedef enum tc_status {
 /* What the last failed call of this thread found wrong, in one or two sentences. Never NULL; valid until the thread's
  * next failing call. */
 TC_API const char *tc_message(void);
-
-/* "major.minor.patch" of the library that runs. */
-TC_API const char *tc_version(void);
 
 /* --------------------------------------------------------------------------------------------------------- devices */
 
@@ -132,8 +142,8 @@ typedef enum tc_verdict {
 } tc_verdict;
 
 /* Runs tc_trial_run(job) in another process, with a limit of time, and tells how that ended; reason: room for a line,
- * which was set empty: tc_message() of that process, or its last words. job is a line of text. Called on the thread that
- * calls the library. */
+ * which was set empty: tc_message() of that process, or its last words. job is a line of text. Called on the thread
+ * that calls the library. */
 typedef tc_verdict (*tc_trial)(void *user, const char *job, char *reason, size_t reason_bytes);
 
 struct _cl_context;
@@ -193,17 +203,17 @@ TC_API void tc_context_destroy(tc_context *context);
  * set, opening a device and each kind of kernels (of grid, type, method, missing samples, normals) is tried once in a
  * process that the callback starts, unless driver and version are among those known to be good. The verdict is kept in
  * the cache, for device, driver, versions and kernels, beside the programs that the trial has built; later contexts,
- * of other processes too, find both. A verdict that is not good makes the library take its other text of the kernels (one
- * work-item per group, or groups of them), where work_items is 0 and that one passes; else the call fails with
- * TC_ERROR_DEVICE or TC_ERROR_WRONG and says what was found. Kept verdicts count in contexts without a callback too. The
- * library itself starts no process. A caller's cl_context is tried on the device of tc_device_get that it has; where it
- * has another, a part of one, it is used untried. tc_emit that meets kernels which are not good fails; after that count
- * again.
+ * of other processes too, find both. A verdict that is not good makes the library take its other text of the kernels
+ * (one work-item per group, or groups of them), where work_items is 0 and that one passes; else the call fails with
+ * TC_ERROR_DEVICE or TC_ERROR_WRONG and says what was found. Kept verdicts count in contexts without a callback too.
+ * The library itself starts no process. A caller's cl_context is tried on the device of tc_device_get that it has;
+ * where it has another, a part of one, it is used untried. tc_emit that meets kernels which are not good fails; after
+ * that count again.
  *
- * tc_trial_run does what the job says: it opens the device, builds the kernels, runs them on a small volume and compares
- * every byte with the reference engine. progress, which may be NULL, is told "run" when they are built. The driver may
- * crash or hang in it, so it belongs into a process without other work, with the same environment. The tool does so by
- * running itself. */
+ * tc_trial_run does what the job says: it opens the device, builds the kernels, runs them on a small volume and
+ * compares every byte with the reference engine. progress, which may be NULL, is told "run" when they are built. The
+ * driver may crash or hang in it, so it belongs into a process without other work, with the same environment. The tool
+ * does so by running itself. */
 TC_API tc_status tc_trial_run(const char *job, tc_progress progress, void *progress_user);
 
 /* The device of an OpenCL context; TC_ERROR_ARGUMENT for the reference engine, which has none. */
