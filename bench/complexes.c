@@ -47,7 +47,7 @@ static int hexahedra_cut(samples *s) {
 }
 
 int complex_make(samples *s) {
-    s->complex = (tc_complex){.struct_size = sizeof s->complex};
+    s->complex = (tc_tetrahedra){.struct_size = sizeof s->complex};
     int status =
         s->placed == BENCH_HEXAHEDRA ? hexahedra_cut(s) : library_status(tc_tetrahedralize_grid(&s->grid, &s->complex));
     if (!status && !s->complex.tetrahedron_count) status = fail(STATUS_INPUT, "the grid has no tetrahedra");
@@ -55,14 +55,14 @@ int complex_make(samples *s) {
 }
 
 tc_status samples_open(const samples *s, tc_context *context, tc_grid **grid) {
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     if (!s->complex.tetrahedra) return tc_grid_create(context, &s->grid, grid);
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]);
     o.points = s->coordinates;
     o.type = s->grid.type;
     o.samples = s->grid.samples;
     o.tetrahedron_count = s->complex.tetrahedron_count;
     o.tetrahedra = s->complex.tetrahedra;
-    return tc_complex_create(context, &o, grid);
+    return tc_tetrahedra_grid_create(context, &o, grid);
 }

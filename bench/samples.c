@@ -153,7 +153,7 @@ int samples_dump(const samples *s, const char *path) {
 void samples_release(samples *s) {
     if (s->made) munmap(s->made, s->bytes);
     if (s->coordinates) munmap(s->coordinates, s->coordinate_bytes);
-    tc_complex_release(&s->complex);
+    tc_tetrahedra_release(&s->complex);
     volume_release(&s->read);
     *s = (samples){0};
 }

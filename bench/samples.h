@@ -15,7 +15,7 @@ typedef struct samples {
     bench_grid placed;
     float *coordinates; /* axes one after the other, or points; page-aligned, or NULL */
     uint64_t coordinate_bytes;
-    tc_complex complex; /* unstructured: the tetrahedra between the points */
+    tc_tetrahedra complex; /* unstructured: the tetrahedra between the points */
 } samples;
 
 /* Describes samples of an analytic field, for samples_make to take the memory for; the matrix is the one that

@@ -138,11 +138,11 @@ static void tetrahedra_add(cell_list *list, const uint32_t h[8]) {
     for (int n = 0; n < 8; n++) connectivity[n] = h[n];
     tc_cells one = cell_list_view(list);
     one.cell_count = 1, one.types = &type, one.offsets = offsets, one.connectivity = connectivity;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     if (tc_tetrahedralize(&one, &complex)) printf("a hexahedron is not cut: %s\n", tc_message());
     for (uint64_t n = 0; n < complex.tetrahedron_count; n++)
         cell_list_add(list, 10, 4, complex.tetrahedra + 4 * n, random_below(2));
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 }
 
 /* VTK's wedge has its first triangle counter-clockwise seen from outside. */
@@ -347,7 +347,7 @@ static bool tetrahedron_bad(const uint32_t *t, uint64_t point_count) {
     return t[0] >= point_count || t[1] >= point_count || t[2] >= point_count || t[3] >= point_count;
 }
 
-complex_facts complex_facts_of(const tc_complex *complex, const float *points, uint64_t point_count) {
+complex_facts complex_facts_of(const tc_tetrahedra *complex, const float *points, uint64_t point_count) {
     complex_facts facts = {0};
     face *faces = memory_get(4 * complex->tetrahedron_count * sizeof *faces);
     uint64_t face_count = 0;

@@ -54,6 +54,6 @@ typedef struct complex_facts {
     double volume;           /* six times it */
 } complex_facts;
 
-complex_facts complex_facts_of(const tc_complex *complex, const float *points, uint64_t point_count);
+complex_facts complex_facts_of(const tc_tetrahedra *complex, const float *points, uint64_t point_count);
 
 #endif

@@ -13,7 +13,7 @@ enum { NX = 70, NY = 21, NZ = 17, SAMPLES = NX * NY * NZ, CUBES = (NX - 1) * (NY
 
 static float values[SAMPLES];
 static uint8_t bytes[SAMPLES], blanked_samples[SAMPLES], blanked_cells[CUBES];
-static tc_complex complex_cut;
+static tc_tetrahedra complex_cut;
 static bool is_reference; /* the engine */
 
 static void noise_fill(void) {
@@ -96,19 +96,19 @@ static tc_grid *grid_open(tc_context *context, bool is_complex, int kind) {
     tc_grid *grid = NULL;
     tc_status status;
     if (is_complex) {
-        tc_complex_options options;
+        tc_tetrahedra_grid_options options;
         static float points[3 * SAMPLES];
         for (int n = 0; n < SAMPLES; n++)
             points[3 * n] = (float)(n % NX), points[3 * n + 1] = (float)(n / NX % NY),
                        points[3 * n + 2] = (float)(n / NX / NY);
-        tc_complex_options_init(&options);
+        tc_tetrahedra_grid_options_init(&options);
         options.point_count = SAMPLES;
         options.points = points;
         options.type = TC_F32;
         options.samples = values;
         options.tetrahedron_count = complex_cut.tetrahedron_count;
         options.tetrahedra = complex_cut.tetrahedra;
-        status = tc_complex_create(context, &options, &grid);
+        status = tc_tetrahedra_grid_create(context, &options, &grid);
     } else {
         tc_grid_options options;
         tc_grid_options_init(&options);
@@ -163,8 +163,8 @@ static void complex_make(void) {
     tc_grid_options_init(&options);
     options.dims[0] = NX, options.dims[1] = NY, options.dims[2] = NZ;
     options.samples = bytes;
-    tc_complex_release(&complex_cut);
-    complex_cut = (tc_complex){.struct_size = sizeof complex_cut};
+    tc_tetrahedra_release(&complex_cut);
+    complex_cut = (tc_tetrahedra){.struct_size = sizeof complex_cut};
     EXPECT(!tc_tetrahedralize_grid(&options, &complex_cut), "%s", tc_message());
 }
 
@@ -197,6 +197,6 @@ int main(int argc, char **argv) {
     if (!on_device) engine_test(TC_ENGINE_REFERENCE, 0);
     if (on_device && !device_exists()) return SKIPPED;
     if (on_device) engine_test(TC_ENGINE_OPENCL, 0);
-    tc_complex_release(&complex_cut);
+    tc_tetrahedra_release(&complex_cut);
     return EXPECT_DONE();
 }

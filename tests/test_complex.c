@@ -29,7 +29,7 @@ static int edge_compare(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-static counts count_by_signs(const tc_complex_options *o, double isovalue) {
+static counts count_by_signs(const tc_tetrahedra_grid_options *o, double isovalue) {
     counts c = {0};
     uint64_t *edges = malloc(6 * 8 * (size_t)o->tetrahedron_count + 1), edge_count = 0;
     for (uint64_t n = 0; n < o->tetrahedron_count; n++) {
@@ -82,8 +82,8 @@ static void expect_manifold(const tc_mesh_data *data, bool complete, const char 
 }
 
 /* Several isovalues, one after the other, on one grid of each engine. */
-static void engines_compare(const tc_complex_options *o, const double *isovalues, int isovalue_count, bool complete,
-                            const char *what) {
+static void engines_compare(const tc_tetrahedra_grid_options *o, const double *isovalues, int isovalue_count,
+                            bool complete, const char *what) {
     const bool all = o->type == TC_U8 || o->type >= TC_F32;
     const int count = device_count && !all ? CONTEXTS_FEW : device_count;
     tc_grid *grids[CONTEXTS + 1] = {NULL};
@@ -92,7 +92,8 @@ static void engines_compare(const tc_complex_options *o, const double *isovalues
         char name[120];
         snprintf(name, sizeof name, "%s, context %d", what, n);
         if (n && !test_chosen(name)) continue;
-        EXPECT(tc_complex_create(n ? devices[n - 1] : reference, o, &grids[n]) == TC_OK, "%s: %s", what, tc_message());
+        EXPECT(tc_tetrahedra_grid_create(n ? devices[n - 1] : reference, o, &grids[n]) == TC_OK, "%s: %s", what,
+               tc_message());
     }
     for (int i = 0; i < isovalue_count; i++) {
         tc_extract_options options;
@@ -128,10 +129,10 @@ static void engines_compare(const tc_complex_options *o, const double *isovalues
 
 /* ------------------------------------------------------------------------------------------------- random complexes */
 
-static tc_complex_options options_of(const tc_complex *complex, const cell_list *list, tc_type type,
-                                     const void *values) {
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+static tc_tetrahedra_grid_options options_of(const tc_tetrahedra *complex, const cell_list *list, tc_type type,
+                                             const void *values) {
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = list->point_count, o.points = list->points;
     o.type = type, o.samples = values;
     o.tetrahedron_count = complex->tetrahedron_count, o.tetrahedra = complex->tetrahedra;
@@ -152,7 +153,7 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
              holes ? ", holes" : "");
     cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
     void *values = malloc(8 * list.point_count);
     for (uint64_t n = 0; n < list.point_count; n++) {
@@ -163,10 +164,10 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
     }
     double isovalues[5] = {1, 0.5, random_value(type, few), 2, 1};
     if (!few) isovalues[0] = isovalues[4] = random_value(type, few);
-    tc_complex_options o = options_of(&complex, &list, type, values);
+    tc_tetrahedra_grid_options o = options_of(&complex, &list, type, values);
     engines_compare(&o, isovalues, 5, !holes, what);
     free(values);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -177,15 +178,15 @@ static void faceted_block_compare(tc_type type, uint32_t size, bool columns) {
              tc_type_name(type));
     cell_list list = columns ? honeycomb_make(size, random_u64()) : kelvin_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
     void *values = malloc(8 * list.point_count);
     for (uint64_t n = 0; n < list.point_count; n++) sample_set(values, type, (int64_t)n, random_value(type, true));
     const double isovalues[2] = {1, 2};
-    tc_complex_options o = options_of(&complex, &list, type, values);
+    tc_tetrahedra_grid_options o = options_of(&complex, &list, type, values);
     engines_compare(&o, isovalues, 2, true, what);
     free(values);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -195,17 +196,18 @@ static void ends_compare(void) {
     static const uint8_t values[4] = {0, 0, 0, 1};
     static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
     const double isovalue = 1;
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     tc_extract_options how;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_mesh_data data = {.struct_size = sizeof data};
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options_init(&o);
     tc_extract_options_init(&how);
     o.point_count = 4, o.points = points, o.samples = values;
     o.tetrahedron_count = 1, o.tetrahedra = tetrahedron;
     how.isovalue = isovalue;
-    EXPECT(!tc_complex_create(reference, &o, &grid) && !tc_extract(grid, &how, &mesh) && !tc_mesh_get(mesh, &data),
+    EXPECT(!tc_tetrahedra_grid_create(reference, &o, &grid) && !tc_extract(grid, &how, &mesh) &&
+               !tc_mesh_get(mesh, &data),
            "ends of edges: %s", tc_message());
     for (uint64_t v = 0; v < data.vertex_count; v++)
         EXPECT(!memcmp(data.positions + 3 * v, points + 9, 12), "a vertex on the end of an edge is elsewhere");
@@ -225,8 +227,8 @@ static void scattered_compare(void) {
         values[n] = (uint8_t)random_below(2);
         tetrahedra[n] = 4 * COUNT - 1 - n;
     }
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = 4 * COUNT, o.points = points, o.samples = values;
     o.tetrahedron_count = COUNT, o.tetrahedra = tetrahedra;
     const double isovalue = 1;
@@ -263,7 +265,7 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
     static double values[COUNT];
     static float points[3 * COUNT];
     tc_grid_options g;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     char what[80];
     snprintf(what, sizeof what, "grid of %s%s%s", tc_type_name(type), holes ? ", holes" : "",
              mirrored ? ", mirrored" : "");
@@ -279,8 +281,8 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
         points[3 * n + 1] = (float)y, points[3 * n + 2] = (float)z;
     }
     EXPECT(tc_tetrahedralize_grid(&g, &complex) == TC_OK, "%s: %s", what, tc_message());
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = COUNT, o.points = points, o.type = type, o.samples = values;
     o.tetrahedron_count = complex.tetrahedron_count, o.tetrahedra = complex.tetrahedra;
     const double isovalues[] = {60.3, 80, 45.7};
@@ -294,8 +296,8 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
         tc_extract_options_init(&options);
         options.isovalue = isovalues[i];
         EXPECT(extract(reference, &g, &options, &meshes[0], &data[0]), "%s: structured", what);
-        EXPECT(!tc_complex_create(reference, &o, &grid) && !tc_extract(grid, &options, &meshes[1]), "%s: %s", what,
-               tc_message());
+        EXPECT(!tc_tetrahedra_grid_create(reference, &o, &grid) && !tc_extract(grid, &options, &meshes[1]), "%s: %s",
+               what, tc_message());
         tc_mesh_get(meshes[1], &data[1]);
         EXPECT(data[0].vertex_count == data[1].vertex_count && data[0].triangle_count == data[1].triangle_count,
                "%s: %llu vertices and %llu triangles, structured %llu and %llu", what,
@@ -312,7 +314,7 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
         tc_mesh_destroy(meshes[1]);
         tc_grid_destroy(grid);
     }
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- refusal */
@@ -323,39 +325,39 @@ static void refusals(tc_context *context) {
     static const double values[4] = {0, 1, 2, 3};
     static const uint32_t good[4] = {0, 1, 2, 3};
     uint32_t bad[4 * SEVERAL];
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     tc_extract_options options;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_mesh_data data = {.struct_size = sizeof data};
     tc_extract_options_init(&options);
-    tc_complex_options_init(&o);
-    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "nothing: %s", tc_message());
+    tc_tetrahedra_grid_options_init(&o);
+    EXPECT(tc_tetrahedra_grid_create(context, &o, &grid) == TC_OK, "nothing: %s", tc_message());
     EXPECT(tc_extract(grid, &options, &mesh) == TC_OK && !tc_mesh_get(mesh, &data) && !data.vertex_count,
            "a surface of nothing");
     tc_grid_destroy(grid);
     o.point_count = 4, o.type = TC_F64, o.tetrahedron_count = 1;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no points");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no points");
     o.points = points, o.samples = values;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no tetrahedra");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no tetrahedra");
     o.tetrahedra = good;
     o.samples = (const char *)values + 1;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "samples not aligned");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_ARGUMENT, "samples not aligned");
     o.samples = values;
     o.points = (const float *)((const char *)points + 2);
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "points not aligned");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_ARGUMENT, "points not aligned");
     o.points = points;
     o.point_count = 0;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_DATA, "tetrahedra and no points");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_DATA, "tetrahedra and no points");
     o.point_count = 4;
     o.tetrahedron_count = UINT64_C(1) << 32;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_LIMIT, "too many tetrahedra");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_LIMIT, "too many tetrahedra");
     o.tetrahedron_count = 1;
     o.type = (tc_type)77;
-    EXPECT_REFUSED(tc_complex_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no type");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &o, &grid), TC_ERROR_ARGUMENT, "no type");
     o.type = TC_F64;
-    EXPECT_REFUSED(tc_complex_create(NULL, &o, &grid), TC_ERROR_ARGUMENT, "no context");
-    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "one tetrahedron: %s", tc_message());
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(NULL, &o, &grid), TC_ERROR_ARGUMENT, "no context");
+    EXPECT(tc_tetrahedra_grid_create(context, &o, &grid) == TC_OK, "one tetrahedron: %s", tc_message());
     options.isovalue = 1.5;
     options.normals = 1;
     EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_ARGUMENT, "normals");
@@ -371,7 +373,7 @@ static void refusals(tc_context *context) {
     for (uint32_t count = 2; count <= SEVERAL; count += SEVERAL - 2) {
         for (uint32_t n = 0; n < 4 * SEVERAL; n++) bad[n] = n % 4 + (n == 7);
         o.tetrahedra = bad, o.tetrahedron_count = count;
-        if (tc_complex_create(context, &o, &grid)) continue;
+        if (tc_tetrahedra_grid_create(context, &o, &grid)) continue;
         EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_DATA, "a point that is not there");
         EXPECT(strstr(tc_message(), "tetrahedron 1 has point 4"), "not told which: %s", tc_message());
         tc_grid_destroy(grid);
@@ -392,18 +394,18 @@ static void cancelled(tc_engine engine) {
     static const uint8_t values[4] = {0, 1, 2, 3};
     static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
     tc_context_options how;
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     tc_extract_options options;
     tc_mesh *mesh = NULL;
     tc_grid *grid = NULL;
     tc_context_options_init(&how);
     how.engine = engine, how.progress = cancel;
     tc_context *context = context_open(&how);
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = 4, o.points = points, o.samples = values, o.tetrahedron_count = 1, o.tetrahedra = tetrahedron;
     tc_extract_options_init(&options);
     options.isovalue = 2;
-    EXPECT(tc_complex_create(context, &o, &grid) == TC_OK, "%s", tc_message());
+    EXPECT(tc_tetrahedra_grid_create(context, &o, &grid) == TC_OK, "%s", tc_message());
     for (cancel_after = 0;; cancel_after++) {
         cancel_calls = 0;
         tc_status status = tc_extract(grid, &options, &mesh);

@@ -78,7 +78,7 @@ static void test_file(const char *folder, const char *name) {
     char path[1024];
     dataset d;
     read_request request;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     snprintf(path, sizeof path, "%s/unstructured/%s", folder, name);
     read_request_init(&request, path);
     int status = dataset_read(&request, &d);
@@ -107,7 +107,7 @@ static void test_file(const char *folder, const char *name) {
         EXPECT(facts.boundary_faces == border, "%s: %llu triangles on the border, of the cells' faces %llu", name,
                (unsigned long long)facts.boundary_faces, (unsigned long long)border);
     }
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     dataset_release(&d);
 }
 

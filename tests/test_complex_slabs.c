@@ -21,7 +21,7 @@ static bool own_buffers;
 /* A complex with what it points to; options is the view of it. */
 typedef struct subject {
     char name[80];
-    tc_complex_options options;
+    tc_tetrahedra_grid_options options;
     float *points;
     uint32_t *tetrahedra;
     void *values;
@@ -32,7 +32,7 @@ static subject subject_make(const char *name, tc_type type, uint64_t points, uin
     subject s = {.points = malloc(12 * points), .tetrahedra = malloc(16 * tetrahedra), .values = malloc(8 * points)};
     if (!s.points || !s.tetrahedra || !s.values) exit(EXIT_FAILURE);
     snprintf(s.name, sizeof s.name, "%s", name);
-    tc_complex_options_init(&s.options);
+    tc_tetrahedra_grid_options_init(&s.options);
     s.options.type = type, s.options.samples = s.values;
     s.options.point_count = points, s.options.points = s.points;
     s.options.tetrahedron_count = tetrahedra, s.options.tetrahedra = s.tetrahedra;
@@ -62,7 +62,7 @@ static subject block_make(tc_type type, uint32_t size, bool holes, bool shuffled
              shuffled ? ", shuffled" : "");
     cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", name, tc_message());
     subject s = subject_make(name, type, list.point_count, complex.tetrahedron_count);
     memcpy(s.points, list.points, 12 * list.point_count);
@@ -74,7 +74,7 @@ static subject block_make(tc_type type, uint32_t size, bool holes, bool shuffled
     }
     s.isovalues[0] = s.isovalues[2] = 2, s.isovalues[1] = 0.5;
     if (shuffled) tetrahedra_shuffle(&s);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
     return s;
 }
@@ -142,7 +142,7 @@ static uint32_t surface_compare(const subject *s, tc_grid *grid, tc_mesh **mesh,
 
 static void surfaces_of_reference(const subject *s, tc_mesh *meshes[3]) {
     tc_grid *grid = NULL;
-    EXPECT(!tc_complex_create(reference, &s->options, &grid), "%s: %s", s->name, tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(reference, &s->options, &grid), "%s: %s", s->name, tc_message());
     for (int n = 0; n < 3; n++) {
         tc_extract_options options;
         tc_extract_options_init(&options);
@@ -159,7 +159,7 @@ static bool budget_compare(const subject *s, uint64_t budget, unsigned variant, 
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     uint64_t peak;
-    tc_status status = tc_complex_create(context, &s->options, &grid);
+    tc_status status = tc_tetrahedra_grid_create(context, &s->options, &grid);
     EXPECT(status == TC_OK || status == TC_ERROR_MEMORY, "%s: %s", s->name, tc_message());
     for (int n = 0; n < 3 && !status; n++) {
         uint32_t count = surface_compare(s, grid, &mesh, n, wanted[n], budget);
@@ -216,13 +216,13 @@ static void cut_later(void) {
     surfaces_of_reference(&s, wanted);
     tc_context *context = bounded_open(0, 0);
     tc_grid *grids[2] = {NULL, NULL};
-    EXPECT(!tc_complex_create(context, &s.options, &grids[0]), "%s", tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grids[0]), "%s", tc_message());
     surface_compare(&s, grids[0], &mesh, 0, wanted[0], 0);
     tc_context_device_bytes(context, &peak);
     tc_grid_destroy(grids[0]);
     tc_context_destroy(context);
     context = bounded_open(2 * peak, 0); /* the second complex is created while the first one is there */
-    for (int g = 0; g < 2; g++) EXPECT(!tc_complex_create(context, &s.options, &grids[g]), "%s", tc_message());
+    for (int g = 0; g < 2; g++) EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grids[g]), "%s", tc_message());
     for (int n = 0; n < 4; n++)
         for (int g = 0; g < 2; g++)
             slabs[g][n] = surface_compare(&s, grids[g], &mesh, order[n], wanted[order[n]], 2 * peak);
@@ -248,7 +248,7 @@ static void point_refused(uint64_t budget) {
     s.tetrahedra[4 * s.options.tetrahedron_count - 2] = (uint32_t)s.options.point_count;
     snprintf(wanted, sizeof wanted, "tetrahedron %llu has point %llu",
              (unsigned long long)s.options.tetrahedron_count - 1, (unsigned long long)s.options.point_count);
-    EXPECT(!tc_complex_create(context, &s.options, &grid), "%s", tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grid), "%s", tc_message());
     EXPECT_REFUSED(tc_extract(grid, &options, &mesh), TC_ERROR_DATA, "a point that is not there");
     EXPECT(strstr(tc_message(), wanted), "not told which: %s", tc_message());
     tc_grid_destroy(grid);
@@ -279,7 +279,7 @@ static void cancelled(uint64_t budget) {
     tc_context_options_init(&how);
     how.max_memory_bytes = budget, how.own_buffers = own_buffers, how.progress = cancel;
     tc_context *context = context_open(&how);
-    EXPECT(!tc_complex_create(context, &s.options, &grid), "%s", tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grid), "%s", tc_message());
     for (cancel_after = 0;; cancel_after++) {
         cancel_calls = 0, cancel_fraction = 0;
         tc_status status = tc_extract(grid, &options, &mesh);
@@ -310,7 +310,7 @@ static double seconds(void) {
 static void sphere_compare(void) {
     enum { N = 127, COUNT = N * N * N };
     tc_grid_options g;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_mesh *wanted[3];
     subject s = subject_make("sphere", TC_F32, COUNT, 1);
     tc_grid_options_init(&g);
@@ -336,7 +336,7 @@ static void sphere_compare(void) {
         EXPECT((slabs > 1) == (n > 0), "%u slabs", slabs);
     }
     for (int n = 0; n < 3; n++) tc_mesh_destroy(wanted[n]);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     subject_free(&s);
 }
 
@@ -358,7 +358,7 @@ static bool surfaces_compare(const subject *s, tc_context *context, tc_mesh *wan
     tc_mesh *mesh = NULL;
     tc_grid *grid = NULL;
     bool cut = true;
-    EXPECT(!tc_complex_create(context, &s->options, &grid), "%s: %s", s->name, tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(context, &s->options, &grid), "%s: %s", s->name, tc_message());
     for (int n = 0; n < 3; n++) {
         double start = seconds();
         uint32_t slabs = surface_compare(s, grid, &mesh, n, wanted[n], 0);

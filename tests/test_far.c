@@ -32,7 +32,7 @@ typedef struct subject {
     float samples[POINTS];
     double points[3 * POINTS], axes[3][NX];
     uint8_t is_out[POINTS], blanked_cells[POINTS];
-    tc_complex complex;
+    tc_tetrahedra complex;
 } subject;
 
 typedef struct surface {
@@ -80,17 +80,17 @@ static void subject_make(subject *s, enum kind kind, const double at[3]) {
     if (kind >= CURVILINEAR) s->grid.points_f64 = s->points;
 }
 
-static void subject_release(subject *s) { tc_complex_release(&s->complex); }
+static void subject_release(subject *s) { tc_tetrahedra_release(&s->complex); }
 
 static tc_status grid_make(subject *s, tc_context *context, tc_grid **grid) {
     if (s->kind != COMPLEX) return tc_grid_create(context, &s->grid, grid);
-    tc_complex_release(&s->complex);
+    tc_tetrahedra_release(&s->complex);
     static const uint8_t zeros[POINTS]; /* so that tetrahedra without a sample are there, too */
     tc_grid_options whole = s->grid;
     whole.type = TC_U8, whole.samples = zeros;
     tc_status status = tc_tetrahedralize_grid(&whole, &s->complex);
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = POINTS;
     o.points_f64 = s->points;
     o.type = TC_F32;
@@ -99,7 +99,7 @@ static tc_status grid_make(subject *s, tc_context *context, tc_grid **grid) {
     o.tetrahedra = s->complex.tetrahedra;
     o.has_origin = s->grid.has_origin;
     memcpy(o.origin, s->grid.origin, sizeof o.origin);
-    return status ? status : tc_complex_create(context, &o, grid);
+    return status ? status : tc_tetrahedra_grid_create(context, &o, grid);
 }
 
 /* Twice the area, and six times the volume of a cone to the origin. */

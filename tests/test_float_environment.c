@@ -212,7 +212,7 @@ static void cells_shrink(cell_list *list) {
     for (uint64_t n = 0; n < 3 * list->point_count; n++) list->points[n] *= 0x1p-140f;
 }
 
-static void complexes_compare(const tc_complex *a, const tc_complex *b) {
+static void complexes_compare(const tc_tetrahedra *a, const tc_tetrahedra *b) {
     EXPECT(a->tetrahedron_count == b->tetrahedron_count && a->inverted_cell_count == b->inverted_cell_count &&
                a->folded_cell_count == b->folded_cell_count,
            "%s: complexes differ: %llu cells inverted, and %llu", mode_name, (unsigned long long)a->inverted_cell_count,
@@ -226,7 +226,7 @@ static void complexes_compare(const tc_complex *a, const tc_complex *b) {
 static void mode_test(int mode) {
     mode_name = modes[mode].name;
     tc_context *reference = reference_open();
-    tc_complex before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
+    tc_tetrahedra before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
     cell_list list = mixed_block_make(34, 20);
     cells_shrink(&list);
     const tc_cells cells = cell_list_view(&list);
@@ -249,8 +249,8 @@ static void mode_test(int mode) {
         tc_mesh_destroy(subjects[n].expected);
         free(subjects[n].carried);
     }
-    tc_complex_release(&before);
-    tc_complex_release(&after);
+    tc_tetrahedra_release(&before);
+    tc_tetrahedra_release(&after);
     cell_list_free(&list);
     tc_context_destroy(reference);
 }

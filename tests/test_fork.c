@@ -69,7 +69,7 @@ static void own_reference(void) {
 
 static void parents_objects(void) {
     tc_grid_options grid;
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     tc_grid *made = NULL;
     tc_mesh *mesh = NULL;
     tc_mesh_data data = {.struct_size = sizeof data};
@@ -77,9 +77,10 @@ static void parents_objects(void) {
     tc_device_mesh on_device = {.struct_size = sizeof on_device};
     const tc_extract_options options = how();
     grid_describe(&grid);
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     EXPECT_REFUSED(tc_grid_create(parents, &grid, &made), TC_ERROR_DEVICE, "a grid in the parent's context");
-    EXPECT_REFUSED(tc_complex_create(parents, &complex, &made), TC_ERROR_DEVICE, "a complex in the parent's context");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(parents, &complex, &made), TC_ERROR_DEVICE,
+                   "a complex in the parent's context");
     EXPECT_REFUSED(tc_count(parents_grid, &options, &counts), TC_ERROR_DEVICE, "counting the parent's grid");
     EXPECT_REFUSED(tc_emit(parents_grid, &options, &on_device, NULL), TC_ERROR_DEVICE, "emitting the parent's grid");
     EXPECT_REFUSED(tc_extract(parents_grid, &options, &mesh), TC_ERROR_DEVICE, "extracting the parent's grid");

@@ -84,13 +84,13 @@ static void expect_same(tc_context *context, const tc_grid_options *one, const t
 }
 
 static void expect_same_cut(const tc_grid_options *one, const tc_grid_options *other, const char *name) {
-    tc_complex a = {.struct_size = sizeof a}, b = {.struct_size = sizeof b};
+    tc_tetrahedra a = {.struct_size = sizeof a}, b = {.struct_size = sizeof b};
     EXPECT(!tc_tetrahedralize_grid(one, &a) && !tc_tetrahedralize_grid(other, &b), "%s: %s", name, tc_message());
     EXPECT(a.tetrahedron_count == b.tetrahedron_count && a.tetrahedron_count &&
                !memcmp(a.tetrahedra, b.tetrahedra, (size_t)a.tetrahedron_count * 4 * sizeof *a.tetrahedra),
            "%s: other tetrahedra", name);
-    tc_complex_release(&a);
-    tc_complex_release(&b);
+    tc_tetrahedra_release(&a);
+    tc_tetrahedra_release(&b);
 }
 
 /* Each type and kind of grid has kernels of its own, whose building takes long: one integer type stands for the others.

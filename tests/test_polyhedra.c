@@ -10,16 +10,16 @@
 
 enum { ROUNDS = 400 };
 
-static tc_complex cut(const tc_cells *cells, const char *what) {
-    tc_complex complex = {.struct_size = sizeof complex};
+static tc_tetrahedra cut(const tc_cells *cells, const char *what) {
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_status status = tc_tetrahedralize(cells, &complex);
     EXPECT(status == TC_OK, "%s: status %d: %s", what, (int)status, tc_message());
     return complex;
 }
 
 /* volume: six times it. */
-static void expect_conforming(const tc_complex *complex, const cell_list *list, uint64_t boundary_faces, double volume,
-                              const char *what) {
+static void expect_conforming(const tc_tetrahedra *complex, const cell_list *list, uint64_t boundary_faces,
+                              double volume, const char *what) {
     complex_facts f = complex_facts_of(complex, list->points, list->point_count);
     EXPECT(!f.bad_tetrahedra && !f.bad_faces && !f.not_positive,
            "%s: %llu bad tetrahedra, %llu not positive, %llu bad "
@@ -48,7 +48,7 @@ static double height(const float *points, const uint32_t plane[3], uint32_t p) {
 
 /* All tetrahedra of a convex cell have its smallest point, 0, and all triangles on its border the smallest point of
  * their plane. */
-static void expect_smallest(const tc_complex *one, const cell_list *list, const char *what) {
+static void expect_smallest(const tc_tetrahedra *one, const cell_list *list, const char *what) {
     for (uint64_t n = 0; n < one->tetrahedron_count; n++) {
         const uint32_t *t = one->tetrahedra + 4 * n;
         EXPECT(!t[0] || !t[1] || !t[2] || !t[3], "%s: a tetrahedron without the smallest point", what);
@@ -90,7 +90,7 @@ static void prism_check(int sides, bool as_polyhedron) {
         cell_list_add(&list, sides + 10, 2 * sides, h, random_below(2));
     cell_list_renumber(&list);
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, what);
+    tc_tetrahedra complex = cut(&cells, what);
     int twice_area = 0;
     for (int n = 0; n < sides; n++) {
         const int *a = hexagon[n], *b = hexagon[(n + 1) % sides];
@@ -100,7 +100,7 @@ static void prism_check(int sides, bool as_polyhedron) {
            (unsigned long long)complex.tetrahedron_count);
     expect_conforming(&complex, &list, (unsigned)(4 * sides - 4), 6.0 * twice_area, what);
     expect_smallest(&complex, &list, what);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -109,11 +109,11 @@ static void truncated_octahedron_check(uint64_t seed) {
     tc_cells cells = cell_list_view(&list);
     cells.cell_count = 1;
     list.cell_count = 1;
-    tc_complex both = cut(&cells, "truncated octahedron");
+    tc_tetrahedra both = cut(&cells, "truncated octahedron");
     complex_facts f = complex_facts_of(&both, list.points, list.point_count);
     EXPECT(f.boundary_faces == 6 * 2 + 8 * 4 && f.volume == 6 * 32 && !f.bad_faces && !f.not_positive,
            "truncated octahedron: %llu faces, volume %g", (unsigned long long)f.boundary_faces, f.volume);
-    tc_complex_release(&both);
+    tc_tetrahedra_release(&both);
     cell_list_free(&list);
 }
 
@@ -133,9 +133,9 @@ static void kelvin_check(uint32_t size) {
     snprintf(what, sizeof what, "truncated octahedra, %u", size);
     cell_list list = kelvin_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, what);
+    tc_tetrahedra complex = cut(&cells, what);
     expect_conforming(&complex, &list, kelvin_boundary(size), 6.0 * 32 * (double)list.cell_count, what);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -144,10 +144,10 @@ static void honeycomb_check(uint32_t size) {
     snprintf(what, sizeof what, "honeycomb, %u", size);
     cell_list list = honeycomb_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, what);
+    tc_tetrahedra complex = cut(&cells, what);
     const uint64_t n = size, sides = 6 * n * n - 2 * (n * (n - 1) * 2 + (n - 1) * (n - 1));
     expect_conforming(&complex, &list, 2 * sides * n + 2 * 4 * n * n, 6.0 * 3 * (double)(n * n * n), what);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -182,14 +182,14 @@ static void divided_check(bool turned) {
 #undef P
     cell_list_renumber(&list);
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, "divided face");
+    tc_tetrahedra complex = cut(&cells, "divided face");
     complex_facts f = complex_facts_of(&complex, list.points, list.point_count);
     EXPECT(!f.bad_faces && f.boundary_faces == 2 + 4 * 3 + 8 + 16, "divided face: %llu bad faces, %llu at the boundary",
            (unsigned long long)f.bad_faces, (unsigned long long)f.boundary_faces);
     EXPECT(fabs(f.volume - 72) < (turned ? 1e-4 : 1e-12), "divided face: volume %g", f.volume);
     EXPECT(!complex.folded_cell_count && complex.inverted_cell_count == list.inverted_count,
            "divided face: %llu folded", (unsigned long long)complex.folded_cell_count);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -211,13 +211,13 @@ static void many_corners(int sides) {
     list.types[0] = 42, list.cell_count = 1;
     tc_cells cells = cell_list_view(&list);
     cells.cell_faces = starts, cells.face_offsets = offsets, cells.face_connectivity = points;
-    tc_complex complex = cut(&cells, "a cone of many sides");
+    tc_tetrahedra complex = cut(&cells, "a cone of many sides");
     complex_facts f = complex_facts_of(&complex, list.points, list.point_count);
     EXPECT(complex.tetrahedron_count == (unsigned)sides - 2 && !f.bad_faces && !f.not_positive &&
                f.boundary_faces == 2 * (unsigned)sides - 2 && fabs(f.volume - sides * sin(2 * M_PI / sides)) < 1e-4,
            "a cone of %d sides: %llu tetrahedra, volume %g", sides, (unsigned long long)complex.tetrahedron_count,
            f.volume);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     free(starts), free(offsets), free(points);
     cell_list_free(&list);
 }
@@ -226,7 +226,7 @@ static void many_corners(int sides) {
  */
 
 static void refused(const tc_cells *cells, tc_status wanted, const char *word) {
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT_REFUSED(tc_tetrahedralize(cells, &complex), wanted, word);
     EXPECT(strstr(tc_message(), word), "no \"%s\" in \"%s\"", word, tc_message());
     EXPECT(!complex.tetrahedra && !complex.cells && !complex.tetrahedron_count, "%s: something is left", word);
@@ -261,20 +261,20 @@ static void pair_make(pair *p) {
 }
 
 static void expect_left_out(const pair *p, const char *what) {
-    tc_complex complex = cut(&p->cells, what);
+    tc_tetrahedra complex = cut(&p->cells, what);
     EXPECT(complex.tetrahedron_count == 1 && complex.cells[0] == 1 && complex.unsupported_cell_count == 1,
            "%s: %llu tetrahedra, %llu cells unsupported", what, (unsigned long long)complex.tetrahedron_count,
            (unsigned long long)complex.unsupported_cell_count);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 }
 
 static void damaged_faces(void) {
     pair p;
     pair_make(&p);
-    tc_complex complex = cut(&p.cells, "two tetrahedra");
+    tc_tetrahedra complex = cut(&p.cells, "two tetrahedra");
     EXPECT(complex.tetrahedron_count == 2 && !complex.inverted_cell_count, "two tetrahedra: %llu",
            (unsigned long long)complex.tetrahedron_count);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 
     p.cells.cell_faces = NULL;
     refused(&p.cells, TC_ERROR_DATA, "cell 0, a polyhedron, has no faces");
@@ -306,7 +306,7 @@ static void damaged_faces(void) {
     p.points[10] = 0;
     complex = cut(&p.cells, "a blanked point of a polyhedron");
     EXPECT(complex.tetrahedron_count == 1 && complex.blanked_cell_count == 1, "a blanked point of a polyhedron");
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 
     pair_make(&p), p.cells.face_offsets = NULL;
     refused(&p.cells, TC_ERROR_ARGUMENT, "face_offsets");
@@ -345,11 +345,11 @@ static void degenerate_faces(void) {
     const int64_t starts[] = {0, 6, 6};
     pair_make(&p);
     p.cells.cell_faces = starts, p.cells.face_offsets = offsets, p.cells.face_connectivity = faces;
-    tc_complex complex = cut(&p.cells, "degenerate faces");
+    tc_tetrahedra complex = cut(&p.cells, "degenerate faces");
     complex_facts f = complex_facts_of(&complex, p.points, 5);
     EXPECT(complex.tetrahedron_count == 2 && !f.not_positive && !f.bad_tetrahedra && f.volume == 3,
            "degenerate faces: %llu tetrahedra, volume %g", (unsigned long long)complex.tetrahedron_count, f.volume);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 }
 
 /* Of more points than the type has the first ones are taken. The others have to be nowhere. */
@@ -365,9 +365,9 @@ static void surplus_points(void) {
         for (int m = 0; m < 3; m++) links[cases[n].points + m] = 1000000;
         tc_cells cells = cell_list_view(&list);
         cells.cell_count = 1, cells.types = &type, cells.offsets = offsets, cells.connectivity = links;
-        tc_complex complex = cut(&cells, "surplus points");
+        tc_tetrahedra complex = cut(&cells, "surplus points");
         offsets[1] -= 3;
-        tc_complex exact = cut(&cells, "no surplus points");
+        tc_tetrahedra exact = cut(&cells, "no surplus points");
         EXPECT(complex.surplus_cell_count == 1 && exact.surplus_cell_count == 0, "type %d: surplus points miscounted",
                type);
         EXPECT(complex.tetrahedron_count == exact.tetrahedron_count &&
@@ -376,11 +376,11 @@ static void surplus_points(void) {
         marks[cases[n].points] = 1;
         links[cases[n].points] = cases[n].points, offsets[1]++;
         cells.blanked_points = marks;
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
         complex = cut(&cells, "a surplus point that is blanked");
         EXPECT(complex.blanked_cell_count == 0, "type %d: a surplus point blanks the cell", type);
-        tc_complex_release(&complex);
-        tc_complex_release(&exact);
+        tc_tetrahedra_release(&complex);
+        tc_tetrahedra_release(&exact);
         cell_list_free(&list);
     }
 }

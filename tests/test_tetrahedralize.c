@@ -9,15 +9,15 @@
 #include <float.h>
 #include <string.h>
 
-static tc_complex cut(const tc_cells *cells, const char *what) {
-    tc_complex complex = {.struct_size = sizeof complex};
+static tc_tetrahedra cut(const tc_cells *cells, const char *what) {
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_status status = tc_tetrahedralize(cells, &complex);
     EXPECT(status == TC_OK, "%s: status %d: %s", what, (int)status, tc_message());
     return complex;
 }
 
-static void expect_conforming(const tc_complex *complex, const tc_cells *cells, uint64_t boundary_faces, double volume,
-                              const char *what) {
+static void expect_conforming(const tc_tetrahedra *complex, const tc_cells *cells, uint64_t boundary_faces,
+                              double volume, const char *what) {
     complex_facts f = complex_facts_of(complex, cells->points, cells->point_count);
     EXPECT(f.bad_tetrahedra == 0, "%s: %llu tetrahedra with bad points", what, (unsigned long long)f.bad_tetrahedra);
     EXPECT(f.not_positive == 0, "%s: %llu tetrahedra not positive", what, (unsigned long long)f.not_positive);
@@ -74,7 +74,7 @@ static bool permute(uint32_t *p, int count) {
 
 /* A diagonal from the smallest point of every quadrilateral: a face's four points span two triangles of the boundary,
  * both with the smallest one. */
-static void expect_smallest_diagonals(const shape *s, const tc_complex *one, const uint32_t *numbers) {
+static void expect_smallest_diagonals(const shape *s, const tc_tetrahedra *one, const uint32_t *numbers) {
     for (uint32_t n = 0; n < 4 * one->tetrahedron_count; n++) {
         uint32_t plane_points[3], smallest = UINT32_MAX;
         for (uint32_t v = 0, m = 0; v < 4; v++)
@@ -123,7 +123,7 @@ static void order_check(const shape *s, const uint32_t *numbers) {
     bool inverted = random_below(2);
     cell_list_add(&list, s->type, s->corner_count, numbers, inverted);
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, s->name);
+    tc_tetrahedra complex = cut(&cells, s->name);
     EXPECT(complex.tetrahedron_count == count, "%s: %llu tetrahedra, not %llu", s->name,
            (unsigned long long)complex.tetrahedron_count, (unsigned long long)count);
     EXPECT(complex.inverted_cell_count == inverted && complex.folded_cell_count == 0, "%s: orientation miscounted",
@@ -131,7 +131,7 @@ static void order_check(const shape *s, const uint32_t *numbers) {
     EXPECT(complex.curved_cell_count + complex.flat_cell_count == 0, "%s: kinds miscounted", s->name);
     expect_conforming(&complex, &cells, (uint64_t)s->faces, s->volume, s->name);
     expect_smallest_diagonals(s, &complex, numbers);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -153,7 +153,7 @@ static void mixed_blocks(void) {
         snprintf(what, sizeof what, "mixed block %d of size %u", round, size);
         cell_list list = mixed_block_make(size, random_u64());
         tc_cells cells = cell_list_view(&list);
-        tc_complex complex = cut(&cells, what);
+        tc_tetrahedra complex = cut(&cells, what);
         expect_conforming(&complex, &cells, 12ull * size * size, 6.0 * size * size * size, what);
         EXPECT(complex.inverted_cell_count == list.inverted_count, "%s: %llu cells inverted, not %llu", what,
                (unsigned long long)complex.inverted_cell_count, (unsigned long long)list.inverted_count);
@@ -161,7 +161,7 @@ static void mixed_blocks(void) {
         for (uint64_t n = 1; n < complex.tetrahedron_count; n++)
             EXPECT(complex.cells[n - 1] <= complex.cells[n] && complex.cells[n] <= complex.cells[n - 1] + 1,
                    "%s: tetrahedra not in the order of cells", what);
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
         cell_list_free(&list);
     }
 }
@@ -185,10 +185,10 @@ static void collapsed(void) {
             cell_list_add(&list, 12, 8, h, random_below(2));
         }
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, "collapsed hexahedra");
+    tc_tetrahedra complex = cut(&cells, "collapsed hexahedra");
     expect_conforming(&complex, &cells, 2 * ROUND + 2 * ROUND * UP, 6.0 * 2 * UP, "collapsed hexahedra");
     EXPECT(complex.inverted_cell_count == list.inverted_count, "collapsed hexahedra: inverted ones miscounted");
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -201,9 +201,9 @@ static void folded(void) {
     cell_list_add(&list, 12, 8, h, false);
     for (int axis = 0; axis < 3; axis++) list.points[3 * 6 + axis] = -0.2f;
     tc_cells cells = cell_list_view(&list);
-    tc_complex complex = cut(&cells, "folded hexahedron");
+    tc_tetrahedra complex = cut(&cells, "folded hexahedron");
     EXPECT(complex.folded_cell_count == 1, "a folded hexahedron is not counted");
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
 
@@ -232,14 +232,14 @@ static void curved_and_flat(void) {
                           .types = types,
                           .offsets = offsets,
                           .connectivity = connectivity};
-        tc_complex complex = cut(&cells, "curved cell");
+        tc_tetrahedra complex = cut(&cells, "curved cell");
         expect_conforming(&complex, &cells, (uint64_t)s->faces, s->volume, "curved cell");
         EXPECT(complex.curved_cell_count == 1 && complex.flat_cell_count == 1, "type %d: kinds miscounted",
                curved[n].type);
         /* the base of VTK's wedges lies the other way round where they are curved */
         EXPECT(complex.inverted_cell_count == (curved[n].like == 13), "type %d: orientation miscounted",
                curved[n].type);
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
     }
     for (size_t n = 0; n < sizeof flat; n++) {
         const int64_t offsets[] = {0, 0};
@@ -250,9 +250,9 @@ static void curved_and_flat(void) {
                           .types = &flat[n],
                           .offsets = offsets,
                           .connectivity = NULL};
-        tc_complex complex = cut(&cells, "flat cell");
+        tc_tetrahedra complex = cut(&cells, "flat cell");
         EXPECT(complex.flat_cell_count == 1 && complex.tetrahedron_count == 0, "type %d is not flat", flat[n]);
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
     }
 }
 
@@ -263,7 +263,7 @@ static void blanked(void) {
     for (int n = 0; n < 10; n++) marks[random_below((uint32_t)list.cell_count)] = 1;
     tc_cells cells = cell_list_view(&list);
     cells.blanked_points = points, cells.blanked_cells = marks;
-    tc_complex complex = cut(&cells, "blanked block");
+    tc_tetrahedra complex = cut(&cells, "blanked block");
     uint64_t left_out = 0, next = 0;
     for (uint64_t c = 0; c < list.cell_count; c++) {
         bool out = marks[c], there = false;
@@ -273,7 +273,7 @@ static void blanked(void) {
         left_out += out;
     }
     EXPECT(complex.blanked_cell_count == left_out, "blanked cells miscounted");
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     free(points);
     free(marks);
     cell_list_free(&list);
@@ -311,7 +311,7 @@ static void grid_check(bool missing, bool mirrored, bool bent) {
             present = !isnan(values[n + (c & 1) + NX * (c >> 1 & 1) + NX * NY * (c >> 2)]);
         cubes += present;
     }
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT(tc_tetrahedralize_grid(&grid, &complex) == TC_OK, "grid: %s", tc_message());
     complex_facts f = complex_facts_of(&complex, points, NX * NY * NZ);
     const uint64_t all = (NX - 1) * (NY - 1) * (NZ - 1);
@@ -324,13 +324,13 @@ static void grid_check(bool missing, bool mirrored, bool bent) {
     if (!missing)
         EXPECT(f.boundary_faces == 4 * ((NX - 1) * (NY - 1) + (NX - 1) * (NZ - 1) + (NY - 1) * (NZ - 1)),
                "grid: %llu faces at the boundary", (unsigned long long)f.boundary_faces);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- refusal */
 
 static void refused(const tc_cells *cells, tc_status wanted, const char *word) {
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     EXPECT_REFUSED(tc_tetrahedralize(cells, &complex), wanted, word);
     EXPECT(strstr(tc_message(), word), "no \"%s\" in \"%s\"", word, tc_message());
     EXPECT(!complex.tetrahedra && !complex.cells && !complex.tetrahedron_count, "%s: something is left", word);
@@ -385,15 +385,15 @@ static void positions(void) {
                           .offsets = offsets,
                           .connectivity = connectivity};
         points[3 * 11 + n % 3] = points[3 * 9 + n % 3] = odd[n];
-        tc_complex complex = cut(&cells, "odd midpoint");
+        tc_tetrahedra complex = cut(&cells, "odd midpoint");
         EXPECT(complex.tetrahedron_count == 1, "a midpoint matters");
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
         points[6 + n % 3] = odd[n];
         refused(&cells, TC_ERROR_DATA, "point 2 of cell 0, a quadratic tetrahedron");
         cells.blanked_points = marks;
         complex = cut(&cells, "odd corner that is blanked");
         EXPECT(complex.blanked_cell_count == 1, "a blanked corner matters");
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
     }
 }
 
@@ -431,17 +431,17 @@ static void refusals(void) {
     cells.struct_size = 0;
     refused(&cells, TC_ERROR_ARGUMENT, "struct_size");
     cells.struct_size = sizeof cells;
-    tc_complex unset = {0};
+    tc_tetrahedra unset = {0};
     EXPECT_REFUSED(tc_tetrahedralize(&cells, &unset), TC_ERROR_ARGUMENT, "complex without struct_size");
     cells.cell_count = 0;
-    tc_complex none = cut(&cells, "no cells");
+    tc_tetrahedra none = cut(&cells, "no cells");
     EXPECT(none.tetrahedron_count == 0, "tetrahedra of nothing");
-    tc_complex_release(&none);
-    tc_complex_release(NULL);
+    tc_tetrahedra_release(&none);
+    tc_tetrahedra_release(NULL);
     cell_list_free(&list);
 
     tc_grid_options grid;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_grid_options_init(&grid);
     EXPECT_REFUSED(tc_tetrahedralize_grid(&grid, &complex), TC_ERROR_ARGUMENT, "grid without samples");
     EXPECT_REFUSED(tc_tetrahedralize_grid(&grid, &unset), TC_ERROR_ARGUMENT, "grid, complex without struct_size");

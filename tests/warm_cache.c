@@ -107,12 +107,12 @@ static void complex_build(size_t n) {
     } others[] = {{TC_U8, 32}, {TC_F32, 32}, {TC_F64, 32}, {TC_U8, 64}, {TC_F32, 64}, {TC_F64, 64}};
     double memory[4];
     tc_context_options options;
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     tc_extract_options how;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_context_options_init(&options);
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     tc_extract_options_init(&how);
     complex.type = n <= TC_F64 ? (tc_type)n : others[n - 1 - TC_F64].type;
     options.work_items = n <= TC_F64 ? 0 : others[n - 1 - TC_F64].work_items;
@@ -121,7 +121,7 @@ static void complex_build(size_t n) {
     complex.point_count = 4, complex.points = points, complex.samples = memory;
     complex.tetrahedron_count = 1, complex.tetrahedra = tetrahedron;
     how.isovalue = 2;
-    EXPECT(!tc_complex_create(context, &complex, &grid) && !tc_extract(grid, &how, &mesh), "%s", tc_message());
+    EXPECT(!tc_tetrahedra_grid_create(context, &complex, &grid) && !tc_extract(grid, &how, &mesh), "%s", tc_message());
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
     tc_context_destroy(context);

@@ -422,8 +422,8 @@ typedef struct tc_cells {
 /* A conforming tetrahedral complex: tetrahedra of one cell follow each other, in the order of the cells. Where a cell's
  * volume is positive, v0 v1 v2 wind counter-clockwise seen from v3's other side: (v1 - v0) x (v2 - v0) . (v3 - v0) > 0
  * unless the cell is folded; where it is negative they have been turned over. */
-typedef struct tc_complex {
-    size_t struct_size; /* set by the caller: sizeof(tc_complex) */
+typedef struct tc_tetrahedra {
+    size_t struct_size; /* set by the caller: sizeof(tc_tetrahedra) */
     uint64_t tetrahedron_count;
     const uint32_t *tetrahedra; /* 4 points each */
     const uint32_t *cells;      /* of each tetrahedron: the cell it is part of */
@@ -435,7 +435,7 @@ typedef struct tc_complex {
                                      have less than 1e-5 of the volume, as rounding makes them of faces in one plane */
     uint64_t unsupported_cell_count; /* left out as tc_cells.skip_unsupported asks */
     uint64_t surplus_cell_count;     /* with more points than their type has, of which the first were taken */
-} tc_complex;
+} tc_tetrahedra;
 
 /* Cuts cells into tetrahedra: the diagonal of every quadrilateral face goes through its smallest point number, and
  * faces of more corners are fans around it, so that neighbours agree whatever their types (Dompierre, Labbe, Vallet,
@@ -443,28 +443,28 @@ typedef struct tc_complex {
  * and the quadratic kin of the former by their corners. TC_ERROR_DATA for points out of range, coordinates of a corner
  * that are not finite or 2^127 and beyond, cells with too few points, 3D types that are none of these, and polyhedra
  * whose faces are not closed; TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra. The complex, zeroed on
- * failure, is freed by tc_complex_release. */
-TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *tetrahedra);
+ * failure, is freed by tc_tetrahedra_release. */
+TC_API tc_status tc_tetrahedralize(const tc_cells *cells, tc_tetrahedra *tetrahedra);
 
 /* The same of a structured grid: five tetrahedra per cube, mirrored on alternate cubes, as the structured path does. Of
  * the options only sizes, parity (first), coordinates and what is missing matter. Points are the samples. */
-TC_API tc_status tc_tetrahedralize_grid(const tc_grid_options *grid, tc_complex *tetrahedra);
-TC_API void tc_complex_release(tc_complex *tetrahedra);
+TC_API tc_status tc_tetrahedralize_grid(const tc_grid_options *grid, tc_tetrahedra *tetrahedra);
+TC_API void tc_tetrahedra_release(tc_tetrahedra *tetrahedra);
 
-typedef struct tc_complex_options {
-    size_t struct_size; /* set by tc_complex_options_init */
+typedef struct tc_tetrahedra_grid_options {
+    size_t struct_size; /* set by tc_tetrahedra_grid_options_init */
     uint64_t point_count;
     const float *points; /* x, y, z each, finite; borrowed until tc_grid_destroy, as the next three are */
     tc_type type;
     const void *samples; /* one per point; tetrahedra with a sample that is not finite are left out */
     uint64_t tetrahedron_count;
-    const uint32_t *tetrahedra; /* 4 points each, ordered as in tc_complex */
-    const double *points_f64;   /* in place of points: double precision, borrowed during tc_complex_create only */
-    int has_origin;             /* as in tc_grid_options */
+    const uint32_t *tetrahedra; /* 4 points each, ordered as in tc_tetrahedra */
+    const double *points_f64; /* in place of points: double precision, borrowed during tc_tetrahedra_grid_create only */
+    int has_origin;           /* as in tc_grid_options */
     double origin[3];
-} tc_complex_options;
+} tc_tetrahedra_grid_options;
 
-TC_API void tc_complex_options_init(tc_complex_options *options);
+TC_API void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options);
 
 /* A grid that tc_count and tc_extract take like a structured one, without normals, and by TC_METHOD_TETRA only; active
  * cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge (01 02 03
@@ -474,7 +474,8 @@ TC_API void tc_complex_options_init(tc_complex_options *options);
  * for more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device without fp64.
  * A tetrahedron with a point that is not there is TC_ERROR_DATA, found when the tetrahedra are first read: by tc_count
  * or tc_extract. */
-TC_API tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **grid);
+TC_API tc_status tc_tetrahedra_grid_create(tc_context *context, const tc_tetrahedra_grid_options *options,
+                                           tc_grid **grid);
 
 /* -------------------------------------------------------------------------------------------------- on the device */
 

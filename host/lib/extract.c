@@ -70,7 +70,8 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
     if (status) return status;
-    if (grid->complex) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take complexes: use tc_extract");
+    if (grid->complex)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take grids of tetrahedra: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
     status = structured_emit(grid, &o, &m, done);
     vetting_restarts(grid->context); /* what was counted is gone: the caller counts again */

@@ -7,9 +7,9 @@
 #include "grids.h"
 #include "base/structs.h"
 
-void tc_complex_options_init(tc_complex_options *options) {
+void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options) {
     if (!options) return;
-    *options = (tc_complex_options){.struct_size = sizeof *options};
+    *options = (tc_tetrahedra_grid_options){.struct_size = sizeof *options};
 }
 
 tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **out) {
@@ -24,14 +24,14 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
     return status ? status : grid_create(context, &o, context->launch.scan, out);
 }
 
-tc_status tc_complex_create(tc_context *context, const tc_complex_options *options, tc_grid **out) {
+tc_status tc_tetrahedra_grid_create(tc_context *context, const tc_tetrahedra_grid_options *options, tc_grid **out) {
     FLOAT_ENVIRONMENT_DEFAULT;
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     if (out) *out = NULL;
     if (!out || !context)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_complex_create needs a context and a place for the grid");
-    tc_complex_options_init(&o);
-    tc_status status = options_take(&o, sizeof o, options, "complex options");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedra_grid_create needs a context and a place for the grid");
+    tc_tetrahedra_grid_options_init(&o);
+    tc_status status = options_take(&o, sizeof o, options, "options of a grid of tetrahedra");
     if (!status) status = context_check(context);
     return status ? status : complex_create(context, &o, context->launch.scan, out);
 }

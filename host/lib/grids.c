@@ -39,7 +39,8 @@ tc_status grid_create(tc_context *context, const tc_grid_options *o, scan_parame
     return grid_give(grid, status, out);
 }
 
-tc_status complex_create(tc_context *context, const tc_complex_options *o, scan_parameters scan, tc_grid **out) {
+tc_status complex_create(tc_context *context, const tc_tetrahedra_grid_options *o, scan_parameters scan,
+                         tc_grid **out) {
     *out = NULL;
     tc_grid *grid = grid_allocate(context, scan);
     if (!grid) return TC_ERROR_MEMORY;

@@ -6,9 +6,10 @@
 
 #include "grid/grid.h"
 
-/* As tc_grid_create and tc_complex_create. */
+/* As tc_grid_create and tc_tetrahedra_grid_create. */
 tc_status grid_create(tc_context *context, const tc_grid_options *options, scan_parameters scan, tc_grid **out);
-tc_status complex_create(tc_context *context, const tc_complex_options *options, scan_parameters scan, tc_grid **out);
+tc_status complex_create(tc_context *context, const tc_tetrahedra_grid_options *options, scan_parameters scan,
+                         tc_grid **out);
 
 /* NULL is no grid. */
 void grid_destroy(tc_grid *grid);

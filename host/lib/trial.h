@@ -33,7 +33,7 @@ typedef struct trial_volume {
     grid_kind kind;
     bool unstructured, missing, plain; /* plain: samples of one magnitude, for normals: squares would overflow */
     tc_grid_options options;
-    tc_complex complex; /* unstructured: the volume, cut */
+    tc_tetrahedra complex; /* unstructured: the volume, cut */
     double isovalue;
     void *samples;
     float *points, *axes;

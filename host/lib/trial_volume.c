@@ -110,16 +110,16 @@ tc_status trial_volume_make(trial_volume *v) {
 }
 
 void trial_volume_release(trial_volume *v) {
-    tc_complex_release(&v->complex);
+    tc_tetrahedra_release(&v->complex);
     free(v->samples);
     free(v->points);
     free(v->axes);
 }
 
 tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_parameters scan, tc_grid **grid) {
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     if (!v->unstructured) return grid_create(context, &v->options, scan, grid);
-    complex = (tc_complex_options){.struct_size = sizeof complex, .point_count = SAMPLES};
+    complex = (tc_tetrahedra_grid_options){.struct_size = sizeof complex, .point_count = SAMPLES};
     complex.points = v->points;
     complex.type = v->type;
     complex.samples = v->samples;

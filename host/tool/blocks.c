@@ -64,13 +64,13 @@ static int cut_structured(const options *o, prepared_block *b) {
 /* The failure of a cut, with the option that helps where nothing is amiss but cells that cannot be cut. */
 static int refuse_cells(const options *o, const tc_cells *cells, tc_status status) {
     tc_cells others = *cells;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     char text[900];
     snprintf(text, sizeof text, "%s", tc_message());
     others.skip_unsupported = 1;
     int is_help = status == TC_ERROR_DATA && !cells->skip_unsupported && !tc_tetrahedralize(&others, &complex);
     uint64_t count = complex.unsupported_cell_count;
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     if (is_help)
         return fail(STATUS_INPUT, "%s: %s; --skip-unsupported leaves out the %" PRIu64 " cells that cannot be cut",
                     o->operands[0], text, count);
@@ -218,15 +218,15 @@ int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, blo
 }
 
 void blocks_release(block_list *list) {
-    for (int n = 0; n < list->count; n++) tc_complex_release(&list->blocks[n].complex);
+    for (int n = 0; n < list->count; n++) tc_tetrahedra_release(&list->blocks[n].complex);
     free(list->blocks);
     *list = (block_list){0};
 }
 
 static tc_status complex_grid(const prepared_block *b, tc_context *context, const double *origin, tc_grid **grid) {
-    tc_complex_options from;
+    tc_tetrahedra_grid_options from;
     if (!b->complex.tetrahedron_count) return TC_OK;
-    tc_complex_options_init(&from);
+    tc_tetrahedra_grid_options_init(&from);
     from.point_count = (uint64_t)b->source->point_count;
     from.points = b->source->points.f32;
     from.points_f64 = b->source->points.f64;
@@ -238,7 +238,7 @@ static tc_status complex_grid(const prepared_block *b, tc_context *context, cons
     from.samples = b->scalar->samples;
     from.tetrahedron_count = b->complex.tetrahedron_count;
     from.tetrahedra = b->complex.tetrahedra;
-    return tc_complex_create(context, &from, grid);
+    return tc_tetrahedra_grid_create(context, &from, grid);
 }
 
 int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,

@@ -67,7 +67,7 @@ typedef struct trial_group {
 /* What a trial extracts from. */
 typedef struct selftest_volume {
     tc_grid_options grid;
-    tc_complex complex; /* KIND_COMPLEX: the grid, cut */
+    tc_tetrahedra complex; /* KIND_COMPLEX: the grid, cut */
     void *samples;
     float *points, *axes;
 } selftest_volume;

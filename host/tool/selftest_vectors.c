@@ -108,7 +108,7 @@ void vectors_release(vector_list *list) {
 /* What a vector is extracted from. */
 typedef struct volume {
     tc_grid_options options;
-    tc_complex cut;
+    tc_tetrahedra cut;
     void *samples;
     float *points; /* of a complex: i, j, k */
 } volume;
@@ -140,24 +140,24 @@ static int make_volume(const vector *v, volume *out) {
 }
 
 static void release_volume(volume *v) {
-    tc_complex_release(&v->cut);
+    tc_tetrahedra_release(&v->cut);
     free(v->samples);
     free(v->points);
 }
 
 static tc_status create_grid(const vector *v, volume *from, tc_context *device, tc_grid **grid) {
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     if (!v->is_complex) return tc_grid_create(device, &from->options, grid);
     tc_status status = tc_tetrahedralize_grid(&from->options, &from->cut);
     if (status) return status;
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     complex.point_count = (uint64_t)(v->dims[0] * v->dims[1] * v->dims[2]);
     complex.points = from->points;
     complex.type = v->type;
     complex.samples = from->samples;
     complex.tetrahedron_count = from->cut.tetrahedron_count;
     complex.tetrahedra = from->cut.tetrahedra;
-    return tc_complex_create(device, &complex, grid);
+    return tc_tetrahedra_grid_create(device, &complex, grid);
 }
 
 static void compare(const vector *v, const tc_mesh_data *m, char *text, size_t bytes) {

@@ -145,21 +145,21 @@ int selftest_volume_make(const trial *t, selftest_volume *v) {
 }
 
 void selftest_volume_release(selftest_volume *v) {
-    tc_complex_release(&v->complex);
+    tc_tetrahedra_release(&v->complex);
     free(v->samples);
     free(v->points);
     free(v->axes);
 }
 
 tc_status selftest_grid_create(const selftest_volume *v, tc_context *context, tc_grid **grid) {
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     if (!v->complex.tetrahedra) return tc_grid_create(context, &v->grid, grid);
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     complex.point_count = (uint64_t)(v->grid.dims[0] * v->grid.dims[1] * v->grid.dims[2]);
     complex.points = v->points;
     complex.type = v->grid.type;
     complex.samples = v->samples;
     complex.tetrahedron_count = v->complex.tetrahedron_count;
     complex.tetrahedra = v->complex.tetrahedra;
-    return tc_complex_create(context, &complex, grid);
+    return tc_tetrahedra_grid_create(context, &complex, grid);
 }

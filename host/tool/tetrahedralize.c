@@ -51,7 +51,7 @@ static int read_input(conversion *c) {
 static int cut(conversion *c) {
     int status = blocks_cut(c->o, &c->data, c->field.blocks ? &c->field : NULL, 1, &c->blocks);
     for (int n = 0; n < c->blocks.count; n++) {
-        const tc_complex *one = &c->blocks.blocks[n].complex;
+        const tc_tetrahedra *one = &c->blocks.blocks[n].complex;
         c->flat += one->flat_cell_count;
         c->curved += one->curved_cell_count;
         c->blanked += one->blanked_cell_count;
@@ -156,7 +156,7 @@ static int join_tetrahedra(conversion *c) {
     if (!(to = dataset_allocate(&c->data, values * sizeof *to))) return STATUS_FAILED;
     c->file.tetrahedra = to;
     for (int n = 0; n < c->blocks.count; n++) {
-        const tc_complex *one = &c->blocks.blocks[n].complex;
+        const tc_tetrahedra *one = &c->blocks.blocks[n].complex;
         for (uint64_t m = 0; m < 4 * one->tetrahedron_count; m++) *to++ = one->tetrahedra[m] + first;
         first += (uint32_t)c->data.blocks[n].point_count;
     }

@@ -164,13 +164,13 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
 static void complex_fill(const bytes_case *c, bool small, case_data *data) {
     cell_list list = mixed_block_make(small ? 3 : 9, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_complex_options *o = &data->complex;
+    tc_tetrahedra_grid_options *o = &data->complex;
     data->split.struct_size = sizeof data->split;
     if (tc_tetrahedralize(&cells, &data->split)) {
         printf("cells are not cut: %s\n", tc_message());
         exit(EXIT_FAILURE);
     }
-    tc_complex_options_init(o);
+    tc_tetrahedra_grid_options_init(o);
     o->point_count = list.point_count;
     o->points = data->points = list.points;
     o->type = c->type;
@@ -197,7 +197,7 @@ void case_fill(const bytes_case *c, bool small, case_data *data) {
 }
 
 void case_free(case_data *data) {
-    tc_complex_release(&data->split);
+    tc_tetrahedra_release(&data->split);
     free(data->points);
     free(data->samples);
     for (int axis = 0; axis < 3; axis++) free(data->axes[axis]);

@@ -38,9 +38,9 @@ const char *case_name(const bytes_case *c);
 /* A case filled with samples; ties with the isovalue are among them. */
 typedef struct case_data {
     tc_grid_options grid;
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     tc_extract_options how;
-    tc_complex split; /* what complex borrows from */
+    tc_tetrahedra split; /* what complex borrows from */
     float *points;
     void *samples;
     float *axes[3];

@@ -75,7 +75,7 @@ static uint64_t hash_of(tc_context *context, const case_data *data, bool again, 
     tc_mesh *mesh = NULL;
     tc_mesh_data made = {.struct_size = sizeof made};
     tc_extract_options how = data->how;
-    tc_status status = data->complex.points ? tc_complex_create(context, &data->complex, &grid)
+    tc_status status = data->complex.points ? tc_tetrahedra_grid_create(context, &data->complex, &grid)
                                             : tc_grid_create(context, &data->grid, &grid);
     how.isovalue += 2.5;
     if (!status && again) status = tc_extract(grid, &how, &mesh);

@@ -20,7 +20,7 @@ static const char *const kind_names[KINDS] = {"u8",          "hybrid",      "mis
 static uint8_t kind_u8[KIND_SAMPLES];
 static float kind_f32[KIND_SAMPLES], kind_points[3 * KIND_SAMPLES], kind_axes[3][KIND_X];
 static double kind_f64[KIND_SAMPLES];
-static tc_complex kind_complex = {.struct_size = sizeof(tc_complex)};
+static tc_tetrahedra kind_complex = {.struct_size = sizeof(tc_tetrahedra)};
 
 static inline void kind_describe(enum kind kind, tc_grid_options *o) {
     static const int dims[3] = {KIND_X, KIND_Y, KIND_Z};
@@ -43,17 +43,17 @@ static inline void kind_how(enum kind kind, int isovalue, tc_extract_options *ho
 
 static inline tc_status kind_open(tc_context *context, enum kind kind, tc_grid **grid) {
     tc_grid_options o;
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     kind_describe(kind, &o);
     if (kind != KIND_COMPLEX) return tc_grid_create(context, &o, grid);
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     complex.point_count = KIND_SAMPLES;
     complex.points = kind_points;
     complex.type = TC_F32;
     complex.samples = kind_f32;
     complex.tetrahedron_count = kind_complex.tetrahedron_count;
     complex.tetrahedra = kind_complex.tetrahedra;
-    return tc_complex_create(context, &complex, grid);
+    return tc_tetrahedra_grid_create(context, &complex, grid);
 }
 
 static inline void kinds_fill(void) {
@@ -74,7 +74,7 @@ static inline void kinds_fill(void) {
     EXPECT(tc_tetrahedralize_grid(&o, &kind_complex) == TC_OK, "%s", tc_message());
 }
 
-static inline void kinds_release(void) { tc_complex_release(&kind_complex); }
+static inline void kinds_release(void) { tc_tetrahedra_release(&kind_complex); }
 
 /* A mesh of the reference's: what every context has to make. */
 static inline tc_mesh *kind_expected(tc_context *reference, enum kind kind, int isovalue, tc_mesh_data *data) {

@@ -21,7 +21,7 @@ typedef struct arguments {
     bool context_place, grid_place, mesh_place; /* false: no place for what is made */
     tc_grid_options grid_options, *grid_options_at;
     tc_extract_options extract_options, *extract_options_at;
-    tc_complex_options complex_options, *complex_options_at;
+    tc_tetrahedra_grid_options tetrahedra_grid_options, *tetrahedra_grid_options_at;
     tc_cells cells, *cells_at;
     tc_field field, *field_at;
     tc_device_mesh device_mesh, *device_mesh_at;
@@ -29,7 +29,7 @@ typedef struct arguments {
     tc_mesh_data mesh_data, *mesh_data_at;
     tc_device_info info, *info_at;
     tc_tuning tuning, *tuning_at;
-    tc_complex complex, *complex_at;
+    tc_tetrahedra tetrahedra, *tetrahedra_at;
     float *values;
     uint64_t value_count;
     int *count_at, index, count;
@@ -81,13 +81,13 @@ static void arguments_fill(const world *w, arguments *a) {
     grid_describe(a->grid_options_at = &a->grid_options);
     tc_extract_options_init(a->extract_options_at = &a->extract_options);
     a->extract_options.isovalue = 127.5;
-    tc_complex_options_init(a->complex_options_at = &a->complex_options);
-    a->complex_options.point_count = POINTS;
-    a->complex_options.points = points;
-    a->complex_options.type = TC_F64;
-    a->complex_options.samples = complex_samples;
-    a->complex_options.tetrahedron_count = TETRAHEDRA;
-    a->complex_options.tetrahedra = tetrahedra;
+    tc_tetrahedra_grid_options_init(a->tetrahedra_grid_options_at = &a->tetrahedra_grid_options);
+    a->tetrahedra_grid_options.point_count = POINTS;
+    a->tetrahedra_grid_options.points = points;
+    a->tetrahedra_grid_options.type = TC_F64;
+    a->tetrahedra_grid_options.samples = complex_samples;
+    a->tetrahedra_grid_options.tetrahedron_count = TETRAHEDRA;
+    a->tetrahedra_grid_options.tetrahedra = tetrahedra;
     a->cells = (tc_cells){.struct_size = sizeof a->cells,
                           .point_count = POINTS,
                           .points = points,
@@ -104,10 +104,10 @@ static void arguments_fill(const world *w, arguments *a) {
     a->mesh_data.struct_size = sizeof a->mesh_data;
     a->info.struct_size = sizeof a->info;
     a->tuning.struct_size = sizeof a->tuning;
-    a->complex.struct_size = sizeof a->complex;
+    a->tetrahedra.struct_size = sizeof a->tetrahedra;
     a->cells_at = &a->cells, a->field_at = &a->field, a->device_mesh_at = &a->device_mesh;
     a->counts_at = &a->counts, a->mesh_data_at = &a->mesh_data, a->info_at = &a->info;
-    a->tuning_at = &a->tuning, a->complex_at = &a->complex, a->count_at = &a->count;
+    a->tuning_at = &a->tuning, a->tetrahedra_at = &a->tetrahedra, a->count_at = &a->count;
     a->origin_at = a->origin;
     a->values = values;
     a->value_count = w->expected.vertex_count;
@@ -118,7 +118,7 @@ static void defaults_fill(arguments *a) {
     tc_context_options_init(&a->context_options);
     tc_grid_options_init(&a->grid_options);
     tc_extract_options_init(&a->extract_options);
-    tc_complex_options_init(&a->complex_options);
+    tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
     a->cells = (tc_cells){0};
     a->field = (tc_field){0};
     a->device_mesh = (tc_device_mesh){0};
@@ -209,10 +209,10 @@ static tc_status call_tc_grid_origin(arguments *a, bool *zero) {
     return status;
 }
 
-static tc_status call_tc_complex_create(arguments *a, bool *zero) {
+static tc_status call_tc_tetrahedra_grid_create(arguments *a, bool *zero) {
     tc_grid *made = rubbish;
     tc_grid **place = a->grid_place ? &made : NULL;
-    tc_status status = tc_complex_create(a->context, a->complex_options_at, place);
+    tc_status status = tc_tetrahedra_grid_create(a->context, a->tetrahedra_grid_options_at, place);
     return grid_end(a, status, place ? made : NULL, zero);
 }
 
@@ -243,16 +243,16 @@ static tc_status call_tc_carry(arguments *a, bool *zero) {
 }
 
 static tc_status call_tc_tetrahedralize(arguments *a, bool *zero) {
-    tc_status status = tc_tetrahedralize(a->cells_at, a->complex_at);
-    *zero = RESULT_ZERO(a->complex, a->complex_at);
-    tc_complex_release(a->complex_at);
+    tc_status status = tc_tetrahedralize(a->cells_at, a->tetrahedra_at);
+    *zero = RESULT_ZERO(a->tetrahedra, a->tetrahedra_at);
+    tc_tetrahedra_release(a->tetrahedra_at);
     return status;
 }
 
 static tc_status call_tc_tetrahedralize_grid(arguments *a, bool *zero) {
-    tc_status status = tc_tetrahedralize_grid(a->grid_options_at, a->complex_at);
-    *zero = RESULT_ZERO(a->complex, a->complex_at);
-    tc_complex_release(a->complex_at);
+    tc_status status = tc_tetrahedralize_grid(a->grid_options_at, a->tetrahedra_at);
+    *zero = RESULT_ZERO(a->tetrahedra, a->tetrahedra_at);
+    tc_tetrahedra_release(a->tetrahedra_at);
     return status;
 }
 

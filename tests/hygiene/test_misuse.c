@@ -139,23 +139,23 @@ static const place places[] = {
     AT(tc_grid_create, context, null),
     AT(tc_grid_create, grid_place, null),
     OPTIONS_OF_GRIDS(tc_grid_create),
-    AT(tc_complex_create, context, null),
-    AT(tc_complex_create, grid_place, null),
-    AT(tc_complex_create, complex_options_at, null),
-    AT(tc_complex_create, complex_options.point_count, LISTED({0, DATA})),
-    AT(tc_complex_create, complex_options.point_count, too_many),
-    AT(tc_complex_create, complex_options.points, null),
-    AT(tc_complex_create, complex_options.points, NULL),
-    AT(tc_complex_create, complex_options.type, no_enumerator),
-    AT(tc_complex_create, complex_options.samples, null),
-    AT(tc_complex_create, complex_options.samples, NULL),
-    AT(tc_complex_create, complex_options.tetrahedron_count, LISTED({0, OK})),
-    AT(tc_complex_create, complex_options.tetrahedron_count, too_many),
-    AT(tc_complex_create, complex_options.tetrahedra, null),
-    AT(tc_complex_create, complex_options.tetrahedra, NULL),
-    AT(tc_complex_create, complex_options.points_f64, LISTED({8, ARGUMENT})),
-    AT(tc_complex_create, complex_options.has_origin, LISTED({1, OK | ARGUMENT})),
-    AT(tc_complex_create, complex_options.origin[2], any_f64),
+    AT(tc_tetrahedra_grid_create, context, null),
+    AT(tc_tetrahedra_grid_create, grid_place, null),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options_at, null),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.point_count, LISTED({0, DATA})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.point_count, too_many),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.points, null),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.points, NULL),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.type, no_enumerator),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.samples, null),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.samples, NULL),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedron_count, LISTED({0, OK})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedron_count, too_many),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedra, null),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedra, NULL),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.points_f64, LISTED({8, ARGUMENT})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.has_origin, LISTED({1, OK | ARGUMENT})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.origin[2], any_f64),
     AT(tc_grid_origin, grid, null),
     AT(tc_grid_origin, origin_at, null),
     OPTIONS_OF_EXTRACTION(tc_count),
@@ -180,7 +180,7 @@ static const place places[] = {
     AT(tc_carry, values, null),
     AT(tc_carry, values, NULL),
     AT(tc_carry, value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
-    AT(tc_tetrahedralize, complex_at, null),
+    AT(tc_tetrahedralize, tetrahedra_at, null),
     AT(tc_tetrahedralize, cells_at, null),
     AT(tc_tetrahedralize, cells.point_count, LISTED({0, DATA}, {POINTS - 1, DATA})),
     AT(tc_tetrahedralize, cells.point_count, too_many),
@@ -200,7 +200,7 @@ static const place places[] = {
     AT(tc_tetrahedralize, cells.face_offsets, null),
     AT(tc_tetrahedralize, cells.face_connectivity, null),
     AT(tc_tetrahedralize, cells.skip_unsupported, any_i32),
-    AT(tc_tetrahedralize_grid, complex_at, null),
+    AT(tc_tetrahedralize_grid, tetrahedra_at, null),
     OPTIONS_OF_GRIDS(tc_tetrahedralize_grid),
 };
 
@@ -275,7 +275,7 @@ static const sized sizes[] = {
     SIZED(tc_context_tuning, tuning, true),
     SIZED(tc_context_create, context_options, false),
     SIZED(tc_grid_create, grid_options, false),
-    SIZED(tc_complex_create, complex_options, false),
+    SIZED(tc_tetrahedra_grid_create, tetrahedra_grid_options, false),
     SIZED(tc_count, extract_options, false),
     SIZED(tc_count, counts, true),
     SIZED(tc_extract, extract_options, false),
@@ -283,8 +283,8 @@ static const sized sizes[] = {
     SIZED(tc_mesh_get, mesh_data, true),
     SIZED(tc_carry, field, false),
     SIZED(tc_tetrahedralize, cells, false),
-    SIZED(tc_tetrahedralize, complex, true),
-    SIZED(tc_tetrahedralize_grid, complex, true),
+    SIZED(tc_tetrahedralize, tetrahedra, true),
+    SIZED(tc_tetrahedralize_grid, tetrahedra, true),
 };
 
 /* What lies beyond the size is neither read, but has its default, nor written, here 0xee; of a size that cannot be
@@ -394,11 +394,12 @@ static void test_tetrahedra(const world *w) {
             memcpy(t, tetrahedra, sizeof t);
             t[at] = bad_points[n];
             arguments_fill(w, &a);
-            a.complex_options.tetrahedra = t;
+            a.tetrahedra_grid_options.tetrahedra = t;
             a.extract_options.isovalue = 0.5;
             tc_grid *grid = NULL;
             tc_mesh *mesh = NULL;
-            EXPECT(tc_complex_create(w->context, &a.complex_options, &grid) == TC_OK, "%s", tc_message());
+            EXPECT(tc_tetrahedra_grid_create(w->context, &a.tetrahedra_grid_options, &grid) == TC_OK, "%s",
+                   tc_message());
             EXPECT_REFUSED(tc_count(grid, &a.extract_options, &a.counts), TC_ERROR_DATA, "a point that is not there");
             EXPECT_REFUSED(tc_extract(grid, &a.extract_options, &mesh), TC_ERROR_DATA, "a point that is not there");
             EXPECT(!mesh, "a mesh of a complex that has no such point");
@@ -448,12 +449,12 @@ static void test_others(const world *w) {
     tc_context_options_init(NULL);
     tc_grid_options_init(NULL);
     tc_extract_options_init(NULL);
-    tc_complex_options_init(NULL);
+    tc_tetrahedra_grid_options_init(NULL);
     tc_context_destroy(NULL);
     tc_grid_destroy(NULL);
     tc_mesh_destroy(NULL);
-    tc_complex_release(NULL);
-    tc_complex zeroed = {0}, made = {.struct_size = sizeof made};
+    tc_tetrahedra_release(NULL);
+    tc_tetrahedra zeroed = {0}, made = {.struct_size = sizeof made};
     tc_cells cells = {.struct_size = sizeof cells,
                       .point_count = POINTS,
                       .points = points,
@@ -464,10 +465,10 @@ static void test_others(const world *w) {
                       .cell_faces = cell_faces,
                       .face_offsets = face_offsets,
                       .face_connectivity = face_connectivity};
-    tc_complex_release(&zeroed);
+    tc_tetrahedra_release(&zeroed);
     EXPECT(tc_tetrahedralize(&cells, &made) == TC_OK && made.tetrahedron_count > 1, "%s", tc_message());
-    tc_complex_release(&made);
-    tc_complex_release(&made);
+    tc_tetrahedra_release(&made);
+    tc_tetrahedra_release(&made);
     EXPECT(made.tetrahedron_count == 0 && !made.tetrahedra && !made.cells, "a complex after its release");
     EXPECT(!tc_context_cl_context(NULL) && !tc_context_cl_queue(NULL), "OpenCL objects of no context");
     EXPECT(tc_context_device_bytes(NULL, NULL) == 0 && tc_context_device_bytes(NULL, &peak) == 0 && peak == 0,

@@ -77,7 +77,7 @@ static void *worker_run(void *user) {
         double done = 0;
         tc_context *context = NULL;
         tc_context_options options;
-        tc_complex complex = {.struct_size = sizeof complex};
+        tc_tetrahedra complex = {.struct_size = sizeof complex};
         tc_grid_options grid;
         tc_context_options_init(&options);
         options.engine = w->engine;
@@ -93,7 +93,7 @@ static void *worker_run(void *user) {
         if (!w->fault && (tc_tetrahedralize_grid(&grid, &complex) ||
                           complex.tetrahedron_count != kind_complex.tetrahedron_count || done < 0.999))
             w->fault = "tetrahedra, or progress";
-        tc_complex_release(&complex);
+        tc_tetrahedra_release(&complex);
         if (!w->fault) w->fault = message_check(w->number);
     }
     return NULL;

@@ -68,7 +68,7 @@ static char problem[1500];
 static uint8_t bytes[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
-static tc_complex complex;
+static tc_tetrahedra complex;
 static tc_mesh *expected[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
 static cl_command_queue their_queue;
@@ -107,9 +107,9 @@ static void grid_describe(const scenario *s, tc_grid_options *o) {
     for (int axis = 0; axis < 3 && s->coordinates == RECTILINEAR; axis++) o->axes[axis] = axes[axis];
 }
 
-static tc_complex_options complex_describe(void) {
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+static tc_tetrahedra_grid_options complex_describe(void) {
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     o.point_count = SAMPLES;
     o.points = points;
     o.type = TC_U8;
@@ -195,10 +195,10 @@ static tc_status grid_run(int index, trial *t, tc_context *context) {
 }
 
 static tc_status complex_run(int index, trial *t, tc_context *context) {
-    const tc_complex_options options = complex_describe();
+    const tc_tetrahedra_grid_options options = complex_describe();
     tc_grid *grid = NULL;
     tc_status status;
-    if (TRIED(t, tc_complex_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    if (TRIED(t, tc_tetrahedra_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
     tc_grid_destroy(grid);
     return status;
 }
@@ -235,7 +235,7 @@ static tc_status carry_run(int index, trial *t, tc_context *context) {
     tc_grid_options options;
     tc_grid *grid = NULL;
     const tc_cells cone = cone_describe();
-    tc_complex cut = {.struct_size = sizeof cut}, cut_cone = {.struct_size = sizeof cut_cone};
+    tc_tetrahedra cut = {.struct_size = sizeof cut}, cut_cone = {.struct_size = sizeof cut_cone};
     tc_mesh_data wanted = {.struct_size = sizeof wanted};
     const tc_extract_options how = surface_describe(&scenarios[index], 0);
     const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 1, .values = values};
@@ -246,8 +246,8 @@ static tc_status carry_run(int index, trial *t, tc_context *context) {
     if (TRIED(t, tc_tetrahedralize(&cone, &cut_cone)) && TRIED(t, tc_tetrahedralize_grid(&options, &cut)) &&
         TRIED(t, tc_grid_create(context, &options, &grid)))
         (void)TRIED(t, tc_carry(grid, &how, &field, carried, wanted.vertex_count));
-    tc_complex_release(&cut);
-    tc_complex_release(&cut_cone);
+    tc_tetrahedra_release(&cut);
+    tc_tetrahedra_release(&cut_cone);
     tc_grid_destroy(grid);
     free(carried);
     return status;
@@ -365,11 +365,11 @@ static tc_status reference_extract_all(tc_context *reference) {
     for (int index = 0; index < SCENARIOS && !status; index++) {
         const scenario *s = &scenarios[index];
         tc_grid_options options;
-        const tc_complex_options complex_options = complex_describe();
+        const tc_tetrahedra_grid_options complex_options = complex_describe();
         tc_grid *grid = NULL;
         if (s->flow == FLOW_DEVICES) continue;
         grid_describe(s, &options);
-        status = s->flow == FLOW_COMPLEX ? tc_complex_create(reference, &complex_options, &grid)
+        status = s->flow == FLOW_COMPLEX ? tc_tetrahedra_grid_create(reference, &complex_options, &grid)
                                          : tc_grid_create(reference, &options, &grid);
         for (int n = 0; n < 2 && !status; n++) {
             const tc_extract_options how = surface_describe(s, n);
@@ -422,7 +422,7 @@ void scenarios_release(void) {
     cl_mem buffers[] = {their_samples, their_positions, their_triangles};
     for (int index = 0; index < SCENARIOS; index++)
         for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     folder_remove();
     for (int n = 0; n < 3; n++)
         if (buffers[n]) clReleaseMemObject(buffers[n]);

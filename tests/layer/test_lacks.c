@@ -54,16 +54,16 @@ static void test_extract(tc_context *context, uint32_t work_items, tc_type type,
 static void test_refusals(tc_context *context) {
     static const float points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     static const uint32_t corners[4] = {0, 1, 2, 3};
-    tc_complex_options complex;
+    tc_tetrahedra_grid_options complex;
     tc_grid_options options;
     tc_extract_options extraction;
     tc_counts counts = {.struct_size = sizeof counts};
     tc_grid *grid = NULL;
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     complex.points = &points[0][0], complex.point_count = 4;
     complex.tetrahedra = corners, complex.tetrahedron_count = 1;
     complex.type = TC_F64, complex.samples = samples.f64;
-    EXPECT_REFUSED(tc_complex_create(context, &complex, &grid), TC_ERROR_DEVICE, "a complex of doubles");
+    EXPECT_REFUSED(tc_tetrahedra_grid_create(context, &complex, &grid), TC_ERROR_DEVICE, "a complex of doubles");
     EXPECT(strstr(tc_message(), "fp64"), "the message says nothing of fp64: %s", tc_message());
 
     grid_describe(&options, TC_F64);
@@ -79,8 +79,8 @@ static void test_refusals(tc_context *context) {
 static void test_complex(tc_context *context) {
     static float points[3 * SAMPLES];
     tc_grid_options grid;
-    tc_complex cut = {.struct_size = sizeof cut};
-    tc_complex_options complex;
+    tc_tetrahedra cut = {.struct_size = sizeof cut};
+    tc_tetrahedra_grid_options complex;
     tc_extract_options options;
     tc_context *contexts[2] = {reference, context};
     tc_grid *grids[2] = {NULL, NULL};
@@ -92,15 +92,15 @@ static void test_complex(tc_context *context) {
     grid_describe(&grid, TC_F32);
     grid.points = points;
     EXPECT(tc_tetrahedralize_grid(&grid, &cut) == TC_OK, "%s", tc_message());
-    tc_complex_options_init(&complex);
+    tc_tetrahedra_grid_options_init(&complex);
     complex.points = points, complex.point_count = SAMPLES;
     complex.tetrahedra = cut.tetrahedra, complex.tetrahedron_count = cut.tetrahedron_count;
     complex.type = TC_F32, complex.samples = samples.f32;
     tc_extract_options_init(&options);
     options.isovalue = 500.25;
     for (int n = 0; n < 2; n++)
-        EXPECT(!tc_complex_create(contexts[n], &complex, &grids[n]) && !tc_extract(grids[n], &options, &meshes[n]) &&
-                   !tc_mesh_get(meshes[n], &data[n]),
+        EXPECT(!tc_tetrahedra_grid_create(contexts[n], &complex, &grids[n]) &&
+                   !tc_extract(grids[n], &options, &meshes[n]) && !tc_mesh_get(meshes[n], &data[n]),
                "a complex with few work-items: %s", tc_message());
     const char *differs = mesh_difference(&data[0], &data[1]);
     EXPECT(!differs && data[0].triangle_count > 1000, "a complex with few work-items: %s", differs);
@@ -108,7 +108,7 @@ static void test_complex(tc_context *context) {
         tc_mesh_destroy(meshes[n]);
         tc_grid_destroy(grids[n]);
     }
-    tc_complex_release(&cut);
+    tc_tetrahedra_release(&cut);
 }
 
 static void test_limits(const layer_functions *layer) {

@@ -138,13 +138,13 @@ static tc_status crossed_make(tc_context *of, tc_grid **grid) {
     static float positions[3 * POINTS];
     static uint8_t samples[POINTS];
     static uint32_t tetrahedra[4 * TETRAHEDRA];
-    tc_complex_options o;
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra_grid_options_init(&o);
     for (uint32_t n = 0; n < POINTS; n++) positions[3 * n + n % 3] = (float)n, samples[n] = n >= POINTS / 2;
     for (uint32_t n = 0; n < 4 * TETRAHEDRA; n++) tetrahedra[n] = (n / 4 + 3 * (n % 4)) % POINTS;
     o.point_count = POINTS, o.points = positions, o.samples = samples;
     o.tetrahedron_count = TETRAHEDRA, o.tetrahedra = tetrahedra;
-    return tc_complex_create(of, &o, grid);
+    return tc_tetrahedra_grid_create(of, &o, grid);
 }
 
 /* Sums that no group has posted are made by those that wait for them; what they belong to is not made twice. */

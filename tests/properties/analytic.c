@@ -122,7 +122,7 @@ void field_grid_free(field_grid *g) {
     free(g->samples);
 }
 
-static tc_status hexahedra_create(const field_grid *g, tc_context *context, tc_complex *complex, tc_grid **grid) {
+static tc_status hexahedra_create(const field_grid *g, tc_context *context, tc_tetrahedra *complex, tc_grid **grid) {
     static const uint8_t order[8] = {0, 1, 3, 2, 4, 5, 7, 6};
     const uint32_t n = (uint32_t)g->n, m = n - 1;
     cell_list list = cell_list_make(0, (uint64_t)m * m * m);
@@ -137,13 +137,13 @@ static tc_status hexahedra_create(const field_grid *g, tc_context *context, tc_c
         cell_list_add(&list, 12, 8, corners, false);
     }
     tc_cells cells = cell_list_view(&list);
-    tc_complex_options options;
-    tc_complex_options_init(&options);
+    tc_tetrahedra_grid_options options;
+    tc_tetrahedra_grid_options_init(&options);
     tc_status status = tc_tetrahedralize(&cells, complex);
     options.point_count = list.point_count, options.points = g->points;
     options.type = g->type, options.samples = g->samples;
     options.tetrahedron_count = complex->tetrahedron_count, options.tetrahedra = complex->tetrahedra;
-    if (!status) status = tc_complex_create(context, &options, grid);
+    if (!status) status = tc_tetrahedra_grid_create(context, &options, grid);
     list.points = NULL;
     cell_list_free(&list);
     return status;
@@ -166,7 +166,7 @@ static tc_status structured_create(const field_grid *g, tc_context *context, lay
 tc_status field_grid_extract(const field_grid *g, tc_context *context, layout l, tc_method method, double isovalue,
                              tc_mesh **mesh, tc_mesh_data *data) {
     tc_grid *grid = NULL;
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_extract_options how;
     tc_extract_options_init(&how);
     how.isovalue = isovalue;
@@ -177,6 +177,6 @@ tc_status field_grid_extract(const field_grid *g, tc_context *context, layout l,
     if (!status) status = tc_extract(grid, &how, mesh);
     if (!status) status = tc_mesh_get(*mesh, data);
     tc_grid_destroy(grid);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     return status;
 }

@@ -230,7 +230,7 @@ static void points_move(subject *s, const uint32_t size[3]) {
 
 static void cells_cut(subject *s, const tc_cells *cells) {
     if (tc_tetrahedralize(cells, &s->complex)) printf("cells are not cut: %s\n", tc_message());
-    tc_complex_options_init(&s->cells);
+    tc_tetrahedra_grid_options_init(&s->cells);
     s->cells.point_count = s->list.point_count, s->cells.points = s->list.points;
     s->cells.type = s->type, s->cells.samples = s->samples;
     s->cells.tetrahedron_count = s->complex.tetrahedron_count, s->cells.tetrahedra = s->complex.tetrahedra;
@@ -280,7 +280,7 @@ static void subject_begin(subject *s, kind k, tc_type type) {
     s->complete = true, s->mirrored = s->folded = false;
     s->list = (cell_list){0};
     s->blanked_points = NULL, s->left_out_count = 0;
-    s->complex = (tc_complex){.struct_size = sizeof s->complex};
+    s->complex = (tc_tetrahedra){.struct_size = sizeof s->complex};
     tc_extract_options_init(&s->how);
     tc_grid_options_init(&s->grid);
     s->grid.type = type;
@@ -304,7 +304,7 @@ void subject_make_plain(subject *s, kind k, const int64_t dims[3]) {
 }
 
 void subject_free(subject *s) {
-    tc_complex_release(&s->complex);
+    tc_tetrahedra_release(&s->complex);
     cell_list_free(&s->list);
 }
 
@@ -337,7 +337,7 @@ tc_status subject_extract(const subject *s, tc_context *context, tc_mesh **mesh,
     tc_grid *grid = NULL;
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     tc_status status = kind_is_structured(s->kind) ? tc_grid_create(context, &s->grid, &grid)
-                                                   : tc_complex_create(context, &s->cells, &grid);
+                                                   : tc_tetrahedra_grid_create(context, &s->cells, &grid);
     if (!status) status = tc_extract(grid, &s->how, mesh);
     if (!status) status = tc_mesh_get(*mesh, data);
     tc_grid_destroy(grid);

@@ -38,9 +38,9 @@ typedef struct subject {
     float points[3 * SUBJECT_SAMPLES], axes[3][SUBJECT_SAMPLES];
     uint8_t blanked_samples[SUBJECT_SAMPLES], blanked_cells[SUBJECT_SAMPLES];
 
-    tc_complex_options cells; /* the others */
+    tc_tetrahedra_grid_options cells; /* the others */
     cell_list list;
-    tc_complex complex;
+    tc_tetrahedra complex;
     uint64_t boundary_faces;       /* triangles that the complex, where it is complete, ends in */
     double volume;                 /* six times its volume */
     const uint8_t *blanked_points; /* or NULL */

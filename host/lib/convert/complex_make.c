@@ -21,7 +21,7 @@ typedef struct passes {
     uint64_t next, bad_block; /* shared by the threads */
     cell_tally *tallies;      /* per block */
     uint64_t *starts;         /* of each block's tetrahedra */
-    tc_complex *complex;
+    tc_tetrahedra *complex;
 } passes;
 
 static void block_run(passes *p, uint64_t n, tetrahedron_writer *writer) {
@@ -93,7 +93,7 @@ static void tallies_add(passes *p) {
     }
 }
 
-tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_complex *complex,
+tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_tetrahedra *complex,
                        uint64_t *bad_cell) {
     passes p = {.block = block, .source = source, .cell_count = cell_count, .complex = complex};
     p.block_count = (cell_count + BLOCK_CELLS - 1) / BLOCK_CELLS;
@@ -113,7 +113,7 @@ tc_status complex_make(block_function *block, const void *source, uint64_t cell_
         if (p.bad_block < p.block_count)
             status = (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to cut polyhedra");
     }
-    if (status) tc_complex_release(complex);
+    if (status) tc_tetrahedra_release(complex);
     free(p.tallies);
     free(p.starts);
     return status;
@@ -140,19 +140,20 @@ double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]
 
 /* A size that result_begin takes, with room for the arrays. */
 static bool size_fits(size_t bytes) {
-    return bytes >= offsetof(tc_complex, flat_cell_count) && bytes <= sizeof(tc_complex) && bytes % sizeof bytes == 0;
+    return bytes >= offsetof(tc_tetrahedra, flat_cell_count) && bytes <= sizeof(tc_tetrahedra) &&
+           bytes % sizeof bytes == 0;
 }
 
-tc_status complex_begin(tc_complex *complex, const char *what) {
+tc_status complex_begin(tc_tetrahedra *complex, const char *what) {
     tc_status status = result_begin(complex, sizeof *complex, what);
     if (status || size_fits(complex->struct_size)) return status;
     return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: of %llu bytes, and its arrays need more", what,
                            (unsigned long long)complex->struct_size);
 }
 
-void tc_complex_release(tc_complex *complex) {
+void tc_tetrahedra_release(tc_tetrahedra *complex) {
     if (!complex || !size_fits(complex->struct_size)) return;
     free((void *)(uintptr_t)complex->tetrahedra);
     free((void *)(uintptr_t)complex->cells);
-    result_give(complex, &(tc_complex){0});
+    result_give(complex, &(tc_tetrahedra){0});
 }

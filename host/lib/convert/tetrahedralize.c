@@ -289,12 +289,12 @@ static tc_status cells_check(const tc_cells *cells) {
     return TC_OK;
 }
 
-tc_status tc_tetrahedralize(const tc_cells *cells, tc_complex *complex) {
+tc_status tc_tetrahedralize(const tc_cells *cells, tc_tetrahedra *complex) {
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_cells c = {0};
-    tc_complex made = {.struct_size = sizeof made};
+    tc_tetrahedra made = {.struct_size = sizeof made};
     uint64_t bad_cell;
-    tc_status status = complex_begin(complex, "tc_tetrahedralize: complex");
+    tc_status status = complex_begin(complex, "tc_tetrahedralize: tetrahedra");
     if (!status) status = options_take(&c, sizeof c, cells, "tc_tetrahedralize: cells");
     if (!status) status = cells_check(&c);
     if (!status) status = faces_check(&c);

@@ -29,11 +29,11 @@ typedef struct tetrahedron_writer {
 typedef bool block_function(const void *source, uint64_t first, uint64_t end, tetrahedron_writer *writer);
 
 /* Zeroes a complex of the caller's; TC_ERROR_ARGUMENT, naming what, where it has no room for the arrays. */
-tc_status complex_begin(tc_complex *complex, const char *what);
+tc_status complex_begin(tc_tetrahedra *complex, const char *what);
 
 /* Fills *complex, with its struct_size set. Where a block returns false: TC_ERROR_DATA, without a text, and *bad_cell
  * is the first cell of the first such block; in the second pass TC_ERROR_MEMORY. */
-tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_complex *complex,
+tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_tetrahedra *complex,
                        uint64_t *bad_cell);
 
 /* Puts the tetrahedra of one cell behind those of the cells before it in the block. */

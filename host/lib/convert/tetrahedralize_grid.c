@@ -67,19 +67,19 @@ static tc_status source_check(const tc_grid *grid) {
     if (!grid->samples)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedralize_grid takes samples, not cl_samples");
     if (grid_sample_count(grid) > UINT32_MAX)
-        return (tc_status)fail(TC_ERROR_LIMIT, "%lld samples: the points of a complex are limited to %lu",
+        return (tc_status)fail(TC_ERROR_LIMIT, "%lld samples: the points of tetrahedra are limited to %lu",
                                (long long)grid_sample_count(grid), (unsigned long)UINT32_MAX);
     return TC_OK;
 }
 
-tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_complex *complex) {
+tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_tetrahedra *complex) {
     FLOAT_ENVIRONMENT_DEFAULT;
     grid_source s;
     tc_grid_options o;
     uint64_t bad_cell;
-    tc_complex made = {.struct_size = sizeof made};
+    tc_tetrahedra made = {.struct_size = sizeof made};
     tc_grid_options_init(&o);
-    tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: complex");
+    tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: tetrahedra");
     if (!status) status = options_take(&o, sizeof o, options, "grid options");
     if (status) return status;
     s.grid = (tc_grid){0};

@@ -6,20 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-static tc_status options_check(const tc_complex_options *o) {
+static tc_status options_check(const tc_tetrahedra_grid_options *o) {
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     if (o->point_count > UINT32_MAX || o->tetrahedron_count > UINT32_MAX)
         return (tc_status)fail(
-            TC_ERROR_LIMIT, "%llu points and %llu tetrahedra: a complex may have %lu of each; cut it into parts",
+            TC_ERROR_LIMIT, "%llu points and %llu tetrahedra: a grid may have %lu of each; cut it into parts",
             (unsigned long long)o->point_count, (unsigned long long)o->tetrahedron_count, (unsigned long)UINT32_MAX);
     if (o->points && o->points_f64)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has points and points_f64; give one of them");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid of tetrahedra has points and points_f64; give one of them");
     if (o->point_count && ((!o->points && !o->points_f64) || !o->samples))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no points, or no samples at them");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid of tetrahedra has no points, or no samples at them");
     if (o->tetrahedron_count && !o->tetrahedra)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "the complex has no tetrahedra");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid of tetrahedra has no tetrahedra");
     if (o->tetrahedron_count && !o->point_count)
-        return (tc_status)fail(TC_ERROR_DATA, "the complex has tetrahedra and no points");
+        return (tc_status)fail(TC_ERROR_DATA, "the grid of tetrahedra has tetrahedra and no points");
     if ((uintptr_t)o->points % sizeof(float) || (uintptr_t)o->points_f64 % sizeof(double) ||
         (uintptr_t)o->tetrahedra % sizeof(uint32_t))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "points or tetrahedra are not aligned to their type");
@@ -30,7 +30,7 @@ static tc_status options_check(const tc_complex_options *o) {
 }
 
 static int tetrahedron_corners(const void *source, uint64_t tetrahedron, double corners[][3]) {
-    const tc_complex_options *o = source;
+    const tc_tetrahedra_grid_options *o = source;
     const coordinate_array points = {o->points, o->points_f64};
     const uint32_t *v = o->tetrahedra + 4 * tetrahedron;
     for (int n = 0; n < 4; n++) {
@@ -42,7 +42,7 @@ static int tetrahedron_corners(const void *source, uint64_t tetrahedron, double 
 }
 
 /* Points relative to the origin: the caller's own where they are that already. */
-static tc_status points_take(tc_grid *grid, const tc_complex_options *o) {
+static tc_status points_take(tc_grid *grid, const tc_tetrahedra_grid_options *o) {
     complex_grid *c = grid->complex;
     double *origin = grid->origin;
     if (o->has_origin)
@@ -59,11 +59,11 @@ static tc_status points_take(tc_grid *grid, const tc_complex_options *o) {
     return TC_OK;
 }
 
-tc_status complex_describe(const tc_complex_options *o, tc_grid *grid) {
+tc_status complex_describe(const tc_tetrahedra_grid_options *o, tc_grid *grid) {
     tc_status status = options_check(o);
     if (status) return status;
     complex_grid *c = calloc(1, sizeof *c);
-    if (!c) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a complex");
+    if (!c) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid of tetrahedra");
     grid->complex = c;
     grid->type = o->type;
     grid->samples = o->samples;
@@ -85,10 +85,10 @@ void complex_release(tc_grid *grid) {
 tc_status complex_point_fail(const complex_grid *c) {
     for (uint64_t n = 0; n < 4ull * c->tetrahedron_count; n++)
         if (c->tetrahedra[n] >= c->point_count)
-            return (tc_status)fail(TC_ERROR_DATA, "tetrahedron %llu has point %lu, and the complex has %lu points",
+            return (tc_status)fail(TC_ERROR_DATA, "tetrahedron %llu has point %lu, and the grid has %lu points",
                                    (unsigned long long)(n / 4), (unsigned long)c->tetrahedra[n],
                                    (unsigned long)c->point_count);
-    return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the complex was made");
+    return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the grid was made");
 }
 
 kernel_kind complex_kind(const tc_grid *grid, bool emits) {

@@ -41,7 +41,7 @@ tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_m
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
 
 /* Checks the options and fills *grid but for context and device; to be released in any case (complex.c). */
-tc_status complex_describe(const tc_complex_options *options, tc_grid *grid);
+tc_status complex_describe(const tc_tetrahedra_grid_options *options, tc_grid *grid);
 void complex_release(tc_grid *grid);
 
 /* The sentence for a tetrahedron with a point that is not there. */

@@ -13,7 +13,7 @@ tc_status complex_device_create(tc_grid *grid) {
     tc_context *context = grid->context;
     if (!device_makes_vertices(context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE,
-                               "%s has no fp64, which complexes with %s samples need: use the reference engine",
+                               "%s has no fp64, which tetrahedra with %s samples need: use the reference engine",
                                context->info.name, tc_type_name(grid->type));
     if (context->options.max_memory_bytes) workspace_release(context); /* what another grid has left */
     if (!complex_fits(grid)) return complex_cut(grid);
@@ -71,7 +71,8 @@ tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts
 static tc_status mesh_open(complex_run *r, device_buffer *buffer, const host_block *block, uint64_t bytes,
                            const char *name) {
     buffer_release(r->context, buffer);
-    if (!surface_fits(r, bytes)) return (tc_status)fail(TC_ERROR_MEMORY, "the complex has no room for its %s", name);
+    if (!surface_fits(r, bytes))
+        return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for its %s", name);
     return r->context->in_place ? buffer_wrap(r->context, buffer, block->memory, bytes, CL_MEM_READ_WRITE, name)
                                 : buffer_reserve(r->context, buffer, bytes, name);
 }

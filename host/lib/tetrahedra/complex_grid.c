@@ -8,9 +8,10 @@
 /* TC_ERROR_ARGUMENT for what complexes cannot do. */
 static tc_status complex_request_check(const tc_extract_options *options) {
     if (options->normals)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "normals are made on structured grids only, not on complexes");
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "normals are made on structured grids only, not on grids of tetrahedra");
     if (options->method != TC_METHOD_TETRA)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "complexes have no cubes: use TC_METHOD_TETRA");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "grids of tetrahedra have no cubes: use TC_METHOD_TETRA");
     return TC_OK;
 }
 

@@ -20,7 +20,7 @@ static tc_status array_provide(tc_context *context, device_buffer *buffer, const
     tc_status status = buffer_reserve(context, buffer, bytes, name);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, bytes, array, 0, NULL, NULL);
-    return error ? context_fail(context, "copying the complex to the device", error) : TC_OK;
+    return error ? context_fail(context, "copying the tetrahedra to the device", error) : TC_OK;
 }
 
 tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uint32_t count) {

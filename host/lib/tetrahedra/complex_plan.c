@@ -110,7 +110,7 @@ static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
 static tc_status cut_refuse(const tc_grid *grid) {
     const device_need need = slab_need(grid, 1, false);
     return (tc_status)fail(TC_ERROR_MEMORY,
-                           "the smallest slab of this complex needs %llu bytes of device memory, and the budget is "
+                           "the smallest slab of these tetrahedra needs %llu bytes of device memory, and the budget is "
                            "%llu: allow %llu or, to be faster, much more",
                            (unsigned long long)need.bytes, (unsigned long long)complex_budget(grid->context),
                            (unsigned long long)need.bytes);

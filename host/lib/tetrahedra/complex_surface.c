@@ -27,7 +27,7 @@ tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes,
     if (buffer->memory && bytes <= buffer->bytes) return TC_OK;
     buffer_release(r->context, buffer);
     if (!surface_fits(r, bytes))
-        return (tc_status)fail(TC_ERROR_MEMORY, "the complex has no room for %llu bytes for %s",
+        return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for %llu bytes for %s",
                                (unsigned long long)bytes, name);
     return buffer_reserve(r->context, buffer, bytes, name);
 }

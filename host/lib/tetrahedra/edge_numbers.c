@@ -38,7 +38,7 @@ tc_status edge_number(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *nu
         if (n->count == UINT32_MAX)
             return (tc_status)fail(TC_ERROR_LIMIT,
                                    "the surface has more than %lu vertices, which indices of 32 bits do not reach: cut "
-                                   "the complex into parts",
+                                   "the tetrahedra into parts",
                                    (unsigned long)UINT32_MAX);
         n->edges[n->count] = edge;
         *slot = (uint32_t)n->count++;

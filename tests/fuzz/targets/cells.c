@@ -54,10 +54,10 @@ static float *take_points(bytes *b, uint64_t count, int any) {
 
 static void extract(bytes *b, uint64_t point_count, const float *points, uint64_t tetrahedron_count,
                     const uint32_t *tetrahedra) {
-    tc_complex_options o;
+    tc_tetrahedra_grid_options o;
     tc_extract_options how;
     tc_grid *grid = NULL;
-    tc_complex_options_init(&o);
+    tc_tetrahedra_grid_options_init(&o);
     tc_extract_options_init(&how);
     o.type = (tc_type)(bytes_u8(b) % (TC_F64 + 2));
     how.normals = bytes_u8(b) == 1;
@@ -69,7 +69,7 @@ static void extract(bytes *b, uint64_t point_count, const float *points, uint64_
     o.samples = samples;
     o.tetrahedron_count = tetrahedron_count;
     o.tetrahedra = tetrahedra;
-    tc_status status = tc_complex_create(surface_context(), &o, &grid);
+    tc_status status = tc_tetrahedra_grid_create(surface_context(), &o, &grid);
     surface_check_status(status);
     CHECK((status == TC_OK) == (grid != NULL));
     if (grid) (void)surface_check(grid, &how, o.type, samples);
@@ -107,13 +107,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     cells.face_connectivity = face_links;
     cells.skip_unsupported = flags & SKIP_UNSUPPORTED;
 
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_status status = tc_tetrahedralize(&cells, &complex);
     surface_check_status(status);
     if (status) CHECK(!complex.tetrahedra && !complex.cells && complex.tetrahedron_count == 0);
     surface_check_complex(&complex, point_count, cell_count);
     if (flags & RAW_TETRAHEDRA) {
-        /* What tc_tetrahedralize would refuse is the caller's to keep from tc_complex_create: points are finite there.
+        /* What tc_tetrahedralize would refuse is the caller's to keep from tc_tetrahedra_grid_create: points are finite
+         * there.
          */
         for (uint64_t n = 0; n < 3 * point_count; n++)
             if (!(fabsf(points[n]) < 0x1p127f)) points[n] = 0;
@@ -123,7 +124,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     } else {
         extract(&in, point_count, points, complex.tetrahedron_count, complex.tetrahedra);
     }
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     free(face_links);
     free(face_offsets);
     free(starts);

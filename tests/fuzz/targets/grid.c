@@ -65,7 +65,7 @@ static void take_arrays(arrays *a, bytes *b, uint8_t flags, int64_t samples, tc_
 
 /* The grid cut into a complex, and that one's surface. */
 static void compare_complex(const tc_grid_options *from, const tc_extract_options *how, uint64_t triangle_count) {
-    tc_complex complex = {.struct_size = sizeof complex};
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
     tc_status status = tc_tetrahedralize_grid(from, &complex);
     surface_check_status(status);
     CHECK(status == TC_OK);
@@ -73,8 +73,8 @@ static void compare_complex(const tc_grid_options *from, const tc_extract_option
     const uint64_t points = (uint64_t)(d[0] * d[1] * d[2]);
     surface_check_complex(&complex, points, (uint64_t)((d[0] - 1) * (d[1] - 1) * (d[2] - 1)));
     float *zeros = calloc(3 * points, sizeof *zeros);
-    tc_complex_options options;
-    tc_complex_options_init(&options);
+    tc_tetrahedra_grid_options options;
+    tc_tetrahedra_grid_options_init(&options);
     options.point_count = points;
     options.points = from->points ? from->points : zeros;
     options.type = from->type;
@@ -82,11 +82,11 @@ static void compare_complex(const tc_grid_options *from, const tc_extract_option
     options.tetrahedron_count = complex.tetrahedron_count;
     options.tetrahedra = complex.tetrahedra;
     tc_grid *grid = NULL;
-    status = tc_complex_create(surface_context(), &options, &grid);
+    status = tc_tetrahedra_grid_create(surface_context(), &options, &grid);
     surface_check_status(status);
     if (status == TC_OK) CHECK(surface_check(grid, how, from->type, from->samples) == triangle_count);
     tc_grid_destroy(grid);
-    tc_complex_release(&complex);
+    tc_tetrahedra_release(&complex);
     free(zeros);
 }
 

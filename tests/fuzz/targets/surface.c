@@ -57,7 +57,7 @@ uint64_t surface_check(tc_grid *grid, const tc_extract_options *how, tc_type typ
     return counts.triangle_count;
 }
 
-void surface_check_complex(const tc_complex *complex, uint64_t point_count, uint64_t cell_count) {
+void surface_check_complex(const tc_tetrahedra *complex, uint64_t point_count, uint64_t cell_count) {
     for (uint64_t n = 0; n < complex->tetrahedron_count; n++) {
         for (int v = 0; v < 4; v++) CHECK(complex->tetrahedra[4 * n + (unsigned)v] < point_count);
         CHECK(complex->cells[n] < cell_count);

@@ -15,6 +15,6 @@ void surface_check_status(tc_status status);
 uint64_t surface_check(tc_grid *grid, const tc_extract_options *how, tc_type type, const void *values);
 
 /* Of a complex of point_count points and cell_count cells: every number is in range. */
-void surface_check_complex(const tc_complex *complex, uint64_t point_count, uint64_t cell_count);
+void surface_check_complex(const tc_tetrahedra *complex, uint64_t point_count, uint64_t cell_count);
 
 #endif
