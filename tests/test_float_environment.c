@@ -142,7 +142,7 @@ static const tc_field field = {sizeof field, TC_F64, 1, field_values};
 
 static float *carry(tc_grid *grid, const subject *s, uint64_t count) {
     float *out = calloc((size_t)count + 1, sizeof *out);
-    EXPECT(!tc_carry(grid, &s->how, &field, out, count), "%s: %s", mode_name, tc_message());
+    EXPECT(!tc_interpolate_field(grid, &s->how, &field, out, count), "%s: %s", mode_name, tc_message());
     return out;
 }
 
@@ -182,7 +182,7 @@ static void subject_compare(tc_context *context, const subject *s, int number) {
     const char *difference = mesh ? mesh_difference(&s->data, &data) : "no mesh";
     EXPECT(!difference, "%s, subject %d: %s", mode_name, number, difference);
     float *carried = carry(grid, s, s->data.vertex_count);
-    expect_callers("tc_carry");
+    expect_callers("tc_interpolate_field");
     EXPECT(!memcmp(carried, s->carried, s->data.vertex_count * sizeof *carried), "%s: carried values differ",
            mode_name);
     free(carried);

@@ -21,8 +21,8 @@
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
  * Conventions. Every call that can fail returns a tc_status; tc_message() then says, for the calling thread, what was
- * wrong and what to do. Outputs are zeroed on failure, but for what tc_carry and tc_emit were to fill. The library
- * never prints, exits or aborts on data. A context, with its grids and meshes, is used by one thread at a time;
+ * wrong and what to do. Outputs are zeroed on failure, but for what tc_interpolate_field and tc_emit were to fill. The
+ * library never prints, exits or aborts on data. A context, with its grids and meshes, is used by one thread at a time;
  * different contexts may be used at once by different threads.
  *
  * Results do not depend on the caller's floating-point environment (rounding, traps, flushing of subnormal numbers),
@@ -74,14 +74,14 @@ TC_API const char *tc_version(void);
 
 typedef enum tc_status {
     TC_OK = 0,
-    TC_ERROR_ARGUMENT,  /* an argument or option is not valid: the caller's mistake */
-    TC_ERROR_DATA,      /* the grid cannot be contoured: one sample along an axis, sizes that overflow */
-    TC_ERROR_DEVICE,    /* no OpenCL, no such device, or the device failed */
-    TC_ERROR_MEMORY,    /* host or device memory ran out */
-    TC_ERROR_LIMIT,     /* the mesh needs more than 2^32 - 1 vertices */
-    TC_ERROR_CANCELLED, /* the progress callback asked to stop */
-    TC_ERROR_FILE,      /* a file of the cache, which the caller asked for, cannot be written */
-    TC_ERROR_WRONG,     /* the device computes wrongly: found by check_device of tc_context_options */
+    TC_ERROR_ARGUMENT,     /* an argument or option is not valid: the caller's mistake */
+    TC_ERROR_DATA,         /* the grid cannot be contoured: one sample along an axis, sizes that overflow */
+    TC_ERROR_DEVICE,       /* no OpenCL, no such device, or the device failed */
+    TC_ERROR_MEMORY,       /* host or device memory ran out */
+    TC_ERROR_LIMIT,        /* the mesh needs more than 2^32 - 1 vertices */
+    TC_ERROR_CANCELLED,    /* the progress callback asked to stop */
+    TC_ERROR_FILE,         /* a file of the cache, which the caller asked for, cannot be written */
+    TC_ERROR_WRONG_RESULT, /* the device computes wrongly: found by check_device of tc_context_options */
 } tc_status;
 
 /* What the last failed call of this thread found wrong, in one or two sentences. Never NULL; valid until the thread's
@@ -131,9 +131,9 @@ typedef int (*tc_progress)(void *user, const char *stage, double fraction);
 
 /* How a trial of kernels in a process of its own has ended. */
 typedef enum tc_verdict {
-    TC_VERDICT_NONE = 0,  /* there was none, as no process could be started: the kernels are used untried */
-    TC_VERDICT_GOOD,      /* tc_trial_run returned TC_OK, and the process ended well */
-    TC_VERDICT_WRONG,     /* it returned TC_ERROR_WRONG */
+    TC_VERDICT_NONE = 0,     /* there was none, as no process could be started: the kernels are used untried */
+    TC_VERDICT_GOOD,         /* tc_trial_run returned TC_OK, and the process ended well */
+    TC_VERDICT_WRONG_RESULT, /* it returned TC_ERROR_WRONG_RESULT */
     TC_VERDICT_REFUSED,   /* it returned another status: the driver does not build the kernels, or does not run them */
     TC_VERDICT_CRASHED,   /* the driver ended the process */
     TC_VERDICT_HUNG,      /* it did not end in time */
@@ -178,8 +178,8 @@ typedef struct tc_context_options {
                          device. Never changes results */
     int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a
                          small volume goes through them and every byte is compared with the reference engine's. Where
-                         one differs, the call returns TC_ERROR_WRONG. Takes milliseconds for each kind of kernels.
-                         tc_emit tries nothing itself */
+                         one differs, the call returns TC_ERROR_WRONG_RESULT. Takes milliseconds for each kind of
+                         kernels. tc_emit tries nothing itself */
     tc_trial trial;   /* called before a driver that is not known to be good first builds kernels of a kind: see below;
                          NULL: it builds them in this process at once */
     void *trial_user;
@@ -205,8 +205,8 @@ TC_API void tc_context_destroy(tc_context *context);
  * the cache, for device, driver, versions and kernels, beside the programs that the trial has built; later contexts,
  * of other processes too, find both. A verdict that is not good makes the library take its other text of the kernels
  * (one work-item per group, or groups of them), where work_items is 0 and that one passes; else the call fails with
- * TC_ERROR_DEVICE or TC_ERROR_WRONG and says what was found. Kept verdicts count in contexts without a callback too.
- * The library itself starts no process. A caller's cl_context is tried on the device of tc_device_get that it has;
+ * TC_ERROR_DEVICE or TC_ERROR_WRONG_RESULT and says what was found. Kept verdicts count in contexts without a callback
+ * too. The library itself starts no process. A caller's cl_context is tried on the device of tc_device_get that it has;
  * where it has another, a part of one, it is used untried. tc_emit that meets kernels which are not good fails; after
  * that count again.
  *
@@ -387,8 +387,8 @@ typedef struct tc_field {
  * a or b itself where t is 0 or 1, whatever the other is, in the order in which tc_extract makes vertices. out has room
  * for value_count floats, which must be what that takes (TC_ERROR_ARGUMENT otherwise). Runs on the calling thread,
  * whatever the engine; not for grids with cl_samples. */
-TC_API tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
-                          uint64_t value_count);
+TC_API tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options, const tc_field *field,
+                                      float *out, uint64_t value_count);
 
 /* ---------------------------------------------------------------------------------------------- unstructured grids */
 

@@ -11,7 +11,7 @@
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_carry needs a grid, and a place for the values");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_interpolate_field needs a grid, and a place for the values");
     if (!tc_type_bytes(field->type) || field->components < 1 || !field->values)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the field has no values, or their type or number is not valid");
     if ((uintptr_t)field->values % tc_type_bytes(field->type) || (uintptr_t)out % sizeof *out)
@@ -22,13 +22,13 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
     return TC_OK;
 }
 
-tc_status tc_carry(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
-                   uint64_t value_count) {
+tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
+                               uint64_t value_count) {
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     tc_field f = {0};
     uint64_t vertex_count = 0;
-    tc_status status = options_take(&f, sizeof f, field, "tc_carry: field");
+    tc_status status = options_take(&f, sizeof f, field, "tc_interpolate_field: field");
     if (!status) status = field_check(grid, &f, out, value_count);
     if (status) return status;
     const uint64_t components = (uint64_t)f.components;

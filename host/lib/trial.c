@@ -23,7 +23,7 @@ bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool 
 
 static tc_status wrong(const tc_context *context, const trial_volume *v, const char *what, uint64_t n) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear"};
-    return (tc_status)fail(TC_ERROR_WRONG,
+    return (tc_status)fail(TC_ERROR_WRONG_RESULT,
                            "device %s gives wrong results: %s %llu of a small %s grid of %s samples%s is not that of "
                            "the reference engine; use that one",
                            context->info.name, what, (unsigned long long)n,

@@ -188,7 +188,7 @@ int engine_carry(engine *e, const tc_extract_options *how, const point_field *fi
         const dataset_field *from = &field->blocks[n];
         const tc_field carried = {sizeof carried, from->type, from->components, from->values};
         uint64_t count = e->parts[n].vertex_count * (uint64_t)from->components;
-        int status = count ? library_status(tc_carry(e->grids[n], how, &carried, values, count)) : 0;
+        int status = count ? library_status(tc_interpolate_field(e->grids[n], how, &carried, values, count)) : 0;
         if (status) return status;
         values += count;
     }

@@ -164,7 +164,7 @@ int library_status(tc_status status) {
         return fail(STATUS_USAGE, "%s", tc_message());
     case TC_ERROR_DATA:
         return fail(STATUS_INPUT, "%s", tc_message());
-    case TC_ERROR_WRONG:
+    case TC_ERROR_WRONG_RESULT:
         return fail(STATUS_FAILED, "%s (--engine reference, or auto)", tc_message());
     case TC_ERROR_CANCELLED:
         return progress_cancelled() ? progress_status() : fail(STATUS_FAILED, "%s", tc_message());

@@ -55,11 +55,11 @@ tc_verdict trial_in_child(void *user, const char *job, char *reason, size_t byte
     if (end.kind == CHILD_NOT_STARTED) return TC_VERDICT_NONE;
     if (end.kind == CHILD_EXITED && end.number == 0 && report.has_ended) {
         snprintf(reason, bytes, "%s", report.text);
-        return report.status == TC_OK                ? TC_VERDICT_GOOD
-               : report.status == TC_ERROR_WRONG     ? TC_VERDICT_WRONG
-               : report.status == TC_ERROR_MEMORY    ? TC_VERDICT_STOPPED
-               : report.status == TC_ERROR_CANCELLED ? TC_VERDICT_CANCELLED
-                                                     : TC_VERDICT_REFUSED;
+        return report.status == TC_OK                   ? TC_VERDICT_GOOD
+               : report.status == TC_ERROR_WRONG_RESULT ? TC_VERDICT_WRONG_RESULT
+               : report.status == TC_ERROR_MEMORY       ? TC_VERDICT_STOPPED
+               : report.status == TC_ERROR_CANCELLED    ? TC_VERDICT_CANCELLED
+                                                        : TC_VERDICT_REFUSED;
     }
     describe_end(&report, &end, reason, bytes);
     if (child_was_ended(&end)) return TC_VERDICT_STOPPED;

@@ -237,9 +237,9 @@ static tc_status call_tc_mesh_get(arguments *a, bool *zero) {
     return status;
 }
 
-static tc_status call_tc_carry(arguments *a, bool *zero) {
+static tc_status call_tc_interpolate_field(arguments *a, bool *zero) {
     *zero = true;
-    return tc_carry(a->grid, a->extract_options_at, a->field_at, a->values, a->value_count);
+    return tc_interpolate_field(a->grid, a->extract_options_at, a->field_at, a->values, a->value_count);
 }
 
 static tc_status call_tc_tetrahedralize(arguments *a, bool *zero) {

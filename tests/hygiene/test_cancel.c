@@ -2,9 +2,10 @@
  * test_cancel.c - cancelled at any call of the progress callback, everything can be used again
  *
  * For every kind of grid, on each engine, whole, in slabs and on a device with memory of its own: tc_count, tc_extract
- * into a new mesh and into a kept one, at a first and at a repeated isovalue, and tc_carry are cancelled at each call
- * of the callback in turn. Each time the status is TC_ERROR_CANCELLED, what was to be made is empty, and then the same
- * grid gives the right bytes. What was counted before a cancelled call is not emitted; what is counted after it is.
+ * into a new mesh and into a kept one, at a first and at a repeated isovalue, and tc_interpolate_field are cancelled at
+ * each call of the callback in turn. Each time the status is TC_ERROR_CANCELLED, what was to be made is empty, and then
+ * the same grid gives the right bytes. What was counted before a cancelled call is not emitted; what is counted after
+ * it is.
  */
 #include "kinds.h"
 
@@ -67,7 +68,7 @@ static tc_status extract_kept(const subject *s, const tc_extract_options *how) {
 static tc_status carry(const subject *s, const tc_extract_options *how) {
     const tc_field field = {sizeof field, TC_F64, 1, kind_f64};
     const tc_mesh_data *mesh = &s->expected[how->isovalue < 100];
-    tc_status status = tc_carry(s->grid, how, &field, s->carried, mesh->vertex_count);
+    tc_status status = tc_interpolate_field(s->grid, how, &field, s->carried, mesh->vertex_count);
     if (s->watch->cancel_at) expect_cancelled(s, status, true, "carry");
     return status;
 }

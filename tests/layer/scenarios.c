@@ -245,7 +245,7 @@ static tc_status carry_run(int index, trial *t, tc_context *context) {
     float *carried = calloc((size_t)wanted.vertex_count, sizeof *carried);
     if (TRIED(t, tc_tetrahedralize(&cone, &cut_cone)) && TRIED(t, tc_tetrahedralize_grid(&options, &cut)) &&
         TRIED(t, tc_grid_create(context, &options, &grid)))
-        (void)TRIED(t, tc_carry(grid, &how, &field, carried, wanted.vertex_count));
+        (void)TRIED(t, tc_interpolate_field(grid, &how, &field, carried, wanted.vertex_count));
     tc_tetrahedra_release(&cut);
     tc_tetrahedra_release(&cut_cone);
     tc_grid_destroy(grid);

@@ -107,13 +107,13 @@ static void test_cancel_and_none(void) {
 }
 
 static void test_other_text(void) {
-    for (tc_verdict bad = TC_VERDICT_WRONG; bad <= TC_VERDICT_HUNG; bad++) {
+    for (tc_verdict bad = TC_VERDICT_WRONG_RESULT; bad <= TC_VERDICT_HUNG; bad++) {
         char name[sizeof folder + 16];
         snprintf(name, sizeof name, "%s/%d", folder, (int)bad);
         setenv("TETRACUBES_CACHE_DIR", name, 1);
         script s = {TC_VERDICT_GOOD, bad, TC_VERDICT_GOOD, 0, 0, 0, ""};
         script none = {bad, bad, bad, 0, 0, 0, ""};
-        const tc_status wanted = bad == TC_VERDICT_WRONG ? TC_ERROR_WRONG : TC_ERROR_DEVICE;
+        const tc_status wanted = bad == TC_VERDICT_WRONG_RESULT ? TC_ERROR_WRONG_RESULT : TC_ERROR_DEVICE;
         EXPECT_REFUSED(extract_try(&s, 1), wanted, "one work-item is what the caller wants");
         EXPECT(strstr(tc_message(), "as the test wants") && strstr(tc_message(), name), "message: %s", tc_message());
         expect_asked(&s, 1, 1, 0, "one work-item is what the caller wants");

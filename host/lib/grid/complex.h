@@ -35,7 +35,7 @@ typedef struct complex_grid {
 /* What its kernels are: one program, tried with emission or without. */
 kernel_kind complex_kind(const tc_grid *grid, bool emits);
 
-/* As tc_count, tc_extract and tc_carry; the struct of options is complete. */
+/* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. */
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);

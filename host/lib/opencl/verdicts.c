@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char *const words[] = {[TC_VERDICT_GOOD] = "good",
-                                    [TC_VERDICT_WRONG] = "wrong",
+                                    [TC_VERDICT_WRONG_RESULT] = "wrong",
                                     [TC_VERDICT_REFUSED] = "refused",
                                     [TC_VERDICT_CRASHED] = "crashed",
                                     [TC_VERDICT_HUNG] = "hung"};

@@ -80,9 +80,9 @@ static tc_status verdict_fail(const tc_context *context, unsigned kind, const ke
     if (v->verdict == TC_VERDICT_STOPPED)
         return (tc_status)fail(TC_ERROR_DEVICE, "the trial of driver %s of %s was stopped, %s: try again", d->driver,
                                d->name, v->reason);
-    if (v->verdict == TC_VERDICT_WRONG || v->verdict == TC_VERDICT_REFUSED)
-        return (tc_status)fail(v->verdict == TC_VERDICT_WRONG ? TC_ERROR_WRONG : TC_ERROR_DEVICE, "%s%s", v->reason,
-                               kept_in);
+    if (v->verdict == TC_VERDICT_WRONG_RESULT || v->verdict == TC_VERDICT_REFUSED)
+        return (tc_status)fail(v->verdict == TC_VERDICT_WRONG_RESULT ? TC_ERROR_WRONG_RESULT : TC_ERROR_DEVICE, "%s%s",
+                               v->reason, kept_in);
     return (tc_status)fail(
         TC_ERROR_DEVICE,
         "driver %s of %s (%s) %s%s%s%s; update the driver, use another device or the reference engine%s", d->driver,

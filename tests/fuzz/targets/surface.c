@@ -34,8 +34,9 @@ static void check_carried(tc_grid *grid, const tc_extract_options *how, tc_type 
                           uint64_t vertex_count) {
     const tc_field field = {.struct_size = sizeof field, .type = type, .components = 1, .values = values};
     float *out = malloc(vertex_count * sizeof *out + 1);
-    CHECK(tc_carry(grid, how, &field, out, vertex_count) == TC_OK);
-    CHECK(tc_carry(grid, how, &field, out, vertex_count + 1) == TC_ERROR_ARGUMENT || vertex_count == UINT64_MAX);
+    CHECK(tc_interpolate_field(grid, how, &field, out, vertex_count) == TC_OK);
+    CHECK(tc_interpolate_field(grid, how, &field, out, vertex_count + 1) == TC_ERROR_ARGUMENT ||
+          vertex_count == UINT64_MAX);
     free(out);
 }
 
