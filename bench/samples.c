@@ -131,7 +131,7 @@ int samples_read(const bench_options *o, samples *out) {
     const volume *v = &out->read;
     tc_grid_options_init(&out->grid);
     memcpy(out->grid.dims, v->dims, sizeof v->dims);
-    memcpy(out->grid.first, v->first, sizeof v->first);
+    memcpy(out->grid.first_index, v->first, sizeof v->first);
     memcpy(out->grid.matrix, v->matrix, sizeof v->matrix);
     out->grid.type = v->type;
     out->grid.samples = v->samples;

@@ -267,14 +267,14 @@ static int search_run(search *s) {
     int status = setting_open(s, &(tc_tuning){0}, &s->best);
     if (!status) status = setting_open(s, &s->best.tuning, &first);
     if (!status) status = library_status(tc_context_device(first.context, &s->device));
-    if (!status) status = library_status(tc_context_tuning_keep(first.context)); /* fails now, not after the search */
+    if (!status) status = library_status(tc_context_tuning_save(first.context)); /* fails now, not after the search */
     if (!status && !s->o->json)
         printf("%s (driver %s); times are those of the best before\n  work_items  work_groups  tile_bricks    time\n",
                s->device.name, s->device.driver);
     if (!status) show(s, &first.tuning, 1, "  at present");
     if (!status) status = parameters_search(s);
     if (!status) status = best_confirm(s, &first, &ratio);
-    if (!status) status = library_status(tc_context_tuning_keep(s->best.context));
+    if (!status) status = library_status(tc_context_tuning_save(s->best.context));
     if (!status) status = report_best(s, ratio);
     setting_close(&first);
     setting_close(&s->best);

@@ -160,7 +160,7 @@ static bool relative_is_right(const walk *w, const int64_t a[3], const int64_t b
     long double sum = (long double)m[3] - (long double)w->mesh->origin[row], room = fabsl((long double)is[row]);
     for (int axis = 0; axis < 3; axis++) {
         long double scale = (long double)m[axis];
-        long double p = (long double)(w->grid->first[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
+        long double p = (long double)(w->grid->first_index[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
         sum += scale * p;
         /* Indices count from near the grid, too, where they are beyond both of these. */
         long double most = fmaxl(512, 8 * (long double)w->grid->dims[axis]) + (long double)w->grid->dims[axis];
@@ -180,7 +180,7 @@ static bool position_is_right(const walk *w, const int64_t a[3], const int64_t b
         long double sum = (long double)(float)m[3], room = fabsl(sum);
         for (int axis = 0; axis < 3; axis++) {
             long double scale = (long double)(float)m[axis];
-            long double p = (long double)(w->grid->first[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
+            long double p = (long double)(w->grid->first_index[axis] + a[axis]) + t * (long double)(b[axis] - a[axis]);
             sum += scale * p;
             room += fabsl(scale) * (fabsl(p) + 1);
         }
@@ -441,7 +441,7 @@ const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_me
     uint64_t samples = (uint64_t)(grid->dims[0] * grid->dims[1] * grid->dims[2]);
     walk w = {.grid = grid, .isovalue = isovalue, .mesh = mesh};
     oracle_counts should;
-    w.parity = (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1;
+    w.parity = (unsigned)(grid->first_index[0] + grid->first_index[1] + grid->first_index[2]) & 1;
     w.inside = malloc(samples);
     w.present = malloc(samples);
     w.ids = malloc(samples * EDGE_TYPES * sizeof *w.ids);

@@ -170,7 +170,7 @@ static void test_sizes(tc_context *context) {
         char what[64];
         grid_describe(&options);
         memcpy(options.dims, cases[n].dims, sizeof options.dims);
-        options.first[n % 3] = cases[n].first;
+        options.first_index[n % 3] = cases[n].first;
         snprintf(what, sizeof what, "sizes %zu", n);
         expect_grid(context, &options, cases[n].status, what);
     }

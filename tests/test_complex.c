@@ -271,13 +271,13 @@ static void grid_compare(tc_type type, bool holes, bool mirrored) {
              mirrored ? ", mirrored" : "");
     tc_grid_options_init(&g);
     g.dims[0] = NX, g.dims[1] = NY, g.dims[2] = NZ, g.type = type, g.samples = values;
-    g.first[0] = random_below(2);
+    g.first_index[0] = random_below(2);
     if (mirrored) g.matrix[0][0] = -1;
     for (int n = 0; n < COUNT; n++) {
         double x = n % NX, y = n / NX % NY, z = n / NX / NY;
         sample_set(values, type, n, 60 + 30 * sin(0.7 * x + 0.1) + 20 * cos(0.9 * y) + 10 * sin(z + 0.5 * x));
         if (holes && random_below(90) == 0) sample_set(values, type, n, NAN);
-        points[3 * n] = (float)(mirrored ? -(x + (double)g.first[0]) : x + (double)g.first[0]);
+        points[3 * n] = (float)(mirrored ? -(x + (double)g.first_index[0]) : x + (double)g.first_index[0]);
         points[3 * n + 1] = (float)y, points[3 * n + 2] = (float)z;
     }
     EXPECT(tc_tetrahedralize_grid(&g, &complex) == TC_OK, "%s: %s", what, tc_message());

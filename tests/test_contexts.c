@@ -28,7 +28,7 @@ static void test_older_callers(const tc_mesh_data *expected) {
     grid_options.struct_size = offsetof(tc_grid_options, matrix);
     for (int axis = 0; axis < 3; axis++) {
         grid_options.dims[axis] = SIZE;
-        grid_options.first[axis] = 0;
+        grid_options.first_index[axis] = 0;
     }
     grid_options.type = TC_U8;
     grid_options.samples = samples;

@@ -102,7 +102,7 @@ static void describe(const subject *s, char *text, size_t bytes) {
              g->points    ? "points"
              : g->axes[0] ? "axes"
                           : "uniform",
-             (long long)g->dims[0], (long long)g->dims[1], (long long)g->dims[2], (long long)g->first[0],
+             (long long)g->dims[0], (long long)g->dims[1], (long long)g->dims[2], (long long)g->first_index[0],
              g->blanked_samples ? ", blanked samples" : "", g->blanked_cells ? ", blanked cells" : "",
              s->how.normals ? ", normals" : "");
 }
@@ -152,8 +152,8 @@ static void test_engines(subject *s, tc_type type, int kind, unsigned which) {
         for (int blank = kind == 2; blank < 4; blank++) {
             if ((n + blank) % 2 && (type != TC_F32 || n < 2)) continue;
             subject_begin(s, type, sizes[n]);
-            s->grid.first[0] = random_below(2);
-            s->grid.first[1] = -3;
+            s->grid.first_index[0] = random_below(2);
+            s->grid.first_index[1] = -3;
             s->how.normals = 1;
             samples_fill(s, n < 2 ? 60 : 5);
             if (s->count == 8) sample_set(s->samples, type, 0, 126), sample_set(s->samples, type, 7, 0);

@@ -245,7 +245,7 @@ static void test_world_space(tc_context *reference, tc_context *device) {
             tc_extract_options_init(&s.how);
             for (int axis = 0; axis < 3; axis++) s.grid.dims[axis] = SIZE;
             memcpy(s.grid.matrix, matrices[m], sizeof s.grid.matrix);
-            memcpy(s.grid.first, firsts[f], sizeof s.grid.first);
+            memcpy(s.grid.first_index, firsts[f], sizeof s.grid.first_index);
             s.grid.samples = samples;
             s.how.isovalue = 100.5;
             s.how.normals = 1;

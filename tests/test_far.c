@@ -164,14 +164,14 @@ static void compare_places(enum kind kind, tc_context *context, surface *far) {
     subject_make(&there, kind, far_place);
     static const int64_t far_first[3] = {12000000, INT32_MIN, INT32_MAX - 31}; /* even: cubes keep their parity */
     for (int axis = 0; axis < 3 && kind == INDEXED; axis++) {
-        there.grid.first[axis] = far_first[axis];
+        there.grid.first_index[axis] = far_first[axis];
         there.grid.matrix[axis][3] = -0.25 * (double)far_first[axis];
     }
     if (kind == RECTILINEAR || kind == CURVILINEAR) { /* nothing but the parity comes of it */
-        here.grid.first[0] = here.grid.first[1] = 1;
-        there.grid.first[0] = INT32_MAX - NX + 1;
-        there.grid.first[1] = INT32_MIN + 1;
-        there.grid.first[2] = INT32_MIN;
+        here.grid.first_index[0] = here.grid.first_index[1] = 1;
+        there.grid.first_index[0] = INT32_MAX - NX + 1;
+        there.grid.first_index[1] = INT32_MIN + 1;
+        there.grid.first_index[2] = INT32_MIN;
     }
     if (surface_extract(&here, context, &near) && surface_extract(&there, context, far)) {
         EXPECT(!moved(&near), "%s: moved though near zero", kind_names[kind]);
@@ -358,7 +358,7 @@ static void test_long_far_grid(void) {
         made.grid.type = TC_U8;
         made.grid.samples = samples;
         made.grid.dims[0] = LONG, made.grid.dims[1] = made.grid.dims[2] = 2;
-        made.grid.first[0] = firsts[n];
+        made.grid.first_index[0] = firsts[n];
         made.grid.matrix[0][3] = -(double)firsts[n];
         surface_extract(&made, reference, &s);
         EXPECT(s.data.vertex_count == 8, "from %lld on: %llu vertices", (long long)firsts[n],

@@ -151,8 +151,8 @@ static void test_patterns(int64_t size) {
             if (n >> c & 1) sample_set(memory, TC_F32, (z * size + y) * size + x, random_between(0.1, 1));
         }
         /* positions are compared in the grid's own space, whatever its first index */
-        grid.first[0] = n / 256;
-        grid.matrix[0][3] = -(double)grid.first[0];
+        grid.first_index[0] = n / 256;
+        grid.matrix[0][3] = -(double)grid.first_index[0];
         snprintf(name, sizeof name, "pattern %02x, parity %u, %d samples", n % 256, n / 256, (int)size);
         expect_hybrid(&grid, &how, true, name);
     }

@@ -38,7 +38,7 @@ static void test_signs_of_a_cube(void) {
         tc_grid_options grid;
         tc_grid_options_init(&grid);
         for (int axis = 0; axis < 3; axis++) grid.dims[axis] = 2;
-        grid.first[n % 3] = n >> 8; /* odd along each axis in turn */
+        grid.first_index[n % 3] = n >> 8; /* odd along each axis in turn */
         grid.samples = samples;
         for (unsigned c = 0; c < 8; c++) samples[c] = n >> c & 1 ? ABOVE : BELOW;
         expect_pattern(&grid, n >> 8 ? "one odd cube" : "one even cube", n & 255, false);
@@ -55,7 +55,7 @@ static void test_ties_of_a_cube(void) {
             embedded[(1 + (c & 1)) + 4 * (1 + (c >> 1 & 1)) + 16 * (1 + (c >> 2))] = one[c];
         }
         tc_grid_options_init(&grid);
-        grid.first[0] = n & 1;
+        grid.first_index[0] = n & 1;
         for (int axis = 0; axis < 3; axis++) grid.dims[axis] = 2;
         grid.samples = one;
         expect_pattern(&grid, "one cube with ties", n, false);

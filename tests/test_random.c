@@ -118,7 +118,7 @@ static void grid_choose(tc_grid_options *grid, tc_extract_options *how) {
     grid->type = (tc_type)random_below(8);
     grid->samples = memory;
     for (int axis = 0; axis < 3; axis++)
-        if (random_below(3) == 0) grid->first[axis] = (int64_t)random_below(2001) - 1000;
+        if (random_below(3) == 0) grid->first_index[axis] = (int64_t)random_below(2001) - 1000;
     field_kind kind = (field_kind)random_below(FIELD_KINDS);
     for (int n = 0; n < 4; n++) wave[n] = random_between(0.02, 0.9);
     int64_t count = 0;

@@ -81,7 +81,7 @@ static void test_alternating(void) {
             char name[80];
             snprintf(name, sizeof name, "alternating along axes %d, parity %d", alternating_axes, parity);
             bytes_fill(&grid, (int64_t[3]){131, 10, 6}, alternating);
-            grid.first[1] = parity;
+            grid.first_index[1] = parity;
             expect_same(&grid, isovalues, 2, name);
         }
 }

@@ -291,7 +291,7 @@ static void grid_check(bool missing, bool mirrored, bool bent) {
     tc_grid_options_init(&grid);
     grid.dims[0] = NX, grid.dims[1] = NY, grid.dims[2] = NZ;
     grid.type = TC_F32, grid.samples = values;
-    grid.first[random_below(3)] = (int64_t)random_below(3) - 1;
+    grid.first_index[random_below(3)] = (int64_t)random_below(3) - 1;
     if (mirrored) grid.matrix[1][1] = -1;
     if (bent) grid.points = points;
     if (missing) grid.blanked_cells = blanked_cells;

@@ -59,7 +59,7 @@ static size_t file_read(char *out, size_t room) {
 
 static void keep(uint32_t work_items, uint32_t work_groups, uint32_t tile_bricks) {
     tc_context *context = open_with(work_items, work_groups, tile_bricks);
-    EXPECT(tc_context_tuning_keep(context) == TC_OK, "%s", tc_message());
+    EXPECT(tc_context_tuning_save(context) == TC_OK, "%s", tc_message());
     tc_context_destroy(context);
 }
 
@@ -160,12 +160,12 @@ static void test_refused(tc_context *context) {
     EXPECT_REFUSED(tc_context_tuning(context, NULL), TC_ERROR_ARGUMENT, "no place for the tuning");
     EXPECT_REFUSED(tc_context_tuning(context, &small), TC_ERROR_ARGUMENT, "tuning of no size");
     EXPECT_REFUSED(tc_context_tuning(reference, &tuning), TC_ERROR_ARGUMENT, "tuning of the reference");
-    EXPECT_REFUSED(tc_context_tuning_keep(NULL), TC_ERROR_ARGUMENT, "keeping that of no context");
-    EXPECT_REFUSED(tc_context_tuning_keep(reference), TC_ERROR_ARGUMENT, "keeping that of the reference");
+    EXPECT_REFUSED(tc_context_tuning_save(NULL), TC_ERROR_ARGUMENT, "keeping that of no context");
+    EXPECT_REFUSED(tc_context_tuning_save(reference), TC_ERROR_ARGUMENT, "keeping that of the reference");
     setenv("TETRACUBES_CACHE_DIR", "", 1);
-    EXPECT_REFUSED(tc_context_tuning_keep(context), TC_ERROR_FILE, "keeping without a cache");
+    EXPECT_REFUSED(tc_context_tuning_save(context), TC_ERROR_FILE, "keeping without a cache");
     setenv("TETRACUBES_CACHE_DIR", "/dev/null/cache", 1);
-    EXPECT_REFUSED(tc_context_tuning_keep(context), TC_ERROR_FILE, "keeping where nothing can be written");
+    EXPECT_REFUSED(tc_context_tuning_save(context), TC_ERROR_FILE, "keeping where nothing can be written");
     tc_context_destroy(reference);
 }
 

@@ -167,7 +167,7 @@ typedef struct tc_context_options {
                              Never changes results */
     uint32_t work_groups; /* launched at once; 0: the device's default. Never changes results */
     uint32_t tile_bricks; /* at least so many bricks per tile of the scan; 0: default. Never changes results. These
-                             three all 0: what tc_context_tuning_keep kept for the device, if it did */
+                             three all 0: what tc_context_tuning_save kept for the device, if it did */
     uint32_t spin_limit;  /* polls of an unfinished tile before its sum is recomputed; 0: default; 1 also recomputes the
                              tile  before each, which tests that path. Never changes results */
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
@@ -230,7 +230,7 @@ TC_API tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning)
 
 /* Keeps that in the cache folder, for this device and driver: later contexts whose options leave all three at 0 launch
  * so. TC_ERROR_FILE where that cannot be written. */
-TC_API tc_status tc_context_tuning_keep(const tc_context *context);
+TC_API tc_status tc_context_tuning_save(const tc_context *context);
 
 /* The context's OpenCL objects, not retained; NULL for the reference engine. */
 TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);
@@ -252,18 +252,18 @@ TC_API const char *tc_type_name(tc_type type);
 
 typedef struct tc_grid_options {
     size_t struct_size;
-    int64_t dims[3];     /* samples along x, y, z; each at least 2 */
-    int64_t first[3];    /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
+    int64_t dims[3];        /* samples along x, y, z; each at least 2 */
+    int64_t first_index[3]; /* index of the first sample, where a file's extents do not start at 0: the parity of cubes
                             and the index space of positions count from it. First and last index of 32 bits */
-    tc_type type;        /* native byte order */
-    const void *samples; /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
-                            tc_grid_destroy, not copied where the device shares the host's memory */
-    double matrix[3][4]; /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
-                            (triangles keep their outward side); default: identity. Used as float32 */
-    int has_nodata;      /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
-    double nodata;       /* missing corner is left out whole. Rounded to float where samples are f32, so that the
-                            decimal number that stands for a sample equals it (-999.9, 0.1, 1e20); exact otherwise: a
-                            number that no sample can have, 0.5 or -1 of u8, is equal to none. Not finite: none */
+    tc_type type;           /* native byte order */
+    const void *samples;    /* dims[0] * dims[1] * dims[2], x fastest, no padding, aligned to the type; borrowed until
+                               tc_grid_destroy, not copied where the device shares the host's memory */
+    double matrix[3][4];    /* index space to world: world[r] = m[r][0] i + m[r][1] j + m[r][2] k + m[r][3]. May mirror
+                               (triangles keep their outward side); default: identity. Used as float32 */
+    int has_nodata;         /* samples equal to nodata are missing, as are all that are not finite: a cube with a */
+    double nodata;          /* missing corner is left out whole. Rounded to float where samples are f32, so that the
+                               decimal number that stands for a sample equals it (-999.9, 0.1, 1e20); exact otherwise: a
+                               number that no sample can have, 0.5 or -1 of u8, is equal to none. Not finite: none */
     struct _cl_mem *cl_samples; /* instead of samples: a buffer of the context's cl_context, retained until
                                    tc_grid_destroy; commands that write it come first in the context's queue, or are
                                    complete. Not for the reference engine */

@@ -157,7 +157,7 @@ tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
     return TC_OK;
 }
 
-tc_status tc_context_tuning_keep(const tc_context *context) {
+tc_status tc_context_tuning_save(const tc_context *context) {
     tc_tuning tuning = {.struct_size = sizeof tuning};
     tc_status status = tc_context_tuning(context, &tuning);
     return status ? status : tuning_keep(&context->info, &tuning);

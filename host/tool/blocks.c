@@ -25,7 +25,7 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
     const dataset_block *from = b->source;
     tc_grid_options_init(grid);
     memcpy(grid->dims, from->dims, sizeof grid->dims);
-    memcpy(grid->first, from->first, sizeof grid->first);
+    memcpy(grid->first_index, from->first, sizeof grid->first_index);
     if (from->kind == GRID_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
     for (int axis = 0; axis < 3 && from->kind == GRID_RECTILINEAR; axis++) {
         grid->axes[axis] = from->axes[axis].f32;

@@ -122,7 +122,7 @@ static void describe_grid(const trial *t, selftest_volume *v) {
     tc_grid_options *grid = &v->grid;
     tc_grid_options_init(grid);
     memcpy(grid->dims, t->dims, sizeof grid->dims);
-    memcpy(grid->first, t->first, sizeof grid->first);
+    memcpy(grid->first_index, t->first, sizeof grid->first_index);
     if (t->mirrored) memcpy(grid->matrix, mirrored, sizeof mirrored);
     grid->type = t->type;
     grid->samples = v->samples;

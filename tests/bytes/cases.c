@@ -144,7 +144,7 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
     memcpy(g->dims, dims[(c->flags & CASE_DEEP ? 2 : 0) + small], sizeof g->dims);
     const int64_t *d = g->dims, count = d[0] * d[1] * d[2];
     memcpy(g->matrix, matrix, sizeof matrix);
-    for (int axis = 0; axis < 3; axis++) g->first[axis] = 4 * axis - 5;
+    for (int axis = 0; axis < 3; axis++) g->first_index[axis] = 4 * axis - 5;
     g->type = c->type;
     g->samples = data->samples = memory_get((size_t)count * tc_type_bytes(c->type));
     g->has_nodata = c->flags & CASE_MISSING ? 1 : 0;

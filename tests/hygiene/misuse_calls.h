@@ -181,9 +181,9 @@ static tc_status call_tc_context_tuning(arguments *a, bool *zero) {
     return status;
 }
 
-static tc_status call_tc_context_tuning_keep(arguments *a, bool *zero) {
+static tc_status call_tc_context_tuning_save(arguments *a, bool *zero) {
     *zero = true;
-    return tc_context_tuning_keep(a->context);
+    return tc_context_tuning_save(a->context);
 }
 
 /* A grid that came about is a grid: the reference extracts from it. */

@@ -92,8 +92,8 @@ typedef struct place {
 
 #define OPTIONS_OF_GRIDS(call)                                                                                         \
     AT(call, grid_options_at, null), AT(call, grid_options.dims[0], dims), AT(call, grid_options.dims[1], dims),       \
-        AT(call, grid_options.dims[2], dims), AT(call, grid_options.first[0], first),                                  \
-        AT(call, grid_options.first[1], first), AT(call, grid_options.first[2], first),                                \
+        AT(call, grid_options.dims[2], dims), AT(call, grid_options.first_index[0], first),                            \
+        AT(call, grid_options.first_index[1], first), AT(call, grid_options.first_index[2], first),                    \
         AT(call, grid_options.type, no_enumerator), AT(call, grid_options.samples, null),                              \
         AT(call, grid_options.matrix[0][0], matrix), AT(call, grid_options.matrix[1][2], matrix),                      \
         AT(call, grid_options.matrix[2][3], matrix), AT(call, grid_options.has_nodata, any_i32),                       \
@@ -135,7 +135,7 @@ static const place places[] = {
     AT(tc_context_device, info_at, null),
     AT(tc_context_tuning, context, null),
     AT(tc_context_tuning, tuning_at, null),
-    AT(tc_context_tuning_keep, context, null),
+    AT(tc_context_tuning_save, context, null),
     AT(tc_grid_create, context, null),
     AT(tc_grid_create, grid_place, null),
     OPTIONS_OF_GRIDS(tc_grid_create),

@@ -162,7 +162,7 @@ static void structured_make(subject *s) {
     dims_choose(s->grid.dims);
     s->sample_count = s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2];
     for (int axis = 0; axis < 3; axis++)
-        if (random_below(3) == 0) s->grid.first[axis] = (int64_t)random_below(2001) - 1000;
+        if (random_below(3) == 0) s->grid.first_index[axis] = (int64_t)random_below(2001) - 1000;
     if (coordinates == UNIFORM) matrix_choose(s);
     if (coordinates == RECTILINEAR) axes_choose(s);
     if (coordinates == CURVILINEAR) points_choose(s);
@@ -328,7 +328,7 @@ void subject_place(const subject *s, int64_t sample, double out[3]) {
             out[row] = (double)s->grid.axes[row][(int64_t)p[row]];
         } else {
             out[row] = m[3];
-            for (int axis = 0; axis < 3; axis++) out[row] += m[axis] * (p[axis] + (double)s->grid.first[axis]);
+            for (int axis = 0; axis < 3; axis++) out[row] += m[axis] * (p[axis] + (double)s->grid.first_index[axis]);
         }
     }
 }

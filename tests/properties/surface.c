@@ -35,7 +35,7 @@ static bool cube_make(const subject *s, const int64_t p[3], body *b) {
         for (int axis = 0; axis < 3; axis++) {
             const int64_t at = p[axis] + (c >> axis & 1);
             b->at[c][axis] = (double)at;
-            sum += g->first[axis] + at;
+            sum += g->first_index[axis] + at;
         }
         b->samples[c] = (uint32_t)sample;
         b->inside[c] = sample_is_inside(s, sample);
@@ -305,7 +305,7 @@ static origins origins_of(const tc_grid_options *g) {
     origins o;
     double first[3], last[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double begin = (double)g->first[axis], end = (double)(g->first[axis] + g->dims[axis] - 1);
+        const double begin = (double)g->first_index[axis], end = (double)(g->first_index[axis] + g->dims[axis] - 1);
         o.base[axis] = origin_of(begin, end, 1);
         first[axis] = begin - o.base[axis], last[axis] = end - o.base[axis];
     }
@@ -342,7 +342,8 @@ static void position_make(const subject *s, const origins *o, const uint32_t end
     place_of(&s->grid, ends[0], a);
     place_of(&s->grid, ends[1], b);
     for (int axis = 0; axis < 3; axis++)
-        at[axis] = (float)(s->grid.first[axis] + a[axis] - (int64_t)o->base[axis]) + t * (float)(b[axis] - a[axis]);
+        at[axis] =
+            (float)(s->grid.first_index[axis] + a[axis] - (int64_t)o->base[axis]) + t * (float)(b[axis] - a[axis]);
     for (int row = 0; row < 3; row++) {
         const double *m = s->grid.matrix[row];
         out[row] = (((float)m[0] * at[0] + (float)m[1] * at[1]) + (float)m[2] * at[2]) + (float)o->offset[row];

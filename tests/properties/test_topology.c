@@ -110,7 +110,7 @@ static void grids_run(int64_t nx, int64_t ny, int64_t nz) {
     tally sum = {0};
     for (int n = 0; n < 4; n++) {
         subject_make_plain(&grid, n & 1 ? HYBRID : UNIFORM, dims);
-        grid.grid.first[0] = n >> 1;
+        grid.grid.first_index[0] = n >> 1;
         for (unsigned pattern = 0; pattern < patterns && expect_failures < FAILURES_SHOWN; pattern++) {
             for (int64_t m = 0; m < grid.sample_count; m++)
                 sample_set(grid.samples, TC_U8, m, (double)(pattern >> m & 1));

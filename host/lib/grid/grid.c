@@ -56,9 +56,9 @@ static tc_status sizes_check(const tc_grid_options *o) {
                                    "%lld samples along %c: they are limited to 2^24, as float32 holds indices of "
                                    "vertices; cut the grid in pieces",
                                    (long long)o->dims[axis], 'x' + axis);
-        if (o->first[axis] < INT32_MIN || o->first[axis] > INT32_MAX - o->dims[axis] + 1)
+        if (o->first_index[axis] < INT32_MIN || o->first_index[axis] > INT32_MAX - o->dims[axis] + 1)
             return (tc_status)fail(TC_ERROR_DATA, "%lld samples along %c from index %lld on: indices are of 32 bits",
-                                   (long long)o->dims[axis], 'x' + axis, (long long)o->first[axis]);
+                                   (long long)o->dims[axis], 'x' + axis, (long long)o->first_index[axis]);
     }
     int64_t count;
     if (__builtin_mul_overflow(o->dims[0] * o->dims[1], o->dims[2], &count) ||
@@ -216,7 +216,7 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
                                tc_type_name(o->type));
     for (int axis = 0; axis < 3; axis++) {
         grid->dims[axis] = o->dims[axis];
-        grid->first[axis] = o->first[axis];
+        grid->first[axis] = o->first_index[axis];
     }
     grid->type = o->type;
     grid->samples = o->samples;

@@ -30,7 +30,7 @@ static void take_sizes(bytes *b, uint8_t flags, tc_grid_options *grid) {
     static const uint8_t limits[3] = {70, 12, 8}; /* a little more than a brick */
     for (int axis = 0; axis < 3; axis++) {
         grid->dims[axis] = flags & IS_LARGE ? bytes_i64(b) : bytes_u8(b) % limits[axis];
-        grid->first[axis] = flags & IS_LARGE ? bytes_i64(b) : (int8_t)bytes_u8(b);
+        grid->first_index[axis] = flags & IS_LARGE ? bytes_i64(b) : (int8_t)bytes_u8(b);
     }
 }
 
