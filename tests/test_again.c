@@ -5,7 +5,7 @@
  * reference: every sample type, ties, missing samples, slabs, work-items alone and in groups. Where the device uses the
  * samples in place, those that no isovalue needs are made unreadable after the first visit.
  *
- * Usage: test_again [own_buffers]: with it, samples and meshes are copied even where the device shares the memory.
+ * Usage: test_again [always_copy]: with it, samples and meshes are copied even where the device shares the memory.
  */
 #include "engines.h"
 #include "random.h"
@@ -15,7 +15,7 @@
 #include <sys/mman.h>
 
 static uint32_t slab_count_most;
-static int own_buffers; /* of all contexts on the device */
+static int always_copy; /* of all contexts on the device */
 
 /* Calm in most bricks, waves in some, so that both kinds occur and isovalues fall between. */
 static double sample_value(tc_type type, const int64_t p[3], bool missing) {
@@ -65,7 +65,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
              slabs ? ", slabs" : "");
     if (!test_chosen(name)) return;
     tc_context_options_init(&options);
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     options.work_items = work_items;
     if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
     tc_context *contexts[2] = {context_open(&options), reference_open()};
@@ -99,7 +99,7 @@ static void test_unread(void) {
     tc_device_info info = {.struct_size = sizeof info};
     tc_extract_options how;
     tc_context_options_init(&options);
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     tc_context *context = context_open(&options);
     uint8_t *samples = mmap(NULL, 128 * plane, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (samples == MAP_FAILED) exit(EXIT_FAILURE);
@@ -113,7 +113,7 @@ static void test_unread(void) {
     EXPECT(!tc_grid_create(context, &grid_options, &grid), "%s", tc_message());
     EXPECT(!tc_context_device(context, &info), "%s", tc_message());
     EXPECT(!tc_extract(grid, &how, &mesh), "%s", tc_message());
-    if (info.shares_host_memory && !own_buffers) EXPECT(!mprotect(samples, unread, PROT_NONE), "mprotect fails");
+    if (info.shares_host_memory && !always_copy) EXPECT(!mprotect(samples, unread, PROT_NONE), "mprotect fails");
     for (how.isovalue = 100; how.isovalue < 120; how.isovalue += 5)
         EXPECT(!tc_extract(grid, &how, &mesh), "%s", tc_message());
     mprotect(samples, unread, PROT_READ);
@@ -124,7 +124,7 @@ static void test_unread(void) {
 }
 
 int main(int argc, char **argv) {
-    own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     if (!device_exists()) return SKIPPED;
     random_state = 3;
     for (tc_type type = TC_U8; type <= TC_F64; type++)

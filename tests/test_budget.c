@@ -2,7 +2,7 @@
  * test_budget.c - a memory budget that is too small is refused with one that does: that one, and every larger one
  *
  * Budgets fall from more than enough until a call is refused; what the refusal advises is followed, exactly and by
- * more. With "own_buffers" as on a device with memory of its own.
+ * more. With "always_copy" as on a device with memory of its own.
  */
 #include "engines.h"
 #include "random.h"
@@ -13,7 +13,7 @@ enum { NX = 130, NY = 75, NZ = 22, SAMPLES = NX * NY * NZ, CUBES = (NX - 1) * (N
 
 static uint8_t bytes[SAMPLES], blanked_samples[SAMPLES], blanked_cells[CUBES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[NX];
-static bool own_buffers;
+static bool always_copy;
 
 typedef struct subject {
     const char *name;
@@ -75,7 +75,7 @@ static bool budget_does(const subject *s, uint64_t budget, bool normals, const t
     uint64_t peak;
     tc_context_options_init(&options);
     options.max_memory_bytes = budget;
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     tc_context *context = context_open(&options);
     grid_describe(s, &volume);
     tc_status status = tc_grid_create(context, &volume, &grid);
@@ -136,7 +136,7 @@ static void subject_test(const subject *s, tc_context *reference) {
 }
 
 int main(int argc, char **argv) {
-    own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     if (!device_exists()) return SKIPPED;
     tc_context *reference = reference_open();
     for (size_t n = 0; n < sizeof subjects / sizeof *subjects; n++) subject_test(&subjects[n], reference);

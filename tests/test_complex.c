@@ -420,7 +420,7 @@ static void cancelled(tc_engine engine) {
     tc_context_destroy(context);
 }
 
-static void devices_open(bool own_buffers) {
+static void devices_open(bool always_copy) {
     static const uint32_t work_items[CONTEXTS] = {0, 1, 32, 64}, work_groups[CONTEXTS] = {0, 5, 3, 7};
     static const uint32_t tile_bricks[CONTEXTS] = {0, 1, 0, 3}, spin_limit[CONTEXTS] = {0, 1, 0, 1};
     for (int n = 0; n < CONTEXTS; n++) {
@@ -428,17 +428,17 @@ static void devices_open(bool own_buffers) {
         tc_context_options_init(&how);
         how.work_items = work_items[n], how.work_groups = work_groups[n];
         how.tile_bricks = tile_bricks[n], how.spin_limit = spin_limit[n];
-        how.own_buffers = own_buffers;
+        how.always_copy = always_copy;
         devices[device_count++] = context_open(&how);
     }
 }
 
 int main(int argc, char **argv) {
-    const bool own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    const bool always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     random_state = 4;
     reference = reference_open();
     const bool has_device = device_exists();
-    if (has_device) devices_open(own_buffers);
+    if (has_device) devices_open(always_copy);
     refusals(reference);
     cancelled(TC_ENGINE_REFERENCE);
     if (has_device && test_chosen("refusals")) {

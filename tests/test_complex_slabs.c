@@ -1,6 +1,6 @@
 /*
  * Complexes under bounds on memory, slab by slab: the same bytes as the reference, never more device memory than
- * allowed, and a refusal that says what would do. With "own_buffers" as on a device with memory of its own; with
+ * allowed, and a refusal that says what would do. With "always_copy" as on a device with memory of its own; with
  * "large" complexes of millions of tetrahedra.
  */
 #include "complex.h"
@@ -14,7 +14,7 @@
 #include <time.h>
 
 static tc_context *reference;
-static bool own_buffers;
+static bool always_copy;
 
 /* ------------------------------------------------------------------------------------------------------- complexes */
 
@@ -109,7 +109,7 @@ static tc_context *bounded_open(uint64_t budget, unsigned variant) {
     tc_context_options how;
     tc_context_options_init(&how);
     how.max_memory_bytes = budget;
-    how.own_buffers = own_buffers;
+    how.always_copy = always_copy;
     if (variant) how.work_items = 32, how.work_groups = 3, how.tile_bricks = 1, how.spin_limit = 1;
     return context_open(&how);
 }
@@ -277,7 +277,7 @@ static void cancelled(uint64_t budget) {
     tc_extract_options_init(&options);
     options.isovalue = s.isovalues[0];
     tc_context_options_init(&how);
-    how.max_memory_bytes = budget, how.own_buffers = own_buffers, how.progress = cancel;
+    how.max_memory_bytes = budget, how.always_copy = always_copy, how.progress = cancel;
     tc_context *context = context_open(&how);
     EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grid), "%s", tc_message());
     for (cancel_after = 0;; cancel_after++) {
@@ -416,7 +416,7 @@ static void points_compare(tc_context *context) {
 }
 
 int main(int argc, char **argv) {
-    own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     random_state = 7;
     if (!device_exists()) return SKIPPED;
     reference = reference_open();
@@ -434,9 +434,9 @@ int main(int argc, char **argv) {
         budgets_compare(hub_make(800));
         cut_later();
         point_refused(100000);
-        point_refused(own_buffers ? 10000 : 30000);
-        cancelled(own_buffers ? 10000 : 24000);
-        cancelled(own_buffers ? 40000 : 60000);
+        point_refused(always_copy ? 10000 : 30000);
+        cancelled(always_copy ? 10000 : 24000);
+        cancelled(always_copy ? 40000 : 60000);
     }
     tc_context_destroy(reference);
     return EXPECT_DONE();

@@ -123,7 +123,7 @@ static bool meshes_same(tc_context *context, const subject *s, const tc_mesh_dat
 
 /* The reference's mesh is right, and that of every device context the same. */
 static void subject_compare(const subject *s, unsigned which) {
-    static const char *const names[CONTEXTS] = {"one work-item", "32 work-items", "own buffers"};
+    static const char *const names[CONTEXTS] = {"one work-item", "32 work-items", "copied buffers"};
     char text[160];
     tc_mesh *mesh = NULL;
     tc_mesh_data expected;
@@ -164,13 +164,13 @@ static void test_engines(subject *s, tc_type type, int kind, unsigned which) {
 }
 
 /* Same bytes with every memory budget that suffices; the bound is kept. */
-static void test_budgets(subject *s, int kind, int own_buffers) {
+static void test_budgets(subject *s, int kind, int always_copy) {
     tc_context_options options;
     tc_mesh *mesh = NULL;
     tc_mesh_data expected;
     unsigned most = 0, done = 0, refused = 0;
     tc_context_options_init(&options);
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     subject_begin(s, TC_F32, (int64_t[3]){35, 21, 50});
     samples_fill(s, 1);
     coordinates_choose(s, kind, 0);
@@ -191,7 +191,7 @@ static void test_budgets(subject *s, int kind, int own_buffers) {
         EXPECT(peak <= options.max_memory_bytes, "%llu bytes of buffers at a budget of %llu", (unsigned long long)peak,
                (unsigned long long)options.max_memory_bytes);
         const char *difference = status ? NULL : mesh_difference(&expected, &data);
-        EXPECT(!difference, "kind %d, own buffers %d, budget %llu: %s", kind, own_buffers,
+        EXPECT(!difference, "kind %d, copied buffers %d, budget %llu: %s", kind, always_copy,
                (unsigned long long)options.max_memory_bytes, difference);
         EXPECT(!status || status == TC_ERROR_MEMORY, "status %d: %s", (int)status, tc_message());
         status ? refused++ : done++;
@@ -498,7 +498,7 @@ int main(int argc, char **argv) {
             tc_context_options options;
             tc_context_options_init(&options);
             options.work_items = n == IN_ROWS ? 32 : 1;
-            options.own_buffers = n == COPIED;
+            options.always_copy = n == COPIED;
             contexts[n] = context_open(&options);
         }
     test_engines(&s, TC_F32, 0, 7);
@@ -508,7 +508,7 @@ int main(int argc, char **argv) {
     test_engines(&s, TC_F64, 0, 1u << WHOLE | 1u << COPIED);
     test_engines(&s, TC_F32, 2, 7);
     for (int kind = 0; contexts[WHOLE] && kind < 3 && test_chosen("budgets"); kind++)
-        for (int own_buffers = 0; own_buffers < 2; own_buffers++) test_budgets(&s, kind, own_buffers);
+        for (int always_copy = 0; always_copy < 2; always_copy++) test_budgets(&s, kind, always_copy);
     if (contexts[WHOLE]) test_divisions(&s);
     test_uniform_twin(&s, 0);
     test_uniform_twin(&s, 1);

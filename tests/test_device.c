@@ -4,7 +4,7 @@
  * Variations: work-group sizes and counts, tiles, waiting of the scan, ways to divide, memory budgets (slabs), matrices
  * and first indices, meshes and grids used again. The reference's meshes are checked whole against their grids.
  *
- * Usage: test_device [own_buffers|hybrid]: with own_buffers, samples and meshes are copied even where the device shares
+ * Usage: test_device [always_copy|hybrid]: with always_copy, samples and meshes are copied even where the device shares
  * the memory; with hybrid, surfaces are those of the hybrid method, which test_hybrid checks against their grids.
  */
 #include "engines.h"
@@ -27,7 +27,7 @@ typedef struct subject {
 enum { WAVES, MISSING, EXTREMES, HALVES, GENTLE, GENTLE_MISSING, SUBJECTS };
 
 static subject subjects[SUBJECTS];
-static int own_buffers; /* of all contexts on the device */
+static int always_copy; /* of all contexts on the device */
 static tc_method method;
 
 /* What is wrong with a mesh of the tetrahedra. */
@@ -137,7 +137,7 @@ static void test_work_shapes(int first, int end) {
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
         for (int n = 0; n < 4; n++) {
             tc_context_options_init(&options);
-            options.own_buffers = own_buffers;
+            options.always_copy = always_copy;
             options.work_items = items[i];
             options.work_groups = groups[n];
             options.tile_bricks = tiles[(n + i) % 4];
@@ -155,7 +155,7 @@ static void test_divisions(void) {
         tc_context_options options;
         tc_context *context = NULL;
         tc_context_options_init(&options);
-        options.own_buffers = own_buffers;
+        options.always_copy = always_copy;
         options.division = division;
         tc_status status = tc_context_create(&options, &context);
         tc_context_destroy(context);
@@ -175,7 +175,7 @@ static void test_memory_budgets(const subject *s) {
     tc_context_options options;
     if (!test_chosen("memory budgets") && !test_chosen(s->name)) return;
     tc_context_options_init(&options);
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
                      24 * s->expected.vertex_count + 12 * s->expected.triangle_count;
     for (options.max_memory_bytes = 16 * whole; options.max_memory_bytes > whole / 200;
@@ -383,7 +383,7 @@ static void test_memory_per_sample(void) {
         tc_mesh_data data;
         uint64_t peak = 0;
         tc_context_options_init(&options);
-        options.own_buffers = own_buffers;
+        options.always_copy = always_copy;
         tc_grid_options_init(&grid);
         tc_extract_options_init(&how);
         memcpy(grid.dims, dims, sizeof dims);
@@ -407,7 +407,7 @@ static void test_memory_per_sample(void) {
 }
 
 int main(int argc, char **argv) {
-    own_buffers = argc > 1 && !strcmp(argv[1], "own_buffers");
+    always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     method = argc > 1 && !strcmp(argv[1], "hybrid") ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
     if (!device_exists()) return SKIPPED;
     tc_context_options options;
@@ -419,7 +419,7 @@ int main(int argc, char **argv) {
     subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, 46, 97}, 127.5, 0);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32, (int64_t[3]){65, 31, 58}, 0.1, 1);
     tc_context_options_init(&options);
-    options.own_buffers = own_buffers;
+    options.always_copy = always_copy;
     tc_context *reference = reference_open(), *device = context_open(&options);
     test_work_shapes(0, 1);
     test_divisions();

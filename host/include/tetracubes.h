@@ -105,7 +105,7 @@ typedef struct tc_device_info {
     uint64_t global_memory_bytes;
     uint64_t max_buffer_bytes; /* grids with larger buffers are processed in slabs */
     uint64_t local_memory_bytes;
-    int shares_host_memory; /* samples are used in place, not copied, unless the context has own_buffers */
+    int shares_host_memory; /* samples are used in place, not copied, unless the context has always_copy */
     int has_fp64;           /* without it, vertices of u32, i32 and f64 samples are made on the host */
     int rounds_division;    /* correctly rounded f32 division built in; else the kernels correct it */
 } tc_device_info;
@@ -173,7 +173,7 @@ typedef struct tc_context_options {
     int division;         /* 0: best of the device; 1: built in; 2: through fp64; 3: in integers */
     tc_progress progress; /* NULL: none */
     void *progress_user;
-    int own_buffers;  /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
+    int always_copy;  /* nonzero: a device that shares the host's memory is treated like one with memory of its own:
                          samples are copied to it and the mesh from it. Slower; runs that path where there is no such
                          device. Never changes results */
     int check_device; /* nonzero: kernels are tried before tc_count or tc_extract first use them in this context: a

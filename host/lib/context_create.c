@@ -76,7 +76,7 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     status = o->cl_context ? device_adopt(context, o->cl_context, o->cl_queue) : device_open(context, o->device);
     opencl_unlock();
     if (!status && o->cl_context) status = device_describe(context->device, &context->info);
-    context->in_place = context->info.shares_host_memory && !o->own_buffers;
+    context->in_place = context->info.shares_host_memory && !o->always_copy;
     return status ? status : tuning_choose(o, &context->info, &context->launch);
 }
 

@@ -21,7 +21,7 @@ static bool job_read(const char *text, job *j) {
     tc_context_options *o = &j->options;
     if (!text ||
         sscanf(text, "tetracubes-trial-1 %d:%d %u %u %d %d %n", &platform, &index, &j->kind, &o->work_items,
-               &o->division, &o->own_buffers, &name) != 6 ||
+               &o->division, &o->always_copy, &name) != 6 ||
         !name || j->kind > KERNEL_KINDS)
         return false;
     snprintf(j->name, sizeof j->name, "%s", text + name);

@@ -47,7 +47,7 @@ class Runs:
     def __init__(self, plain_processor, folder):
         self.log = os.path.join(folder, "log")
         self.checked = dict(os.environ, POCL_CACHE_DIR=os.path.join(folder, "kernels"), TETRACUBES_CACHE_DIR="",
-                            POCL_MAX_PTHREAD_COUNT="1", POCL_CPU_MAX_CU_COUNT="1", TEST_BYTES_OWN_BUFFERS="1")
+                            POCL_MAX_PTHREAD_COUNT="1", POCL_CPU_MAX_CU_COUNT="1", TEST_BYTES_ALWAYS_COPY="1")
         self.compiling = dict(self.checked, LD_PRELOAD=plain_processor)
         os.mkdir(self.checked["POCL_CACHE_DIR"])
 

@@ -26,7 +26,7 @@ RACES = {"OCLGRIND_DATA_RACES": "1", "OCLGRIND_CHECK_API": "1"}
 # Oclgrind does not note what it reads through CL_MEM_USE_HOST_PTR, so that buffers are the device's own here; for
 # threads that share its notes, and for writes to parts of buffers, see write_layer.c. Work-items alone, and complexes,
 # are left out: vectors put together of shorter ones (shufflevector to more elements) end the simulator.
-UNINITIALISED = {"OCLGRIND_UNINITIALIZED": "1", "OCLGRIND_NUM_THREADS": "1", "TEST_BYTES_OWN_BUFFERS": "1"}
+UNINITIALISED = {"OCLGRIND_UNINITIALIZED": "1", "OCLGRIND_NUM_THREADS": "1", "TEST_BYTES_ALWAYS_COPY": "1"}
 
 EXCLUDED = [
     # Look-back and tickets need no exclusion: Oclgrind takes two atomics on one word for no race. The table of edges is

@@ -24,7 +24,7 @@
 typedef struct variant {
     const char *name;
     uint32_t work_items, work_groups, tile_bricks, spin_limit;
-    int division, own_buffers;
+    int division, always_copy;
     bool again;      /* another isovalue has been before */
     unsigned memory; /* bound on buffers, in percent of what is used without one, and more if need be; 0: none */
     bool small;      /* is one of those for small grids */
@@ -98,7 +98,7 @@ static tc_context *variant_open(const variant *v, uint64_t memory) {
     options.tile_bricks = v->tile_bricks;
     options.spin_limit = v->spin_limit;
     options.division = v->division;
-    options.own_buffers = v->own_buffers || getenv("TEST_BYTES_OWN_BUFFERS");
+    options.always_copy = v->always_copy || getenv("TEST_BYTES_ALWAYS_COPY");
     options.max_memory_bytes = memory;
     return context_open(&options);
 }

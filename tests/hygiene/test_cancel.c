@@ -149,16 +149,16 @@ static const struct {
     const char *name;
     tc_engine engine;
     uint64_t memory;
-    int own_buffers;
+    int always_copy;
 } modes[] = {{"reference", TC_ENGINE_REFERENCE, 0, 0},
              {"whole", TC_ENGINE_OPENCL, 0, 0},
              {"slabs", TC_ENGINE_OPENCL, 1, 0},
-             {"own buffers", TC_ENGINE_OPENCL, 0, 1},
-             {"own buffers, slabs", TC_ENGINE_OPENCL, 1, 1}};
+             {"copied buffers", TC_ENGINE_OPENCL, 0, 1},
+             {"copied buffers, slabs", TC_ENGINE_OPENCL, 1, 1}};
 
 /* The most memory, of some, in which the kind is extracted in several slabs; 0: of the small ones, whose samples are
  * little beside what every slab needs. */
-static uint64_t slabs_memory(enum kind kind, int own_buffers) {
+static uint64_t slabs_memory(enum kind kind, int always_copy) {
     for (uint64_t bytes = kind == KIND_COMPLEX ? 8 << 20 : 512 << 10; bytes > 1 << 10; bytes -= bytes / 64) {
         tc_context_options options;
         tc_extract_options how;
@@ -166,7 +166,7 @@ static uint64_t slabs_memory(enum kind kind, int own_buffers) {
         tc_mesh *mesh = NULL;
         tc_context_options_init(&options);
         options.max_memory_bytes = bytes;
-        options.own_buffers = own_buffers;
+        options.always_copy = always_copy;
         tc_context *context = context_open(&options);
         tc_mesh_data data = {.struct_size = sizeof data};
         bool done = kind_open(context, kind, &grid) == TC_OK, in_slabs = true;
@@ -190,8 +190,8 @@ static void test_mode(size_t mode, enum kind kind, const tc_mesh_data expected[2
     tc_context_options options;
     tc_context_options_init(&options);
     options.engine = modes[mode].engine;
-    options.own_buffers = modes[mode].own_buffers;
-    options.max_memory_bytes = modes[mode].memory ? slabs_memory(kind, modes[mode].own_buffers) : 0;
+    options.always_copy = modes[mode].always_copy;
+    options.max_memory_bytes = modes[mode].memory ? slabs_memory(kind, modes[mode].always_copy) : 0;
     options.progress = watch_progress;
     options.progress_user = &w;
     if (modes[mode].memory && !options.max_memory_bytes) return;

@@ -126,7 +126,7 @@ static const place places[] = {
     AT(tc_context_create, context_options.division, LISTED({I64(-1), OK | ARGUMENT}, {4, OK | ARGUMENT})),
     AT(tc_context_create, context_options.progress, absent),
     AT(tc_context_create, context_options.progress_user, LISTED({8, OK})),
-    AT(tc_context_create, context_options.own_buffers, any_i32),
+    AT(tc_context_create, context_options.always_copy, any_i32),
     AT(tc_context_create, context_options.check_device, any_i32),
     AT(tc_context_create, context_options.trial, absent),
     AT(tc_context_create, context_options.trial_user, LISTED({8, OK})),

@@ -34,7 +34,7 @@ static void context_make(walk *w, int n, bool device) {
     tc_context_options_init(&options);
     w->opencl[n] = device && random_below(2);
     options.engine = w->opencl[n] ? TC_ENGINE_OPENCL : TC_ENGINE_REFERENCE;
-    options.own_buffers = random_below(4) == 0;
+    options.always_copy = random_below(4) == 0;
     options.progress = progress;
     options.progress_user = w;
     w->contexts[n] = context_open(&options);

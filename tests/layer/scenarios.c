@@ -21,29 +21,29 @@ struct scenario {
     tc_type type;
     coordinates coordinates;
     tc_method method;
-    bool normals, own_buffers, slabs, cold;
+    bool normals, always_copy, slabs, cold;
     tc_engine engine;
 };
 
 static const scenario scenarios[] = {
     {.name = "devices", .flow = FLOW_DEVICES},
     {.name = "whole", .flow = FLOW_EXTRACT},
-    {.name = "own buffers, hybrid, normals",
+    {.name = "copied buffers, hybrid, normals",
      .flow = FLOW_EXTRACT,
      .method = TC_METHOD_HYBRID,
      .normals = true,
-     .own_buffers = true},
+     .always_copy = true},
     {.name = "slabs, missing samples", .flow = FLOW_EXTRACT, .type = TC_F32, .slabs = true},
-    {.name = "slabs, own buffers, missing samples",
+    {.name = "slabs, copied buffers, missing samples",
      .flow = FLOW_EXTRACT,
      .type = TC_F32,
      .slabs = true,
-     .own_buffers = true},
+     .always_copy = true},
     {.name = "rectilinear", .flow = FLOW_EXTRACT, .coordinates = RECTILINEAR},
     {.name = "curvilinear, slabs", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .slabs = true},
-    {.name = "curvilinear, own buffers", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .own_buffers = true},
+    {.name = "curvilinear, copied buffers", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .always_copy = true},
     {.name = "complex", .flow = FLOW_COMPLEX},
-    {.name = "complex, own buffers", .flow = FLOW_COMPLEX, .own_buffers = true},
+    {.name = "complex, copied buffers", .flow = FLOW_COMPLEX, .always_copy = true},
     {.name = "complex, slabs", .flow = FLOW_COMPLEX, .slabs = true},
     {.name = "count and emit", .flow = FLOW_EMIT},
     {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
@@ -307,7 +307,7 @@ static tc_context_options context_describe(int index) {
     tc_context_options o;
     tc_context_options_init(&o);
     o.engine = s->engine;
-    o.own_buffers = s->own_buffers;
+    o.always_copy = s->always_copy;
     o.max_memory_bytes = budgets[index];
     if (s->flow == FLOW_EMIT) {
         o.cl_context = theirs;
