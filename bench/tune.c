@@ -72,11 +72,14 @@ typedef struct search {
 
 static int setting_open(const search *s, const tc_tuning *tuning, setting *out) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     options.device = s->o->device;
-    options.work_items = tuning->work_items;
-    options.work_groups = tuning->work_groups;
-    options.tile_bricks = tuning->tile_bricks;
+    expert.work_items = tuning->work_items;
+    expert.work_groups = tuning->work_groups;
+    expert.tile_bricks = tuning->tile_bricks;
     options.progress = progress_update;
     *out = (setting){.tuning = {.struct_size = sizeof out->tuning}};
     int status = library_status(tc_context_create(&options, &out->context));

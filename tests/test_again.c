@@ -57,6 +57,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
     static const double real[] = {0, 0.0005, -0.01, 5000, 1e300, 0, 12000.5, -0.02, 15000, 1e-45};
     const int count = type >= TC_F32 ? (int)(sizeof real / sizeof *real) : (int)(sizeof whole / sizeof *whole);
     tc_context_options options;
+    tc_expert_options expert;
     tc_grid_options grid;
     tc_grid *grids[2] = {NULL, NULL};
     tc_mesh *meshes[2] = {NULL, NULL};
@@ -65,8 +66,10 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
              slabs ? ", slabs" : "");
     if (!test_chosen(name)) return;
     tc_context_options_init(&options);
-    options.always_copy = always_copy;
-    options.work_items = work_items;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = always_copy;
+    expert.work_items = work_items;
     if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
     tc_context *contexts[2] = {context_open(&options), reference_open()};
     tc_grid_options_init(&grid);
@@ -93,13 +96,16 @@ static void test_unread(void) {
     const int64_t dims[3] = {256, 64, 128};
     const size_t plane = 256 * 64, unread = 60 * plane;
     tc_context_options options;
+    tc_expert_options expert;
     tc_grid_options grid_options;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_device_info info = {.struct_size = sizeof info};
     tc_extract_options how;
     tc_context_options_init(&options);
-    options.always_copy = always_copy;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = always_copy;
     tc_context *context = context_open(&options);
     uint8_t *samples = mmap(NULL, 128 * plane, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (samples == MAP_FAILED) exit(EXIT_FAILURE);

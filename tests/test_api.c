@@ -98,6 +98,26 @@ static void test_struct_sizes(tc_context *context, tc_grid *grid) {
     tc_mesh_destroy(mesh);
 }
 
+/* They are read by tc_context_create alone. */
+static void test_expert_options(void) {
+    tc_context_options options;
+    tc_expert_options expert = {0};
+    tc_context *context = NULL;
+    tc_tuning tuning = {.struct_size = sizeof tuning};
+    tc_context_options_init(&options);
+    EXPECT(!options.expert, "expert options that nobody gave");
+    options.expert = &expert;
+    EXPECT_REFUSED(tc_context_create(&options, &context), TC_ERROR_ARGUMENT, "expert options of no size");
+    EXPECT(!context, "a context in spite of that");
+    tc_expert_options_init(&expert);
+    expert.tile_bricks = 11;
+    EXPECT(tc_context_create(&options, &context) == TC_OK, "%s", tc_message());
+    expert = (tc_expert_options){0};
+    EXPECT(tc_context_tuning(context, &tuning) == TC_OK && tuning.tile_bricks == 11, "tiles of %u bricks, not 11",
+           tuning.tile_bricks);
+    tc_context_destroy(context);
+}
+
 static void test_context_options(void) {
     static const struct {
         uint32_t work_items;
@@ -122,10 +142,13 @@ static void test_context_options(void) {
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_context *context = NULL;
         tc_context_options_init(&options);
-        options.work_items = cases[n].work_items;
-        options.division = cases[n].division;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.work_items = cases[n].work_items;
+        expert.division = (tc_division)cases[n].division;
         options.engine = (tc_engine)cases[n].engine;
         options.device = cases[n].device;
         char what[64];
@@ -277,6 +300,7 @@ int main(void) {
     bool device = device_exists();
     if (device) {
         test_context_options();
+        test_expert_options();
         test_engine(TC_ENGINE_OPENCL);
     }
     int failed = EXPECT_DONE();

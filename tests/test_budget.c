@@ -67,6 +67,7 @@ static tc_extract_options surface_of(const subject *s, bool normals) {
 /* False where it is refused for want of memory. */
 static bool budget_does(const subject *s, uint64_t budget, bool normals, const tc_mesh_data *expected) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_grid_options volume;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
@@ -74,8 +75,10 @@ static bool budget_does(const subject *s, uint64_t budget, bool normals, const t
     const tc_extract_options how = surface_of(s, normals);
     uint64_t peak;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     options.max_memory_bytes = budget;
-    options.always_copy = always_copy;
+    expert.always_copy = always_copy;
     tc_context *context = context_open(&options);
     grid_describe(s, &volume);
     tc_status status = tc_grid_create(context, &volume, &grid);

@@ -425,10 +425,13 @@ static void devices_open(bool always_copy) {
     static const uint32_t tile_bricks[CONTEXTS] = {0, 1, 0, 3}, spin_limit[CONTEXTS] = {0, 1, 0, 1};
     for (int n = 0; n < CONTEXTS; n++) {
         tc_context_options how;
+        tc_expert_options expert;
         tc_context_options_init(&how);
-        how.work_items = work_items[n], how.work_groups = work_groups[n];
-        how.tile_bricks = tile_bricks[n], how.spin_limit = spin_limit[n];
-        how.always_copy = always_copy;
+        tc_expert_options_init(&expert);
+        how.expert = &expert;
+        expert.work_items = work_items[n], expert.work_groups = work_groups[n];
+        expert.tile_bricks = tile_bricks[n], expert.spin_limit = spin_limit[n];
+        expert.always_copy = always_copy;
         devices[device_count++] = context_open(&how);
     }
 }

@@ -107,10 +107,13 @@ static subject hub_make(uint32_t count) {
 
 static tc_context *bounded_open(uint64_t budget, unsigned variant) {
     tc_context_options how;
+    tc_expert_options expert;
     tc_context_options_init(&how);
+    tc_expert_options_init(&expert);
+    how.expert = &expert;
     how.max_memory_bytes = budget;
-    how.always_copy = always_copy;
-    if (variant) how.work_items = 32, how.work_groups = 3, how.tile_bricks = 1, how.spin_limit = 1;
+    expert.always_copy = always_copy;
+    if (variant) expert.work_items = 32, expert.work_groups = 3, expert.tile_bricks = 1, expert.spin_limit = 1;
     return context_open(&how);
 }
 
@@ -271,13 +274,16 @@ static void cancelled(uint64_t budget) {
     subject s = block_make(TC_U8, 5, false, false);
     tc_mesh *wanted[3], *mesh = NULL;
     tc_context_options how;
+    tc_expert_options expert;
     tc_extract_options options;
     tc_grid *grid = NULL;
     surfaces_of_reference(&s, wanted);
     tc_extract_options_init(&options);
     options.isovalue = s.isovalues[0];
     tc_context_options_init(&how);
-    how.max_memory_bytes = budget, how.always_copy = always_copy, how.progress = cancel;
+    tc_expert_options_init(&expert);
+    how.expert = &expert;
+    how.max_memory_bytes = budget, expert.always_copy = always_copy, how.progress = cancel;
     tc_context *context = context_open(&how);
     EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grid), "%s", tc_message());
     for (cancel_after = 0;; cancel_after++) {

@@ -166,11 +166,14 @@ static void test_engines(subject *s, tc_type type, int kind, unsigned which) {
 /* Same bytes with every memory budget that suffices; the bound is kept. */
 static void test_budgets(subject *s, int kind, int always_copy) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_mesh *mesh = NULL;
     tc_mesh_data expected;
     unsigned most = 0, done = 0, refused = 0;
     tc_context_options_init(&options);
-    options.always_copy = always_copy;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = always_copy;
     subject_begin(s, TC_F32, (int64_t[3]){35, 21, 50});
     samples_fill(s, 1);
     coordinates_choose(s, kind, 0);
@@ -215,9 +218,12 @@ static void test_divisions(subject *s) {
     if (!extract(reference, &s->grid, &s->how, &mesh, &expected)) return;
     for (int division = 1; division <= 3; division++) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_context *context = NULL;
         tc_context_options_init(&options);
-        options.division = division;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.division = (tc_division)division;
         tc_status status = tc_context_create(&options, &context);
         EXPECT(!status || (division < 3 && status == TC_ERROR_ARGUMENT), "division %d: %s", division, tc_message());
         if (!status) meshes_same(context, s, &expected, division == 3 ? "division in integers" : "division");
@@ -496,9 +502,12 @@ int main(int argc, char **argv) {
         for (int n = 0; n < CONTEXTS; n++) {
             if (n == IN_ROWS ? alone : groups) continue;
             tc_context_options options;
+            tc_expert_options expert;
             tc_context_options_init(&options);
-            options.work_items = n == IN_ROWS ? 32 : 1;
-            options.always_copy = n == COPIED;
+            tc_expert_options_init(&expert);
+            options.expert = &expert;
+            expert.work_items = n == IN_ROWS ? 32 : 1;
+            expert.always_copy = n == COPIED;
             contexts[n] = context_open(&options);
         }
     test_engines(&s, TC_F32, 0, 7);

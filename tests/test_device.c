@@ -118,11 +118,12 @@ static void expect_variation(const tc_context_options *options, const subject *s
     char how[160];
     tc_mesh_data data;
     tc_mesh *mesh = NULL;
-    snprintf(how, sizeof how, "%u work-items, %u groups, tiles of %u, %u polls, division %d", options->work_items,
-             options->work_groups, options->tile_bricks, options->spin_limit, options->division);
+    const tc_expert_options *e = options->expert;
+    snprintf(how, sizeof how, "%u work-items, %u groups, tiles of %u, %u polls, division %d", e->work_items,
+             e->work_groups, e->tile_bricks, e->spin_limit, (int)e->division);
     if (!test_chosen(how)) return;
     tc_context *context = context_open(options);
-    for (uint32_t repeat = 0; repeat < (options->spin_limit ? 3 : 1); repeat++)
+    for (uint32_t repeat = 0; repeat < (e->spin_limit ? 3 : 1); repeat++)
         if (extract(context, &s->grid, &s->how, &mesh, &data)) expect_mesh(s, &data, how);
     tc_mesh_destroy(mesh);
     tc_context_destroy(context);
@@ -133,18 +134,21 @@ static void expect_variation(const tc_context_options *options, const subject *s
 static void test_work_shapes(int first, int end) {
     static const uint32_t items[] = {1, 32, 64, 256}, groups[] = {1, 2, 3, 16}, tiles[] = {1, 27, 7, 1000};
     tc_context_options options;
+    tc_expert_options expert;
     for (int i = first; i < end; i++) {
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
         for (int n = 0; n < 4; n++) {
             tc_context_options_init(&options);
-            options.always_copy = always_copy;
-            options.work_items = items[i];
-            options.work_groups = groups[n];
-            options.tile_bricks = tiles[(n + i) % 4];
+            tc_expert_options_init(&expert);
+            options.expert = &expert;
+            expert.always_copy = always_copy;
+            expert.work_items = items[i];
+            expert.work_groups = groups[n];
+            expert.tile_bricks = tiles[(n + i) % 4];
             expect_variation(&options, s);
-            options.work_groups = 16;
-            options.tile_bricks = tiles[n];
-            options.spin_limit = 1;
+            expert.work_groups = 16;
+            expert.tile_bricks = tiles[n];
+            expert.spin_limit = 1;
             expect_variation(&options, s);
         }
     }
@@ -153,10 +157,13 @@ static void test_work_shapes(int first, int end) {
 static void test_divisions(void) {
     for (int division = 1; division <= 3; division++) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_context *context = NULL;
         tc_context_options_init(&options);
-        options.always_copy = always_copy;
-        options.division = division;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.always_copy = always_copy;
+        expert.division = (tc_division)division;
         tc_status status = tc_context_create(&options, &context);
         tc_context_destroy(context);
         EXPECT(status == TC_OK || (division < 3 && status == TC_ERROR_ARGUMENT), "division %d: status %d, %s", division,
@@ -173,9 +180,12 @@ static void test_memory_budgets(const subject *s) {
     bool one = false, few = false;
     unsigned done = 0, refused = 0;
     tc_context_options options;
+    tc_expert_options expert;
     if (!test_chosen("memory budgets") && !test_chosen(s->name)) return;
     tc_context_options_init(&options);
-    options.always_copy = always_copy;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = always_copy;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
                      24 * s->expected.vertex_count + 12 * s->expected.triangle_count;
     for (options.max_memory_bytes = 16 * whole; options.max_memory_bytes > whole / 200;
@@ -377,13 +387,16 @@ static void test_memory_per_sample(void) {
     for (size_t n = 0; n < count; n++) samples[n] = (uint8_t)(n % 251 * 255 / 250);
     for (int missing = 0; missing < 2; missing++) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_grid_options grid;
         tc_extract_options how;
         tc_mesh *mesh = NULL;
         tc_mesh_data data;
         uint64_t peak = 0;
         tc_context_options_init(&options);
-        options.always_copy = always_copy;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.always_copy = always_copy;
         tc_grid_options_init(&grid);
         tc_extract_options_init(&how);
         memcpy(grid.dims, dims, sizeof dims);
@@ -411,6 +424,7 @@ int main(int argc, char **argv) {
     method = argc > 1 && !strcmp(argv[1], "hybrid") ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
     if (!device_exists()) return SKIPPED;
     tc_context_options options;
+    tc_expert_options expert;
     random_state = 1996;
     subject_open(WAVES, "waves", TC_U8, (int64_t[3]){130, 21, 30}, 127.5, 0);
     subject_open(MISSING, "waves with missing samples", TC_F32, (int64_t[3]){70, 18, 22}, 0.1, 1);
@@ -419,7 +433,9 @@ int main(int argc, char **argv) {
     subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, 46, 97}, 127.5, 0);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32, (int64_t[3]){65, 31, 58}, 0.1, 1);
     tc_context_options_init(&options);
-    options.always_copy = always_copy;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = always_copy;
     tc_context *reference = reference_open(), *device = context_open(&options);
     test_work_shapes(0, 1);
     test_divisions();

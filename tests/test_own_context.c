@@ -93,6 +93,7 @@ int main(void) {
     tc_grid_options grid;
     tc_extract_options how;
     tc_context_options options;
+    tc_expert_options expert;
     tc_mesh *mesh = NULL;
     tc_mesh_data expected;
     tc_context *reference = reference_open();
@@ -108,10 +109,12 @@ int main(void) {
     EXPECT(made && expected.triangle_count > 1000, "the reference has a mesh too small to tell");
 
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     options.cl_context = theirs;
     options.cl_queue = queue;
     for (int n = 0; n < 2 && made; n++) test_extraction(&options, &grid, &expected);
-    options.always_copy = 1; /* and slabs: another queue, beside the caller's */
+    expert.always_copy = 1; /* and slabs: another queue, beside the caller's */
     options.max_memory_bytes = sizeof samples + 12 * (expected.vertex_count + expected.triangle_count);
     if (made) test_extraction(&options, &grid, &expected);
     for (int n = 0; n < 100 && (context_references(theirs) > context_before || queue_references(queue) > queue_before);

@@ -170,11 +170,14 @@ static void test_one_not_finite(void) {
 
 int main(void) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     contexts[0] = reference_open();
     if (device_exists()) {
         contexts[1] = context_open(&options);
-        options.tile_bricks = 1000;
+        expert.tile_bricks = 1000;
         contexts[2] = context_open(&options);
     }
     bool skipped = !contexts[1];

@@ -18,7 +18,7 @@ enum { PLAIN = 1, WITH_MISSING = 2, WITH_NORMALS = 4, WITH_BOTH = 8 };
 static const struct {
     tc_type type;
     uint32_t work_items;
-    int division;
+    tc_division division;
     unsigned variants[2]; /* of each method */
     int grid;             /* 1: rectilinear, 2: curvilinear */
 } programs[] = {
@@ -51,17 +51,20 @@ enum { PROGRAMS = sizeof programs / sizeof *programs };
 static tc_context *context_for(size_t n) {
     static tc_context *context;
     static uint32_t work_items;
-    static int division;
+    static tc_division division;
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     if (context && n < PROGRAMS && work_items == programs[n].work_items && division == programs[n].division)
         return context;
     tc_context_destroy(context);
     context = NULL;
     if (n == PROGRAMS) return NULL;
     if (programs[n].work_items) groups_begin();
-    options.work_items = work_items = programs[n].work_items;
-    options.division = division = programs[n].division;
+    expert.work_items = work_items = programs[n].work_items;
+    expert.division = division = programs[n].division;
     return context = context_open(&options);
 }
 
@@ -107,15 +110,18 @@ static void complex_build(size_t n) {
     } others[] = {{TC_U8, 32}, {TC_F32, 32}, {TC_F64, 32}, {TC_U8, 64}, {TC_F32, 64}, {TC_F64, 64}};
     double memory[4];
     tc_context_options options;
+    tc_expert_options expert;
     tc_tetrahedra_grid_options complex;
     tc_extract_options how;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     tc_tetrahedra_grid_options_init(&complex);
     tc_extract_options_init(&how);
     complex.type = n <= TC_F64 ? (tc_type)n : others[n - 1 - TC_F64].type;
-    options.work_items = n <= TC_F64 ? 0 : others[n - 1 - TC_F64].work_items;
+    expert.work_items = n <= TC_F64 ? 0 : others[n - 1 - TC_F64].work_items;
     tc_context *context = context_open(&options);
     for (int m = 0; m < 4; m++) sample_set(memory, complex.type, m, m);
     complex.point_count = 4, complex.points = points, complex.samples = memory;

@@ -21,6 +21,11 @@ void tc_context_options_init(tc_context_options *options) {
     *options = (tc_context_options){.struct_size = sizeof *options, .engine = TC_ENGINE_OPENCL};
 }
 
+void tc_expert_options_init(tc_expert_options *options) {
+    if (!options) return;
+    *options = (tc_expert_options){.struct_size = sizeof *options};
+}
+
 /* Commands are put into it one after the other, and each relies on those before. */
 static tc_status queue_check(tc_context *context, cl_context theirs, cl_command_queue queue) {
     cl_context of_queue = NULL;
@@ -76,16 +81,19 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     status = o->cl_context ? device_adopt(context, o->cl_context, o->cl_queue) : device_open(context, o->device);
     opencl_unlock();
     if (!status && o->cl_context) status = device_describe(context->device, &context->info);
-    context->in_place = context->info.shares_host_memory && !o->always_copy;
-    return status ? status : tuning_choose(o, &context->info, &context->launch);
+    context->in_place = context->info.shares_host_memory && !context->expert.always_copy;
+    return status ? status : tuning_choose(&context->expert, &context->info, &context->launch);
 }
 
 static tc_status context_make(const tc_context_options *options, bool is_trial, tc_context **out) {
     tc_context_options o;
+    tc_expert_options expert;
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
     *out = NULL;
     tc_context_options_init(&o);
+    tc_expert_options_init(&expert);
     tc_status status = options_take(&o, sizeof o, options, "context options");
+    if (!status && o.expert) status = options_take(&expert, sizeof expert, o.expert, "expert options");
     if (status) return status;
     if (o.engine != TC_ENGINE_OPENCL && o.engine != TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
@@ -93,10 +101,12 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
     if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
     context->process = getpid();
     context->options = o;
+    context->expert = expert;
     context->is_trial = is_trial;
     context->options.device = NULL;
     context->options.cl_context = NULL;
     context->options.cl_queue = NULL;
+    context->options.expert = NULL;
     if (o.engine == TC_ENGINE_OPENCL) status = opencl_begin(context, &o);
     if (status) {
         tc_context_destroy(context);

@@ -12,21 +12,25 @@
 typedef struct job {
     unsigned kind; /* KERNEL_KINDS: the device is opened, no more */
     tc_context_options options;
+    tc_expert_options expert;
     char device[32], name[128];
 } job;
 
 static bool job_read(const char *text, job *j) {
-    int platform, index, name = 0;
+    int platform, index, division, name = 0;
     tc_context_options_init(&j->options);
-    tc_context_options *o = &j->options;
+    tc_expert_options_init(&j->expert);
+    tc_expert_options *e = &j->expert;
     if (!text ||
-        sscanf(text, "tetracubes-trial-1 %d:%d %u %u %d %d %n", &platform, &index, &j->kind, &o->work_items,
-               &o->division, &o->always_copy, &name) != 6 ||
+        sscanf(text, "tetracubes-trial-1 %d:%d %u %u %d %d %n", &platform, &index, &j->kind, &e->work_items, &division,
+               &e->always_copy, &name) != 6 ||
         !name || j->kind > KERNEL_KINDS)
         return false;
     snprintf(j->name, sizeof j->name, "%s", text + name);
     snprintf(j->device, sizeof j->device, "%d:%d", platform, index);
-    o->device = j->device;
+    e->division = (tc_division)division;
+    j->options.device = j->device;
+    j->options.expert = e;
     return true;
 }
 

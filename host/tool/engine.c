@@ -14,14 +14,17 @@
 
 int engine_open(const options *o, tc_engine kind, engine *e) {
     tc_context_options device;
+    tc_expert_options expert;
     *e = (engine){0};
     tc_context_options_init(&device);
+    tc_expert_options_init(&expert);
+    device.expert = &expert;
     device.engine = kind;
     device.device = o->device;
     device.max_memory_bytes = kind == TC_ENGINE_OPENCL ? o->max_memory : 0;
     device.progress = progress_update;
     device.check_device = !o->verify; /* which compares more */
-    device.trial = trial_in_child;
+    expert.child_trial = trial_in_child;
     return library_status(tc_context_create(&device, &e->context));
 }
 

@@ -158,11 +158,14 @@ static json_t *group_json(const selftest_results *all, int group) {
 /* With the trial of its opening, as the driver may end this process too. */
 static int describe_device(const char *spec, tc_device_info *info) {
     tc_context_options how;
+    tc_expert_options expert;
     tc_context *context = NULL;
     *info = (tc_device_info){.struct_size = sizeof *info};
     tc_context_options_init(&how);
+    tc_expert_options_init(&expert);
+    how.expert = &expert;
     how.device = spec;
-    how.trial = trial_in_child;
+    expert.child_trial = trial_in_child;
     int status = library_status(tc_context_create(&how, &context));
     if (!status) status = library_status(tc_context_device(context, info));
     tc_context_destroy(context);

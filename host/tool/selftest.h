@@ -47,10 +47,11 @@ typedef struct trial {
     uint64_t vertices, triangles;
 } trial;
 
-/* Fields of tc_context_options; zeros: the defaults. Launches that the device does not offer are passed over. */
+/* Fields of tc_expert_options, and the bound on memory; zeros: the defaults. Launches that the device does not offer
+ * are passed over. */
 typedef struct launch {
     uint32_t work_items, work_groups, tile_bricks, spin_limit;
-    int division;
+    tc_division division;
     uint64_t max_memory_bytes;
 } launch;
 

@@ -94,7 +94,7 @@ static void name_trial(const trial *t, const launch *l, char *name, size_t bytes
     for (size_t n = 0; n < sizeof given / sizeof *given; n++)
         if (given[n].value)
             length += snprintf(name + length, bytes - (size_t)length, ", %s %" PRIu64, given[n].what, given[n].value);
-    if (l->division) snprintf(name + length, bytes - (size_t)length, ", division %d", l->division);
+    if (l->division) snprintf(name + length, bytes - (size_t)length, ", division %d", (int)l->division);
 }
 
 static void report_trial(const char *text) {
@@ -108,13 +108,16 @@ static void report_trial(const char *text) {
 
 static int open_device(const char *spec, const launch *l, tc_context **context) {
     tc_context_options how;
+    tc_expert_options expert;
     tc_context_options_init(&how);
+    tc_expert_options_init(&expert);
+    how.expert = &expert;
     how.device = spec;
-    how.work_items = l->work_items;
-    how.work_groups = l->work_groups;
-    how.tile_bricks = l->tile_bricks;
-    how.spin_limit = l->spin_limit;
-    how.division = l->division;
+    expert.work_items = l->work_items;
+    expert.work_groups = l->work_groups;
+    expert.tile_bricks = l->tile_bricks;
+    expert.spin_limit = l->spin_limit;
+    expert.division = l->division;
     how.max_memory_bytes = l->max_memory_bytes;
     return library_status(tc_context_create(&how, context));
 }
@@ -124,8 +127,8 @@ static int open_device(const char *spec, const launch *l, tc_context **context) 
 static const char *launch_refusal(const group_run *r, const launch *l) {
     if (l->work_items > r->info.max_work_group_size) return "the device has no groups so large";
     if (l->work_items == 1 && r->work_items != 1) return "the device gets the kernels for groups";
-    if (l->division == 1 && !r->info.rounds_division) return "the device does not round divisions";
-    return l->division == 2 && !r->info.has_fp64 ? "the device has no fp64" : NULL;
+    if (l->division == TC_DIVISION_BUILT_IN && !r->info.rounds_division) return "the device does not round divisions";
+    return l->division == TC_DIVISION_FP64 && !r->info.has_fp64 ? "the device has no fp64" : NULL;
 }
 
 static int run_launch(group_run *r, const launch *l, int trial_count) {

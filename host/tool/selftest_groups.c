@@ -155,7 +155,8 @@ static const launch chained[] = {
     {.tile_bricks = 1, .spin_limit = 2, .work_groups = 16},
 };
 
-static const launch divided[] = {{.division = 1}, {.division = 2}, {.division = 3}};
+static const launch divided[] = {
+    {.division = TC_DIVISION_BUILT_IN}, {.division = TC_DIVISION_FP64}, {.division = TC_DIVISION_INTEGER}};
 
 static const launch tight[] = {
     {.max_memory_bytes = 4u << 20},

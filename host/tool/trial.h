@@ -1,5 +1,5 @@
 /*
- * trial.h - trials of kernels for the library (tc_trial of tetracubes.h), each in a child of this process
+ * trial.h - trials of kernels for the library (tc_child_trial of tetracubes.h), each in a child of this process
  */
 #ifndef TRIAL_H
 #define TRIAL_H

@@ -24,7 +24,8 @@
 typedef struct variant {
     const char *name;
     uint32_t work_items, work_groups, tile_bricks, spin_limit;
-    int division, always_copy;
+    tc_division division;
+    int always_copy;
     bool again;      /* another isovalue has been before */
     unsigned memory; /* bound on buffers, in percent of what is used without one, and more if need be; 0: none */
     bool small;      /* is one of those for small grids */
@@ -42,8 +43,8 @@ static const variant variants[] = {
     {"some memory", 1, 2, 2, 0, 0, 0, false, 31, false},
     {"least memory", 1, 2, 1, 0, 0, 0, false, 7, true},
     {"least memory, buffers of its own", 1, 2, 1, 0, 0, 1, true, 7, false},
-    {"division through fp64", 1, 0, 0, 0, 2, 0, false, 0, false},
-    {"division in integers", 1, 0, 0, 0, 3, 0, false, 0, false},
+    {"division through fp64", 1, 0, 0, 0, TC_DIVISION_FP64, 0, false, 0, false},
+    {"division in integers", 1, 0, 0, 0, TC_DIVISION_INTEGER, 0, false, 0, false},
     {"32 work-items", 32, 0, 0, 0, 0, 0, false, 0, true},
     {"32 work-items, 16 groups, tiles of one brick", 32, 16, 1, 0, 0, 0, false, 0, false},
     {"32 work-items, every tile before recounted", 32, 16, 1, 1, 0, 0, false, 0, true},
@@ -92,13 +93,16 @@ static uint64_t hash_of(tc_context *context, const case_data *data, bool again, 
 
 static tc_context *variant_open(const variant *v, uint64_t memory) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
-    options.work_items = v->work_items;
-    options.work_groups = v->work_groups;
-    options.tile_bricks = v->tile_bricks;
-    options.spin_limit = v->spin_limit;
-    options.division = v->division;
-    options.always_copy = v->always_copy || getenv("TEST_BYTES_ALWAYS_COPY");
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.work_items = v->work_items;
+    expert.work_groups = v->work_groups;
+    expert.tile_bricks = v->tile_bricks;
+    expert.spin_limit = v->spin_limit;
+    expert.division = v->division;
+    expert.always_copy = v->always_copy || getenv("TEST_BYTES_ALWAYS_COPY");
     options.max_memory_bytes = memory;
     return context_open(&options);
 }
@@ -177,13 +181,16 @@ static void device_tell(void) {
     tc_device_info info = {.struct_size = sizeof info};
     tc_tuning tuning = {.struct_size = sizeof tuning};
     tc_context_options options;
+    tc_expert_options expert;
     tc_context *device = variant_open(&for_driver, 0), *alone = NULL;
     EXPECT(!tc_context_device(device, &info) && !tc_context_tuning(device, &tuning), "%s", tc_message());
     printf("device %s, %s, driver %s\n", info.platform, info.name, info.driver);
     printf("launched with %u work-items as %s, version %s\n", tuning.work_items, info.type, info.version);
     tc_context_destroy(device);
     tc_context_options_init(&options);
-    options.work_items = 1;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.work_items = 1;
     takes_alone = !tc_context_create(&options, &alone);
     tc_context_destroy(alone);
 }

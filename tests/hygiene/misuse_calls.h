@@ -18,7 +18,8 @@ typedef struct arguments {
     tc_grid *grid;
     tc_mesh *mesh;
     tc_context_options context_options, *context_options_at;
-    bool context_place, grid_place, mesh_place; /* false: no place for what is made */
+    tc_expert_options expert_options, *expert_options_at; /* which context_options point to */
+    bool context_place, grid_place, mesh_place;           /* false: no place for what is made */
     tc_grid_options grid_options, *grid_options_at;
     tc_extract_options extract_options, *extract_options_at;
     tc_tetrahedra_grid_options tetrahedra_grid_options, *tetrahedra_grid_options_at;
@@ -78,6 +79,7 @@ static void arguments_fill(const world *w, arguments *a) {
     a->job = "tetracubes-trial-1 0:0 1";
     tc_context_options_init(a->context_options_at = &a->context_options);
     a->context_options.engine = w->engine;
+    tc_expert_options_init(a->expert_options_at = &a->expert_options);
     grid_describe(a->grid_options_at = &a->grid_options);
     tc_extract_options_init(a->extract_options_at = &a->extract_options);
     a->extract_options.isovalue = 127.5;
@@ -116,6 +118,7 @@ static void arguments_fill(const world *w, arguments *a) {
 /* The structs that callers fill as their init functions leave them; those without one are zero. */
 static void defaults_fill(arguments *a) {
     tc_context_options_init(&a->context_options);
+    tc_expert_options_init(&a->expert_options);
     tc_grid_options_init(&a->grid_options);
     tc_extract_options_init(&a->extract_options);
     tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
@@ -157,6 +160,7 @@ static tc_status call_tc_device_get(arguments *a, bool *zero) {
 static tc_status call_tc_context_create(arguments *a, bool *zero) {
     tc_context *made = rubbish;
     tc_context **place = a->context_place ? &made : NULL;
+    a->context_options.expert = a->expert_options_at;
     tc_status status = tc_context_create(a->context_options_at, place);
     *zero = !place || !made;
     if (place) tc_context_destroy(made);

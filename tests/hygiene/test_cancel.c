@@ -161,12 +161,15 @@ static const struct {
 static uint64_t slabs_memory(enum kind kind, int always_copy) {
     for (uint64_t bytes = kind == KIND_COMPLEX ? 8 << 20 : 512 << 10; bytes > 1 << 10; bytes -= bytes / 64) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_extract_options how;
         tc_grid *grid = NULL;
         tc_mesh *mesh = NULL;
         tc_context_options_init(&options);
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
         options.max_memory_bytes = bytes;
-        options.always_copy = always_copy;
+        expert.always_copy = always_copy;
         tc_context *context = context_open(&options);
         tc_mesh_data data = {.struct_size = sizeof data};
         bool done = kind_open(context, kind, &grid) == TC_OK, in_slabs = true;
@@ -188,9 +191,12 @@ static uint64_t slabs_memory(enum kind kind, int always_copy) {
 static void test_mode(size_t mode, enum kind kind, const tc_mesh_data expected[2], int step) {
     watch w = {0};
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     options.engine = modes[mode].engine;
-    options.always_copy = modes[mode].always_copy;
+    expert.always_copy = modes[mode].always_copy;
     options.max_memory_bytes = modes[mode].memory ? slabs_memory(kind, modes[mode].always_copy) : 0;
     options.progress = watch_progress;
     options.progress_user = &w;

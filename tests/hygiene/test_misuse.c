@@ -119,17 +119,18 @@ static const place places[] = {
     AT(tc_context_create, context_options.cl_context, absent),
     AT(tc_context_create, context_options.cl_queue, LISTED({8, OK})), /* not looked at without a cl_context */
     AT(tc_context_create, context_options.max_memory_bytes, LISTED({1, OK}, {UINT64_MAX, OK})),
-    AT(tc_context_create, context_options.work_items, LISTED({2, OK | ARGUMENT}, {1u << 31, OK | ARGUMENT})),
-    AT(tc_context_create, context_options.work_groups, any_u32),
-    AT(tc_context_create, context_options.tile_bricks, any_u32),
-    AT(tc_context_create, context_options.spin_limit, any_u32),
-    AT(tc_context_create, context_options.division, LISTED({I64(-1), OK | ARGUMENT}, {4, OK | ARGUMENT})),
+    AT(tc_context_create, expert_options_at, absent), /* context_options.expert */
+    AT(tc_context_create, expert_options.work_items, LISTED({2, OK | ARGUMENT}, {1u << 31, OK | ARGUMENT})),
+    AT(tc_context_create, expert_options.work_groups, any_u32),
+    AT(tc_context_create, expert_options.tile_bricks, any_u32),
+    AT(tc_context_create, expert_options.spin_limit, any_u32),
+    AT(tc_context_create, expert_options.division, LISTED({I64(-1), OK | ARGUMENT}, {4, OK | ARGUMENT})),
     AT(tc_context_create, context_options.progress, absent),
     AT(tc_context_create, context_options.progress_user, LISTED({8, OK})),
-    AT(tc_context_create, context_options.always_copy, any_i32),
+    AT(tc_context_create, expert_options.always_copy, any_i32),
     AT(tc_context_create, context_options.check_device, any_i32),
-    AT(tc_context_create, context_options.trial, absent),
-    AT(tc_context_create, context_options.trial_user, LISTED({8, OK})),
+    AT(tc_context_create, expert_options.child_trial, absent),
+    AT(tc_context_create, expert_options.child_trial_user, LISTED({8, OK})),
     AT(tc_trial_run, job, null),
     AT(tc_context_device, context, null),
     AT(tc_context_device, info_at, null),
@@ -274,6 +275,7 @@ static const sized sizes[] = {
     SIZED(tc_context_device, info, true),
     SIZED(tc_context_tuning, tuning, true),
     SIZED(tc_context_create, context_options, false),
+    SIZED(tc_context_create, expert_options, false),
     SIZED(tc_grid_create, grid_options, false),
     SIZED(tc_tetrahedra_grid_create, tetrahedra_grid_options, false),
     SIZED(tc_count, extract_options, false),
@@ -447,6 +449,7 @@ static void test_coordinates(const world *w) {
 static void test_others(const world *w) {
     uint64_t peak = 1;
     tc_context_options_init(NULL);
+    tc_expert_options_init(NULL);
     tc_grid_options_init(NULL);
     tc_extract_options_init(NULL);
     tc_tetrahedra_grid_options_init(NULL);

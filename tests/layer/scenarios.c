@@ -305,9 +305,12 @@ static void cache_clear(void) {
 static tc_context_options context_describe(int index) {
     const scenario *s = &scenarios[index];
     tc_context_options o;
+    static tc_expert_options expert;
     tc_context_options_init(&o);
+    tc_expert_options_init(&expert);
+    o.expert = &expert;
     o.engine = s->engine;
-    o.always_copy = s->always_copy;
+    expert.always_copy = s->always_copy;
     o.max_memory_bytes = budgets[index];
     if (s->flow == FLOW_EMIT) {
         o.cl_context = theirs;

@@ -122,8 +122,11 @@ static void test_limits(const layer_functions *layer) {
     };
     for (size_t n = 0; n < sizeof limits / sizeof *limits; n++) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_context_options_init(&options);
-        options.work_items = 128;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.work_items = 128;
         EXPECT(layer->command(limits[n].command), "%s is not understood", limits[n].command);
         tc_context *context = context_open(&options);
         if (limits[n].complex)
@@ -140,9 +143,12 @@ static void test_local_memory(const layer_functions *layer) {
     EXPECT(layer->command("lacks local 32768"), "the layer does not know local");
     for (uint32_t work_items = 352; work_items <= 384; work_items += 32) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_context *context = NULL;
         tc_context_options_init(&options);
-        options.work_items = work_items;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.work_items = work_items;
         tc_status status = tc_context_create(&options, &context);
         EXPECT(status == (work_items == 352 ? TC_OK : TC_ERROR_ARGUMENT), "%u work-items with 32 KiB: status %d",
                work_items, (int)status);
@@ -181,9 +187,12 @@ int main(void) {
     reference = reference_open();
     for (uint32_t work_items = 1; work_items <= 32; work_items += 31) {
         tc_context_options options;
+        tc_expert_options expert;
         tc_device_info info = {.struct_size = sizeof info};
         tc_context_options_init(&options);
-        options.work_items = work_items;
+        tc_expert_options_init(&expert);
+        options.expert = &expert;
+        expert.work_items = work_items;
         tc_context *context = context_open(&options);
         EXPECT(tc_context_device(context, &info) == TC_OK && !info.has_fp64, "the device has fp64 all the same");
         test_extract(context, work_items, TC_F64, TC_METHOD_TETRA, false);

@@ -150,14 +150,17 @@ static tc_status crossed_make(tc_context *of, tc_grid **grid) {
 /* Sums that no group has posted are made by those that wait for them; what they belong to is not made twice. */
 static void test_fallback(void) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
-    options.work_items = options.work_groups = options.tile_bricks = 1;
-    options.spin_limit = 3;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.work_items = expert.work_groups = expert.tile_bricks = 1;
+    expert.spin_limit = 3;
     if (test_chosen("starved groups")) {
         layer->command("corrupt build starved");
         expect_same(&options, stripes_make, 99.5, "starved groups");
     }
-    options.spin_limit = 1;
+    expert.spin_limit = 1;
     if (test_chosen("clusters counted again")) {
         layer->command("memory 0xA5");
         expect_same(&options, crossed_make, 1, "clusters counted again");

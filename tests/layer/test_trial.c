@@ -34,10 +34,13 @@ static tc_verdict told(void *user, const char *job, char *reason, size_t bytes) 
 
 static tc_status context_try(script *s, uint32_t work_items, tc_context **context) {
     tc_context_options options;
+    tc_expert_options expert;
     tc_context_options_init(&options);
-    options.work_items = work_items;
-    options.trial = s ? told : NULL;
-    options.trial_user = s;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.work_items = work_items;
+    expert.child_trial = s ? told : NULL;
+    expert.child_trial_user = s;
     return tc_context_create(&options, context);
 }
 
@@ -147,6 +150,7 @@ static void test_within_a_call(void) {
     static float values[SAMPLES];
     int asked = 0;
     tc_context_options options;
+    tc_expert_options expert;
     tc_grid_options volume;
     tc_extract_options how;
     tc_counts counts = {.struct_size = sizeof counts};
@@ -156,8 +160,10 @@ static void test_within_a_call(void) {
     tc_mesh *meshes[2] = {NULL, NULL};
     tc_mesh_data data[2] = {{.struct_size = sizeof *data}, {.struct_size = sizeof *data}};
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     tc_extract_options_init(&how);
-    options.trial = bad_with_missing, options.trial_user = &asked;
+    expert.child_trial = bad_with_missing, expert.child_trial_user = &asked;
     contexts[0] = context_open(&options), contexts[1] = reference_open();
     grid_describe(&volume);
     for (int n = 0; n < SAMPLES; n++) values[n] = n == SAMPLES / 2 ? NAN : (float)samples[n];

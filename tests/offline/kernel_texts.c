@@ -254,6 +254,7 @@ static void complex_programs(tc_context *context) {
 int main(int count, char **arguments) {
     const size_t kinds = sizeof device_kinds / sizeof device_kinds[0];
     tc_context_options options;
+    tc_expert_options expert;
     tc_context *context = NULL;
     if (count == 4)
         while (device < device_kinds + kinds && strcmp(device->kind, arguments[1])) device++;
@@ -266,8 +267,10 @@ int main(int count, char **arguments) {
     if (!opencl_lock()) opencl_unlock();   /* where there is a loader it is not asked again */
     cl = &stand_in;
     tc_context_options_init(&options);
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
     options.device = "0";
-    options.work_items = (uint32_t)strtoul(arguments[2], NULL, 10);
+    expert.work_items = (uint32_t)strtoul(arguments[2], NULL, 10);
     status_check(tc_context_create(&options, &context));
     classify_programs(context);
     emit_programs(context);

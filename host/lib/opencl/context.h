@@ -66,7 +66,8 @@ typedef struct workspace {
 } workspace;
 
 struct tc_context {
-    tc_context_options options; /* the caller's; strings and OpenCL objects cleared */
+    tc_context_options options; /* the caller's; pointers that are read once are NULL */
+    tc_expert_options expert;   /* the caller's, or the defaults */
     launch_parameters launch;
     tc_device_info info;
     pid_t process; /* that made it */

@@ -42,8 +42,8 @@ static void emit_options_write(const tc_context *context, kernel_kind kind, unsi
     const char *real = !vertices ? "" : wide ? "-DREAL=double" : "-DREAL=float";
     classify_options_write(context, kind, common, sizeof common);
     snprintf(out, bytes, "%s %s-DWIDE=%d %s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%u%s", common,
-             context->launch.division == 1 ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide, real,
-             type_texts[kind.type].value, kind.normals, context->launch.division, grid,
+             context->launch.division == TC_DIVISION_BUILT_IN ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
+             real, type_texts[kind.type].value, kind.normals, (int)context->launch.division, grid,
              context->info.has_fp64 ? " -DFP64=1" : "");
 }
 

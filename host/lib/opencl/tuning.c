@@ -136,10 +136,13 @@ static void defaults_take(const tc_device_info *device, launch_parameters *p) {
     if (!p->work_items) p->work_items = alone || most < 32 ? 1 : cpu || most < 128 ? 32 : 128;
     if (!p->work_groups) p->work_groups = device->compute_units * (cpu ? 1 : 8);
     if (!p->scan.spin_limit) p->scan.spin_limit = cpu ? spins_cpu : spins;
-    if (!p->division) p->division = device->rounds_division ? 1 : device->has_fp64 ? 2 : 3;
+    if (p->division == TC_DIVISION_DEFAULT)
+        p->division = device->rounds_division ? TC_DIVISION_BUILT_IN
+                      : device->has_fp64      ? TC_DIVISION_FP64
+                                              : TC_DIVISION_INTEGER;
 }
 
-tc_status tuning_choose(const tc_context_options *options, const tc_device_info *device, launch_parameters *p) {
+tc_status tuning_choose(const tc_expert_options *options, const tc_device_info *device, launch_parameters *p) {
     *p = (launch_parameters){.work_items = options->work_items,
                              .work_groups = options->work_groups,
                              .scan = {options->tile_bricks, options->spin_limit},
@@ -157,8 +160,12 @@ tc_status tuning_choose(const tc_context_options *options, const tc_device_info 
     if (!work_items_fit(device, p->work_items))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "work_items %u: 1, or a multiple of 32 up to %u on this device",
                                p->work_items, work_items_limit(device));
-    if (p->division < 1 || p->division > 3 || (p->division == 1 && !device->rounds_division) ||
-        (p->division == 2 && !device->has_fp64))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "division %d is not to be had on this device", p->division);
+    if (p->division < TC_DIVISION_BUILT_IN || p->division > TC_DIVISION_INTEGER)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no division", (int)p->division);
+    if ((p->division == TC_DIVISION_BUILT_IN && !device->rounds_division) ||
+        (p->division == TC_DIVISION_FP64 && !device->has_fp64))
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "this device cannot divide by TC_DIVISION_%s",
+                               p->division == TC_DIVISION_FP64 ? "FP64: it has no fp64"
+                                                               : "BUILT_IN: it does not round correctly");
     return TC_OK;
 }

@@ -12,22 +12,22 @@
 
 #include "tetracubes.h"
 
-/* How kernel 1 scans, as in tc_context_options. */
+/* How kernel 1 scans, as in tc_expert_options. */
 typedef struct scan_parameters {
     uint32_t tile_bricks; /* 0: as suits the grid */
     uint32_t spin_limit;
 } scan_parameters;
 
-/* How kernels are built and launched, as in tc_context_options. */
+/* How kernels are built and launched, as in tc_expert_options. */
 typedef struct launch_parameters {
     uint32_t work_items, work_groups;
     scan_parameters scan;
-    int division;
+    tc_division division;
     uint32_t other_items; /* work-items of the other text of the kernels; 0: there is none to take (vetting.c) */
 } launch_parameters;
 
 /* What the options leave at 0 is chosen. TC_ERROR_ARGUMENT for what the device cannot do. */
-tc_status tuning_choose(const tc_context_options *options, const tc_device_info *device, launch_parameters *out);
+tc_status tuning_choose(const tc_expert_options *options, const tc_device_info *device, launch_parameters *out);
 
 /* Puts the parameters into the file, in place of what it has for the device. */
 tc_status tuning_keep(const tc_device_info *device, const tc_tuning *tuning);

@@ -37,7 +37,8 @@ static void key_write(const tc_context *context, unsigned kind, char key[KEY_BYT
     else
         snprintf(key + length, (size_t)room,
                  "kernels %u of tetracubes %s, %016" PRIx64 ": work-items %u, division %d, fp64 %d, in place %d\n",
-                 kind, tc_version(), kernel_sources_hash(), p->work_items, p->division, d->has_fp64, context->in_place);
+                 kind, tc_version(), kernel_sources_hash(), p->work_items, (int)p->division, d->has_fp64,
+                 context->in_place);
 }
 
 static void name_write(const char *key, char name[32]) {

@@ -44,7 +44,7 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
     if (platform < 0 && !device_find(context->device, &platform, &index)) return false;
     const bool opens = kind == OPENING;
     snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0 : p->work_items,
-             opens ? 0 : p->division, !opens && !context->in_place, context->info.name);
+             opens ? 0 : (int)p->division, !opens && !context->in_place, context->info.name);
     return true;
 }
 
@@ -53,9 +53,9 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
 static void trial_ask(const tc_context *context, unsigned kind, kept_verdict *out) {
     char job[256];
     *out = (kept_verdict){TC_VERDICT_NONE, ""};
-    if (!context->options.trial || !job_write(context, kind, job, sizeof job)) return;
+    if (!context->expert.child_trial || !job_write(context, kind, job, sizeof job)) return;
     float_environment *lent = float_environment_lend();
-    out->verdict = context->options.trial(context->options.trial_user, job, out->reason, sizeof out->reason);
+    out->verdict = context->expert.child_trial(context->expert.child_trial_user, job, out->reason, sizeof out->reason);
     float_environment_resume(lent);
     if (out->verdict < TC_VERDICT_NONE || out->verdict > TC_VERDICT_CANCELLED) out->verdict = TC_VERDICT_NONE;
     if (out->verdict == TC_VERDICT_NONE || out->verdict >= TC_VERDICT_STOPPED) return;
