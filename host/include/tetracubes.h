@@ -3,9 +3,10 @@
  *
  * Method: Carneiro, Silva, Kaufman, "Tetra-Cubes: an algorithm to generate 3D isosurfaces based upon tetrahedra"
  * (SIBGRAPI 1996). Every cube of eight samples is split into five tetrahedra. The split is mirrored on alternate cubes,
- * so that neighbours share their face diagonals. A sample is inside when it is >= the isovalue. Every edge between an
- * inside and an outside sample has one vertex, which all triangles there share. The mesh does not depend on the device,
- * its tuning or the engine: the reference engine, scalar C without OpenCL, makes the same bytes.
+ * so that neighbours share their face diagonals. A sample is inside when it is >= the isovalue. Every edge of a
+ * tetrahedron between an inside and an outside sample has one vertex, which all triangles there share. The mesh does
+ * not depend on the device, its tuning or the engine: the reference engine, scalar C without OpenCL, makes the same
+ * bytes.
  *
  *     tc_context *context = NULL; tc_grid *grid = NULL; tc_mesh *mesh = NULL; tc_mesh_data data = {sizeof data};
  *     tc_context_options device; tc_context_options_init(&device);
@@ -43,8 +44,8 @@
  * context. Arrays and strings are read during the call only, unless the field says that they are borrowed for longer.
  *
  * Structs begin with struct_size, the size of the struct in the header that the caller was built with: options have an
- * init function that sets it and the defaults; for other structs the caller sets it, and zeros the rest of those that
- * it fills. A newer library reads and fills only that much, and takes defaults for what is not there. A size that no
+ * init function that sets it and the defaults; in other structs the caller sets it, and zeros all else that it does
+ * not fill. A newer library reads and fills only that much, and takes defaults for what is not there. A size that no
  * header up to the library's can have given (0, one that is not a multiple of 8, one of a newer header) is
  * TC_ERROR_ARGUMENT.
  *
