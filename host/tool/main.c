@@ -4,6 +4,7 @@
  * Results go to standard output, everything else to standard error; exit statuses are those of exit_status.h.
  */
 #include "commands.h"
+#include "completion.h"
 #include "control.h"
 #include "effects.h"
 #include "exit_status.h"
@@ -104,11 +105,16 @@ static void print_overview(FILE *out) {
     fprintf(out, "\n"
                  "  tetracubes COMMAND --help   options and examples\n"
                  "  tetracubes --version        version and file formats\n"
+                 "  tetracubes --completion S   completion for the shell S, bash or zsh\n"
                  "\n"
                  "A surface in three steps:\n"
                  "  tetracubes info volume.nrrd\n"
                  "  tetracubes extract volume.nrrd --iso 127.5 -o surface.ply\n"
                  "  tetracubes extract volume.nrrd --iso 127.5 --verify --check\n"
+                 "\n"
+                 "Environment: TETRACUBES_DEVICE, the device where --device is not given; TETRACUBES_CACHE_DIR,\n"
+                 "the folder of built kernels (else $XDG_CACHE_HOME/tetracubes or ~/.cache/tetracubes; empty:\n"
+                 "none); POCL_CACHE_DIR, that of PoCL itself.\n"
                  "\n"
                  "Exit status: 0 done; 1 could not (device, memory, output); 2 wrong usage; 3 verification or\n"
                  "check failed; 4 bad input file.\n");
@@ -212,6 +218,13 @@ static int run_command(const command *c, int argc, char **argv) {
     return status;
 }
 
+static int complete(const char *shell) {
+    completion_command known[COMMAND_COUNT];
+    for (size_t n = 0; n < COMMAND_COUNT; n++)
+        known[n] = (completion_command){commands[n].name, commands[n].summary, commands[n].bit};
+    return completion_print(shell, known, COMMAND_COUNT, stdout);
+}
+
 static int dispatch(int argc, char **argv) {
     if (argc < 2) {
         print_overview(stderr);
@@ -227,6 +240,8 @@ static int dispatch(int argc, char **argv) {
         print_version(stdout);
         return 0;
     }
+    if (strcmp(name, "--completion") == 0)
+        return argc == 3 ? complete(argv[2]) : fail(STATUS_USAGE, "--completion needs a shell: bash or zsh");
     if (strcmp(name, TRIAL_COMMAND) == 0 && argc == 3) return trial_child(argv[2]);
     if (strcmp(name, SELFTEST_COMMAND) == 0) return selftest_child(argc - 2, argv + 2);
     const command *c = find_command(wants_help ? argv[2] : name);

@@ -406,6 +406,16 @@ int options_given(const options *o, const char *name) {
     return 0;
 }
 
+int options_view(enum command_bit command, size_t n, option_view *out) {
+    for (const option *spec = table; spec < table + TABLE_COUNT; spec++) {
+        if (!(spec->commands & command) || n--) continue;
+        const int takes_file = spec->value && strcmp(spec->value, "FILE") == 0;
+        *out = (option_view){spec->name, spec->short_name, spec->value, spec->help, spec->choices, takes_file};
+        return 1;
+    }
+    return 0;
+}
+
 void options_print(enum command_bit command, FILE *out) {
     for (const option *spec = table; spec < table + TABLE_COUNT; spec++) {
         if (!(spec->commands & command)) continue;
