@@ -6,7 +6,7 @@
 The build at hand and a library-only build of the other kind (shared or static) are installed into temporary folders,
 which are then renamed: nothing may depend on where they were. Small consumers are built against them and run with the
 reference engine; the README's C example is another. The libraries must export the functions of their header and
-nothing else.
+nothing else. Manual pages and completions lie beside, where the build could make them.
 """
 import argparse
 import os
@@ -190,6 +190,37 @@ class Installation:
             output = run(program, "--help" if name.endswith("bench") else "--version", env=environment)
             expect(wanted in output, f"{program}: printed {output!r}")
 
+    def test_manuals(self, programs):
+        """A page for the library and for each program that is installed; groff finds nothing to say of them. They name
+        every function of the header, and every option of the programs."""
+        pages = {path.name: path for path in self.prefix.rglob("man/man*/*")}
+        wanted = {"libtetracubes.3"} | {f"{name}.1" for name in programs}
+        expect(pages.keys() == wanted, f"manual pages are {sorted(pages)}, wanted {sorted(wanted)}")
+        texts = {name: path.read_text(encoding="utf-8").replace("\\-", "-") for name, path in pages.items()}
+        header = (self.prefix / "include" / "tetracubes.h").read_text(encoding="utf-8")
+        for word in re.findall(r"^TC_API[^;(]*?\b(\w+)\(|^} (\w+);", header, re.MULTILINE):
+            expect("".join(word) in texts["libtetracubes.3"], f"libtetracubes.3 does not have {word}")
+        helps = {"tetracubes-bench": [run(self.prefix / "bin" / "tetracubes-bench", "--help")]} if programs else {}
+        if programs:
+            overview = run(self.prefix / "bin" / "tetracubes", "--help")
+            commands = re.findall(r"^  tetracubes ([a-z]+) ", overview.split("\n\n")[1], re.MULTILINE)
+            helps["tetracubes"] = [run(self.prefix / "bin" / "tetracubes", name, "--help") for name in commands]
+        for name in programs:
+            shown = re.findall(r"^\.TP\n\\fB(.*?)\\fR(?: \\fI(.*?)\\fR)?$", texts[f"{name}.1"], re.MULTILINE)
+            lines = [line for text in helps[name] for line in re.findall(r"^  (-\S.*)$", text, re.MULTILINE)]
+            expect(len(shown) == len(lines) > 10, f"{name}.1 has {len(shown)} options, --help {len(lines)}")
+            for (option, value), line in zip(shown, lines):
+                expect(f"{line} ".startswith(f"{option} {value}".rstrip() + " "), f"{name}.1: {option} {value}, {line}")
+        for path in pages.values() if shutil.which("groff") else []:
+            said = run("groff", "-man", "-ww", "-Tutf8", "-z", path)
+            expect(not said, f"groff says of {path.name}: {said}")
+
+    def test_completions(self):
+        for name, first in ("bash-completion/completions/tetracubes", "# bash"), ("zsh/site-functions/_tetracubes",
+                                                                               "#compdef tetracubes\n"):
+            path = self.prefix / "share" / name
+            expect(path.exists() and path.read_text(encoding="utf-8").startswith(first), f"{name} is not there")
+
     def test_readme(self, folder):
         """The C example of the README compiles without a warning, and writes what the README says."""
         readme = (self.arguments.source / "README.md").read_text(encoding="utf-8")
@@ -273,6 +304,11 @@ def test(arguments, folder):
     other = Installation(arguments, build_other_kind(arguments, folder), folder, "other")
     expect(here.is_shared != other.is_shared, "the two builds are of one kind")
     here.test_tool()
+    programs = [name for name in ("tetracubes", "tetracubes-bench") if (here.prefix / "bin" / name).exists()]
+    here.test_manuals(programs)
+    other.test_manuals([])
+    if "tetracubes" in programs:
+        here.test_completions()
     for installation in (here, other):
         installation.test_exports()
         installation.test_cmake(sources)
