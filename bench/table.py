@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """table.py - bench/results/*.json as Markdown
 
-The largest cases go into the README, between its bench:begin and bench:end comments, all of them into README.md beside
-the results. What a results file does not hold is left out. Standard library only.
+A small table goes into the project's README, the largest cases into bench/README.md, each between the page's bench:begin
+and bench:end comments; all cases go into README.md beside the results. What a results file does not hold is left out.
+Standard library only.
 """
 
 import argparse
@@ -13,10 +14,11 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 README = os.path.join(os.path.dirname(HERE), "README.md")
+PAGE = os.path.join(HERE, "README.md")
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
 PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms")]
 GRID_PEERS = [("vtk_contour", "vtkContourFilter"), ("vtk_linear", "vtkContour3DLinearGrid")]  # of grids not uniform
-HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the README's table
+HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the tables in bench/README.md
 HEADLINE_SIZE = 512
 SAMPLE_BYTES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
 
@@ -112,13 +114,14 @@ def peers_text(result, peers):
     vtk = result["vtk"]
     uniform = [peer for peer in peers if peer.get("grid", "uniform") == "uniform"]
     others = [peer for peer in peers if peer not in uniform]
-    text = [f"Beside other filters (VTK {vtk['version']}, no normals; Flying Edges has {vtk['threads']} threads, the "
-            "others one), a new mesh on every repeat on all sides, in turns, of the two marching cubes and ours in "
-            "turns of their own; medians (min-max), of the others medians (times ours; of the hybrid, Flying Edges' "
-            "times the hybrid's)." + growth_text(peers), peers_table(uniform)]
+    text = [f"Beside other filters: VTK {vtk['version']} without normals. Flying Edges has {vtk['threads']} threads, the "
+            "others have one. Each side makes a new mesh on every repeat, and all take turns in one run; "
+            "vtkMarchingCubes and scikit-image take turns with a second series of ours. Times are medians, ours with "
+            "the least and the greatest. In bold: how many times as long as ours it took; in the hybrid's column: how "
+            "many times as long as the hybrid Flying Edges took." + growth_text(peers), peers_table(uniform)]
     if others:
-        text += ["Grids that are not uniform, likewise; the other's filter has all threads where it has any, merged "
-                 "points, and for the second isovalue its scalar tree:", grid_peers_table(others)]
+        text += ["Grids that are not uniform. The other filter uses as many threads as it can, merges points, and has "
+                 "its scalar tree for the second isovalue:", grid_peers_table(others)]
     return text
 
 
@@ -202,10 +205,27 @@ def picture(result, folder):
 
 
 def headlines(result):
-    """The README's section of a machine."""
-    return [machine_text(result), picture(result, "bench/pictures"),
+    """The section of a machine in bench/README.md."""
+    return [machine_text(result), picture(result, "pictures"),
             *peers_text(result, list(filter(is_headline_peer, result.get("peers", [])))),
             *cases_text(result, list(filter(is_headline_case, result["cases"]))), *table1_text(result)]
+
+
+def brief_row(peer):
+    """The first of the other programs is the fastest of them."""
+    key, title = next((key, title.removesuffix(", ms")) for key, title in PEERS + GRID_PEERS if f"{key}_ms" in peer)
+    theirs, ours = peer[f"{key}_ms"]["median"], peer["extract_ms"]["median"]
+    return [peer_name(peer), number(ours), number(peer["hybrid_ms"]["median"]) if "hybrid_ms" in peer else "", title,
+            number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
+            if "vtk_triangles" in peer else f"{peer[f'{key}_triangles']:,}"]
+
+
+def brief(result):
+    """The section of a machine in the project's README: nothing of one without peers."""
+    peers = list(filter(is_headline_peer, result.get("peers", [])))
+    head = ["samples", "Tetracubes, ms", "hybrid, ms", "VTK's filter", "its ms", "times ours", "our triangles", "VTK's"]
+    return [f"On {result['cpu']}, {result['cores']} cores, OpenCL device {result['device']}, beside VTK "
+            f"{result['vtk']['version']} ({result['date']}):", table(head, map(brief_row, peers))] if peers else []
 
 
 def everything(result):
@@ -230,10 +250,20 @@ def write(path, text):
         file.write(text)
 
 
+def replace(path, parts):
+    """The section of a page that is made here."""
+    with open(path, encoding="utf-8") as file:
+        text = readme_with(file.read(), paragraphs(parts))
+    if text is None:
+        sys.exit(f"table.py: {path} has to hold {BEGIN} and, after it, {END}, once each")
+    write(path, text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--results", default=os.path.join(HERE, "results"), metavar="DIR", help="default bench/results")
     parser.add_argument("--readme", default=README, metavar="FILE", help="default README.md")
+    parser.add_argument("--page", default=PAGE, metavar="FILE", help="default bench/README.md")
     arguments = parser.parse_args()
     results = []
     for path in sorted(glob.glob(os.path.join(arguments.results, "*.json"))):
@@ -241,13 +271,10 @@ def main():
             results.append(json.load(file))
     if not results:
         sys.exit(f"table.py: no results in {arguments.results}; run bench/run first")
-    with open(arguments.readme, encoding="utf-8") as file:
-        readme = readme_with(file.read(), paragraphs(part for result in results for part in headlines(result)) +
-                             "\n\nAll cases: [bench/results](bench/results/README.md).")
-    if readme is None:
-        sys.exit(f"table.py: {arguments.readme} has to hold {BEGIN} and, after it, {END}, once each")
-    write(arguments.readme, readme)
-    title = "# Results\n\nMade by bench/table.py from the files beside this one; what the columns mean: ../../README.md."
+    replace(arguments.readme, [part for result in results for part in brief(result)])
+    replace(arguments.page, [*(part for result in results for part in headlines(result)),
+                             "All cases: [results](results/README.md)."])
+    title = "# Results\n\nMade by bench/table.py from the files beside this one; what the columns mean: ../README.md."
     write(os.path.join(arguments.results, "README.md"),
           paragraphs([title, *(part for result in results for part in everything(result))]) + "\n")
 

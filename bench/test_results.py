@@ -29,18 +29,20 @@ def run(*command):
                           timeout=60, check=False)
 
 
-def make_tables(results, readme):
-    return run(sys.executable, SOURCE / "bench" / "table.py", "--results", results, "--readme", readme)
+def make_tables(results, readme, page):
+    return run(sys.executable, SOURCE / "bench" / "table.py", "--results", results, "--readme", readme, "--page", page)
 
 
 def test_committed(folder):
-    results, readme = folder / "results", folder / "README.md"
+    results, readme, page = folder / "results", folder / "README.md", folder / "page.md"
     shutil.copytree(RESULTS, results)
     shutil.copy(SOURCE / "README.md", readme)
+    shutil.copy(SOURCE / "bench" / "README.md", page)
     (results / "README.md").unlink()
-    done = make_tables(results, readme)
+    done = make_tables(results, readme, page)
     expect(done.returncode == 0, f"table.py: {done.returncode} {done.stderr}")
-    for made, committed in (readme, SOURCE / "README.md"), (results / "README.md", RESULTS / "README.md"):
+    for made, committed in ((readme, SOURCE / "README.md"), (page, SOURCE / "bench" / "README.md"),
+                            (results / "README.md", RESULTS / "README.md")):
         expect(made.read_text() == committed.read_text(), f"{committed} is not what bench/table.py makes of the results")
     for path in RESULTS.glob("*.json"):
         name = json.loads(path.read_text())["name"]
@@ -59,9 +61,10 @@ def test_partial(folder):
     partial = folder / "partial"
     partial.mkdir()
     (partial / path.name).write_text(json.dumps(result))
-    readme = folder / "partial.md"
+    readme, page = folder / "partial.md", folder / "partial-page.md"
     shutil.copy(SOURCE / "README.md", readme)
-    done = make_tables(partial, readme)
+    shutil.copy(SOURCE / "bench" / "README.md", page)
+    done = make_tables(partial, readme, page)
     expect(done.returncode == 0, f"partial results: {done.returncode} {done.stderr}")
     text = (partial / "README.md").read_text()
     expect("Left out: sphere 1024³ f32; too large." in text, "the case left out is not told of")
@@ -74,7 +77,7 @@ def test_failures(folder):
     readme = folder / "none.md"
     readme.write_text("no place for tables\n")
     for results, words in (empty, "no results"), (RESULTS, "has to hold"):
-        done = make_tables(results, readme)
+        done = make_tables(results, readme, readme)
         expect(done.returncode == 1 and words in done.stderr, f"table.py, {words}: {done.returncode} {done.stderr!r}")
     expect(readme.read_text() == "no place for tables\n", "table.py wrote where it has no place")
     for script in "run", "gpu":

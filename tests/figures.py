@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""figures.py - README's table of what the long tier tried and found, from tests/results
+"""figures.py - tables of what the long tier tried and found, in tests/README.md, from tests/results
 
-    figures.py [--results FOLDER] [--readme FILE]
+    figures.py [--results FOLDER] [--page FILE]
 
 Each file PART.json has `part`, `date`, `versions`, `seconds` and `figures`, a list of {`what`, `value`}. The table goes
-between README's trust:begin and trust:end comments, behind it one of `drivers`, where a part has such a list (those of
+between the page's trust:begin and trust:end comments, behind it one of `drivers`, where a part has such a list (those of
 tests/systems/drivers.py, each with its system); what kernels need on GPUs, from offline.json, between offline:begin and
 offline:end. tests/test_readme.py compares both with the results.
 """
@@ -32,10 +32,9 @@ def versions(results):
     known = {}
     for result in results:
         for name, version in result["versions"].items():
-            known.setdefault(name, []).append(str(version))
-    texts = {name: " and ".join(sorted(set(known[name]))) for name in known}
-    return ", ".join(texts[name] if name in texts[name] else f"{name} {texts[name]}"
-                     for name in sorted(texts, key=str.lower))
+            known.setdefault(name, set()).add(str(version) if name in str(version) else f"{name} {version}")
+    texts = [" and ".join(sorted(known[name])) for name in sorted(known, key=str.lower)]
+    return ", ".join(dict.fromkeys(texts))
 
 
 def drivers(results):
@@ -80,12 +79,12 @@ def replaced(text, name, inner):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--results", type=Path, default=ROOT / "tests" / "results", metavar="FOLDER")
-    parser.add_argument("--readme", type=Path, default=ROOT / "README.md", metavar="FILE")
+    parser.add_argument("--page", type=Path, default=ROOT / "tests" / "README.md", metavar="FILE")
     options = parser.parse_args()
     results = [json.loads(path.read_text()) for path in sorted(options.results.glob("*.json"))]
     offline = next((result for result in results if result["part"] == "offline"), None)
-    text = replaced(options.readme.read_text(), "trust", table(results))
-    options.readme.write_text(replaced(text, "offline", needs(offline)))
+    text = replaced(options.page.read_text(), "trust", table(results))
+    options.page.write_text(replaced(text, "offline", needs(offline)))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
 
 The build at hand and a library-only build of the other kind (shared or static) are installed into temporary folders,
 which are then renamed: nothing may depend on where they were. Small consumers are built against them and run with the
-reference engine; the README's C example is another. The libraries must export the functions of their header and
+reference engine; the C example of host/include/README.md is another. The libraries must export the functions of their header and
 nothing else. Manual pages and completions lie beside, where the build could make them.
 """
 import argparse
@@ -222,10 +222,10 @@ class Installation:
             expect(path.exists() and path.read_text(encoding="utf-8").startswith(first), f"{name} is not there")
 
     def test_readme(self, folder):
-        """The C example of the README compiles without a warning, and writes what the README says."""
-        readme = (self.arguments.source / "README.md").read_text(encoding="utf-8")
-        example = only(re.findall(r"^```c\n(.*?)^```", readme, re.MULTILINE | re.DOTALL), "README.md: C example")
-        said = only(re.findall(r"^/\* prints: (.*) \*/$", example, re.MULTILINE), "README.md: 'prints:' comment")
+        """The C example of the library's page compiles without a warning, and writes what it says."""
+        page = (self.arguments.source / "host" / "include" / "README.md").read_text(encoding="utf-8")
+        example = only(re.findall(r"^```c\n(.*?)^```", page, re.MULTILINE | re.DOTALL), "host/include: C example")
+        said = only(re.findall(r"^/\* prints: (.*) \*/$", example, re.MULTILINE), "host/include: 'prints:' comment")
         source = folder / "readme.c"
         source.write_text(example, encoding="utf-8")
         program = self.compile(self.arguments.cc, source, "readme")
@@ -233,9 +233,9 @@ class Installation:
         (folder / "kernels").mkdir(exist_ok=True)
         output = run(program, env=environment)
         if "OpenCL" in output:
-            print(f"README example not compared: {output.strip()}")
+            print(f"example not compared: {output.strip()}")
             return
-        expect(output == said + "\n", f"README.md: the C example prints {output!r}, the README says {said!r}")
+        expect(output == said + "\n", f"host/include: the C example prints {output!r}, it says {said!r}")
 
 
 def cached(build, name):

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""The README says what is so: options and fields are those of --help, its two commands those of .ci/run, the tests that
-it names are there, its table of the long tier is made of the committed results.
+"""The documents say what is so.
 
     test_readme.py SOURCE BUILD TOOL
 
-Its C example is compiled and run by test_install.py.
+README.md: it is short, its two commands are those of .ci/run, its example prints what it shows. host/tool: options and
+fields are those of --help, keys those of --json. host/read: endings are known. host: rooms include what they may, and
+files that are named are there. kernels: every file in one line. tests: tests that are named are there, tables are made of
+the committed results. All: what links lead to is there. C examples are compiled and run by test_install.py.
 """
+import json
 import re
 import shutil
 import subprocess
@@ -13,6 +16,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+PAGES = ["README.md", "host/README.md", "host/include/README.md", "host/read/README.md", "host/tool/README.md",
+         "host/tool/DRIVERS.md", "kernels/README.md", "tests/README.md", "bench/README.md", ".github/CONTRIBUTING.md",
+         ".github/CHANGELOG.md"]
+README_BYTES = 10240
 failures = 0
 
 
@@ -23,78 +30,242 @@ def expect(condition, text):
         print(f"FAILED: {text}")
 
 
-def section(readme, begin, end):
-    """Text between two marks; both have to be there."""
-    found = re.search(re.escape(begin) + "(.*?)" + re.escape(end), readme, re.DOTALL)
-    expect(found, f"README.md: no text between '{begin}' and '{end}'")
+def section(page, text, begin, end):
+    """Text between two marks; both have to be there. An empty mark is the end of the page."""
+    found = re.search(re.escape(begin) + "(.*?)" + (re.escape(end) if end else r"\Z"), text, re.DOTALL)
+    expect(found, f"{page}: no text between '{begin}' and '{end}'")
     return found.group(1) if found else ""
 
 
+def run(*command, **more):
+    return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          check=False, **more)
+
+
 def help_of(tool, command):
-    return subprocess.run([tool, command, "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return run(tool, command, "--help").stdout
 
 
-def test_options(readme, tool):
-    table = section(readme, "Options of `extract`:", "Exit status:")
-    documented = set(re.findall(r"`(--[a-z-]+)|`(-o) ", table))
-    documented = {long or "--output" for long, _ in documented}
-    known = set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", help_of(tool, "extract"), re.MULTILINE)) - {"--help"}
-    expect(len(known) > 10, f"extract --help: only {len(known)} options found")
-    expect(documented - known == set(), f"README.md: not options of extract: {sorted(documented - known)}")
-    expect(known - documented == set(), f"README.md: options left out: {sorted(known - documented)}")
+def anchors(text):
+    """What headings of a page can be linked by, as GitHub makes it."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", text, flags=re.DOTALL), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-def test_fields(readme, tool):
-    """The same fields, defined in the same words."""
-    table = section(readme, "| field | value |", "\n## ")
-    rows = dict(re.findall(r"^\| `([a-z-]+)` \| (.*) \|$", table, re.MULTILINE))
-    listed = section(help_of(tool, "generate"), "Fields,", "\n\n")
-    known = dict(re.findall(r"^  ([a-z-]+) +(.*)$", listed, re.MULTILINE))
-    expect(len(known) >= 6, f"generate --help: only {len(known)} fields found")
-    expect(rows.keys() == known.keys(), f"README.md: fields {sorted(rows)}, generate --help: {sorted(known)}")
-    for name in rows.keys() & known.keys():
-        stated = rows[name].replace("`", "")
-        expect(stated == known[name], f"README.md: {name} is '{stated}', in generate --help '{known[name]}'")
+def test_links(source, pages):
+    for name, text in pages.items():
+        for link, anchor in re.findall(r"\]\(([^)#\s]*)(#[^)\s]*)?\)", text):
+            if "://" in link:
+                continue
+            path = (source / name).parent / link if link else source / name
+            expect(path.exists(), f"{name}: {link} is not there")
+            if anchor and path.suffix == ".md" and path.exists():
+                expect(anchor[1:] in anchors(path.read_text(encoding="utf-8")), f"{name}: {link}{anchor} is no heading")
+    linked = re.findall(r"\]\(([^)#\s]+\.md)", pages["README.md"])
+    for name in PAGES[1:]:
+        expect(name in linked or name.startswith(".github/CHANGELOG"), f"README.md does not lead to {name}")
 
 
-def test_commands(readme, source):
-    commands = re.findall(r"^    (bash tests/\w+)", section(readme, "## The two commands", "\n## "), re.MULTILINE)
+# ------------------------------------------------------------------------------------------------------- README.md
+
+def test_readme(source, pages, tool):
+    text = pages["README.md"]
+    expect(len(text.encode()) <= README_BYTES, f"README.md has {len(text.encode())} bytes, more than {README_BYTES}")
+    commands = re.findall(r"^    (bash tests/\w+)", section("README.md", text, "## The two commands", "\n## "),
+                          re.MULTILINE)
     expect(len(commands) == 2, f"README.md: two commands expected, found {commands}")
     ci = (source / ".ci" / "run").read_text(encoding="utf-8")
     expect(re.findall(r"^(bash \S+)", ci, re.MULTILINE) == commands, f".ci/run does not run {commands}")
-    for link in re.findall(r"\]\(([^)#]+)\)", readme):
-        expect("://" in link or (source / link).exists(), f"README.md: {link} is not there")
+    example = re.findall(r"^    (.*)$", section("README.md", text, "## Example", "\n`tetracubes info"), re.MULTILINE)
+    calls = [line[2:].split()[1:] for line in example if line.startswith("$ ")]
+    with tempfile.TemporaryDirectory() as folder:
+        for call in calls:
+            if call[0] == "extract":  # by the reference, which --verify would prove nothing of
+                call = [*(word for word in call if word != "--verify"), "--engine", "reference"]
+            done = run(tool, *call, cwd=folder)
+            expect(done.returncode == 0, f"README.md: {call}: {done.stderr}")
+    printed = {line for line in done.stdout.splitlines() if " ms" not in line and line != "reference engine"}
+    shown = {line for line in example if not line.startswith(("$ ", "pthread", "  verify ")) and " ms" not in line}
+    expect(len(shown) > 6 and shown == printed, f"README.md: the example prints also {sorted(printed - shown)}, and not "
+                                                f"{sorted(shown - printed)}")
 
 
-def test_promises(readme, build):
+# ------------------------------------------------------------------------------------------------------- host/tool
+
+def test_options(text, tool):
+    page = "host/tool/README.md"
+    table = section(page, text, "## Options of `extract`", "\n## ")
+    documented = set(re.findall(r"`(--[a-z-]+)|`(-o) ", re.sub(r"^\| (.*?) \|.*$", r"\1", table, flags=re.MULTILINE)
+                                .partition("`info`, `tetra")[0]))
+    documented = {long or "--output" for long, _ in documented}
+    known = set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", help_of(tool, "extract"), re.MULTILINE)) - {"--help"}
+    expect(len(known) > 10, f"extract --help: only {len(known)} options found")
+    expect(documented - known == set(), f"{page}: not options of extract: {sorted(documented - known)}")
+    expect(known - documented == set(), f"{page}: options left out: {sorted(known - documented)}")
+
+
+def test_fields(text, tool):
+    """The same fields, defined in the same words."""
+    page = "host/tool/README.md"
+    table = section(page, text, "| field | value |", "\n## ")
+    rows = dict(re.findall(r"^\| `([a-z-]+)` \| (.*) \|$", table, re.MULTILINE))
+    listed = section("generate --help", help_of(tool, "generate"), "Fields,", "\n\n")
+    known = dict(re.findall(r"^  ([a-z-]+) +(.*)$", listed, re.MULTILINE))
+    expect(len(known) >= 6, f"generate --help: only {len(known)} fields found")
+    expect(rows.keys() == known.keys(), f"{page}: fields {sorted(rows)}, generate --help: {sorted(known)}")
+    for name in rows.keys() & known.keys():
+        stated = rows[name].replace("`", "")
+        expect(stated == known[name], f"{page}: {name} is '{stated}', in generate --help '{known[name]}'")
+
+
+def keys_of(value):
+    if isinstance(value, dict):
+        return set(value).union(*map(keys_of, value.values()))
+    return set().union(*map(keys_of, value)) if isinstance(value, list) else set()
+
+
+def test_keys(text, tool):
+    """Keys of reports of extract with every option that adds some."""
+    page = "host/tool/README.md"
+    table = section(page, text, "| of `extract` | |", "With `--count`")
+    documented = set(re.findall(r"`([a-z_]+)`", table)) - {"extract", "verified"}
+    with tempfile.TemporaryDirectory() as folder:
+        run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
+        extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]
+        known = set()
+        for more in ["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"]:
+            done = run(*extract, *more, cwd=folder)
+            expect(done.returncode == 0, f"{more}: {done.stderr}")
+            known |= keys_of(json.loads(done.stdout))
+    expect(known == documented, f"{page}: keys left out: {sorted(known - documented)}, not there: "
+                                f"{sorted(documented - known)}")
+
+
+# ------------------------------------------------------------------------------------------------------- host/read
+
+def test_endings(text, tool):
+    """An empty file of every ending is taken for its format; raw files and second ones say nothing of themselves."""
+    table = section("host/read/README.md", text, "| format | endings |", "\n\n")
+    endings = set(re.findall(r"`(\.\w+)`", table)) - {".raw", ".img", ".gz"}
+    expect(len(endings) > 12, f"host/read/README.md: only {sorted(endings)} found")
+    with tempfile.TemporaryDirectory() as folder:
+        for ending in endings | {".unknown"}:
+            path = Path(folder) / f"a{ending}"
+            path.write_bytes(b" " * 512)
+            done = run(tool, "info", path)
+            unknown = "format is not known" in done.stderr
+            expect(unknown == (ending == ".unknown"), f"host/read/README.md: {ending}: {done.stderr}")
+
+
+# ------------------------------------------------------------------------------------------------------------ host
+
+def room_of(path, rooms):
+    """The innermost room that a file of the sources lies in."""
+    return max((room for room in rooms if path.is_relative_to(room)), key=lambda room: len(room.parts), default=None)
+
+
+def included(path, name, source, rooms):
+    """The file that an include means: beside the file, in the library, among the rooms."""
+    own = room_of(path, rooms)
+    library = source / "host" / "lib"
+    places = [path.parent, *([library] if own.is_relative_to(library) else []), source / "host" / "common",
+              source / "kernels", *(room for room in rooms if not room.is_relative_to(library))]
+    return next((place / name for place in places if (place / name).exists()), None)
+
+
+def test_rooms(source, text):
+    """No file includes what the table does not allow."""
+    rows = re.findall(r"^\| `((?:host/|kernels)[\w/]*)` \| .* \| (.*?) ?\|$", text, re.MULTILINE)
+    rooms = {source / name: allowed for name, allowed in rows}
+    expect(len(rooms) >= 15, f"host/README.md: only {len(rooms)} rooms")
+    folders = {path.parent for path in (source / "host").rglob("*.c")} - rooms.keys()
+    expect(not folders, f"host/README.md: these rooms are left out: {sorted(map(str, folders))}")
+    places = [*rooms, source / "kernels"]
+    count = 0
+    for path in sorted((source / "host").rglob("*.[ch]")):
+        own = room_of(path, places)
+        for name in re.findall(r'^#include "([^"]+)"', path.read_text(encoding="utf-8"), re.MULTILINE):
+            found = included(path, name, source, places)
+            other = room_of(found, places) if found else None
+            if other is None or other in (own, source / "host" / "include"):
+                continue
+            count += 1
+            wanted = f"`{other.relative_to(source)}`"
+            whole = "all of `host/lib`" in rooms[own] and other.is_relative_to(source / "host" / "lib")
+            expect(wanted in rooms[own] or whole, f"{path.relative_to(source)} includes {name} of {wanted}, which "
+                                                  "host/README.md does not allow its room")
+    expect(count > 100, f"only {count} includes over rooms found")
+
+
+def test_paths(source, pages):
+    """Names of files in code spans: from the top, from the page's folder, or beside a path before it in the same cell."""
+    for page, text in pages.items():
+        for cell in re.split(r"[|\n]", text):
+            home = folder = (source / page).parent
+            for name in re.findall(r"`([\w*./-]+\.(?:cl|c|h|inc|py|txt)|[\w./-]+\.\*)`", cell):
+                if "NAME" in name:  # stands for what is to be made
+                    folder = (source / name).parent if "/" in name else folder
+                if "NAME" in name or name.startswith((".", "share/")) or name in ("CMakeLists.txt", "tetracubes.h"):
+                    continue
+                base = next((base for base in (folder, source, home) if list(base.glob(name))), None)
+                expect(base, f"{page}: {name} is not there")
+                folder = (base / name).parent if base else folder
+
+
+# --------------------------------------------------------------------------------------------------- kernels, tests
+
+def test_kernels(source, text):
+    table = section("kernels/README.md", text, "## The files", "## Sources")
+    named = re.findall(r"`(\w+\.(?:cl|h))`", "\n".join(line.split(" | ")[0] for line in table.split("\n")))
+    there = sorted(path.name for path in (source / "kernels").glob("*.[ch]*"))
+    expect(sorted(named) == there, f"kernels/README.md: files left out, too many or twice: "
+                                   f"{sorted(set(named) ^ set(there))}")
+
+
+def test_promises(text, build):
     """Every test that a promise names is one of ctest's."""
-    listed = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    listed = run("ctest", "--test-dir", build, "-N").stdout
     known = set(re.findall(r"Test +#\d+: (\w+)", listed))
     cache = (Path(build) / "CMakeCache.txt").read_text(encoding="utf-8")
     if re.search(r"^BUILD_SHARED_LIBS:\w+=(OFF|0|NO|FALSE)$", cache, re.MULTILINE | re.IGNORECASE):
         known.add("test_host_memory")  # replaces the malloc of a shared library
-    promises = section(readme, "| promise |", "<!-- trust:begin -->")
-    named = re.findall(r"`((?:test|fuzz|mutants|offline)_\w+|oclgrind|memcheck|kernel_warnings)`", promises)
-    expect(len(named) > 20, f"README.md: only {len(named)} tests named")
-    expect(set(named) <= known, f"README.md: no tests of ctest: {sorted(set(named) - known)}")
+    promises = section("tests/README.md", text, "| promise |", "\n## ")
+    named = re.findall(r"`((?:test|fuzz|mutants|offline|bench)_\w+|oclgrind|memcheck|kernel_warnings)`", promises)
+    expect(len(named) > 20, f"tests/README.md: only {len(named)} tests named")
+    expect(set(named) <= known, f"tests/README.md: no tests of ctest: {sorted(set(named) - known)}")
+
+
+def test_map(source, text):
+    """Every folder of tests is in the map."""
+    table = section("tests/README.md", text, "| folder |", "\n\n")
+    named = set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE))
+    there = {path.name for path in (source / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    expect(named == there, f"tests/README.md: folders {sorted(named ^ there)}")
 
 
 def test_figures(source):
     """tests/figures.py would write what is there."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "README.md"
-        shutil.copy(source / "README.md", copy)
-        subprocess.run([sys.executable, source / "tests" / "figures.py", "--readme", copy], check=True)
-        expect(copy.read_text() == (source / "README.md").read_text(), "README.md: run tests/figures.py")
+        shutil.copy(source / "tests" / "README.md", copy)
+        subprocess.run([sys.executable, source / "tests" / "figures.py", "--page", copy], check=True)
+        expect(copy.read_text() == (source / "tests" / "README.md").read_text(), "tests/README.md: run tests/figures.py")
 
 
 def main():
-    source, build, tool = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
-    readme = (source / "README.md").read_text(encoding="utf-8")
-    test_options(readme, tool)
-    test_fields(readme, tool)
-    test_commands(readme, source)
-    test_promises(readme, build)
+    source, build, tool = Path(sys.argv[1]).resolve(), sys.argv[2], Path(sys.argv[3]).resolve()
+    pages = {name: (source / name).read_text(encoding="utf-8") for name in PAGES}
+    test_links(source, pages)
+    test_readme(source, pages, tool)
+    test_options(pages["host/tool/README.md"], tool)
+    test_fields(pages["host/tool/README.md"], tool)
+    test_keys(pages["host/tool/README.md"], tool)
+    test_endings(pages["host/read/README.md"], tool)
+    test_rooms(source, pages["host/README.md"])
+    test_paths(source, {name: text for name, text in pages.items() if "CHANGELOG" not in name})
+    test_kernels(source, pages["kernels/README.md"])
+    test_promises(pages["tests/README.md"], build)
+    test_map(source, pages["tests/README.md"])
     test_figures(source)
     print(f"{failures} failed")
     return failures > 0

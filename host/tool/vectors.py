@@ -24,7 +24,7 @@ HEAD = """\
 # OPTIONS: - or, with commas between: nodata=V: samples equal to V are missing; seed=S of noise, else 0; tetrahedra: the
 # grid cut into tetrahedra and extracted as an unstructured one. Positions are in index space: sample (i, j, k) lies at
 # i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices, then the uint32 indices of all triangles, both
-# little-endian, in the order that the README describes; 16 hexadecimal digits.
+# little-endian, in the order that kernels/README.md describes; 16 hexadecimal digits.
 """
 TYPES = ["u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"]
 
