@@ -212,6 +212,13 @@ def test_statuses(folder):
     expect(done.returncode == 0 and "--repeat" in done.stdout, "--help")
 
 
+def test_page():
+    """bench/README.md has the keys of a case."""
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "README.md"), encoding="utf-8") as file:
+        page = file.read()
+    expect(not [key for key in CASE_KEYS if f"`{key}`" not in page], "bench/README.md leaves out keys of a case")
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="tetracubes-bench-test-") as folder:
         made = test_json()
@@ -221,6 +228,7 @@ def main():
         test_table()
         test_dump_and_turns(made, folder)
         test_statuses(folder)
+        test_page()
     print(f"{checks} checks, {failures} failed")
     return 1 if failures else 0
 

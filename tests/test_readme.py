@@ -124,6 +124,15 @@ def keys_of(value):
     return set().union(*map(keys_of, value)) if isinstance(value, list) else set()
 
 
+def test_keys_of(text, command, known):
+    """All of these keys are in the command's table, and no others."""
+    page = "host/tool/README.md"
+    rows = section(page, text, f"| of `{command}` | |", "\n\n")
+    documented = set(re.findall(r"`([a-z_]+)`", rows)) - {"option"}  # of choices, which an input leaves open or not
+    expect(known == documented, f"{page}, {command}: keys left out: {sorted(known - documented)}, not there: "
+                                f"{sorted(documented - known)}")
+
+
 def test_keys(text, tool):
     """Keys of reports of extract with every option that adds some."""
     page = "host/tool/README.md"
@@ -132,6 +141,9 @@ def test_keys(text, tool):
     with tempfile.TemporaryDirectory() as folder:
         run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
         extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]
+        for command, more in ("info", []), ("tetrahedralize", ["-o", "a.vtu"]):
+            test_keys_of(text, command, keys_of(json.loads(run(tool, command, "a.nrrd", *more, "--json",
+                                                               cwd=folder).stdout)))
         known = set()
         for more in ["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"]:
             done = run(*extract, *more, cwd=folder)

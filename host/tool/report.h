@@ -1,5 +1,5 @@
 /*
- * report.h - what extract found out, as the JSON object of the contract or as text for people
+ * report.h - what extract found out, as the JSON object of README.md or as text for people
  *
  * Numbers are printed so that they can be typed back: text has the fewest digits that read back the same double; JSON
  * has one number of digits for the whole object, 15, or as many more as one of its numbers needs for that. Numbers that

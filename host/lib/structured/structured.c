@@ -1,5 +1,5 @@
 /*
- * The device path as the diagram of the design has it: classify and scan, totals, allocate, emit.
+ * The device path over structured grids: classify and scan, totals, allocate, emit (kernels/README.md).
  */
 #include "structured/structured.h"
 
