@@ -265,8 +265,8 @@ class Far(GridCase):
     def fails_check(self, source, iso):
         out = self.path("coarse.ply")
         result = self.expect(3, "extract", source, "--iso", iso, "--engine", "reference", "--check", "-o", out)
-        self.assertRegex(result.stderr, "float32 is coarse: it has steps of .* far from each other")
-        self.assertRegex(result.stderr, "check failed: .* fewer than 8 steps across a cell")
+        self.assertRegex(result.stderr, "float32 is coarse at .*: cells are as thin as .* of its steps")
+        self.assertRegex(result.stderr, "check failed: .* where cells are thinner than 8 steps")
         self.assertFalse(os.path.exists(out))
         report = self.report("extract", source, "--iso", iso, "--engine", "reference", "--check", status=3)
         self.assertGreater(report["surfaces"][0]["coarse_vertices"], 0)
@@ -287,6 +287,52 @@ class Far(GridCase):
                 self.fails_check(source, "0.5")
             else:
                 self.expect(0, "extract", source, "--iso", "0.5", "--engine", "reference", "--check")
+
+    def test_thin_cells_that_lie_oblique(self):
+        """Their box is large along every axis, and they are thinner than steps of float32."""
+        root = math.sqrt(0.5)
+        values = [p for p in field()[0][2]]
+        for thick, fails in ((1e-7, True), (1e-3, False)):
+            points = [(root * x + root * thick * z, float(y), root * thick * z - root * x)
+                      for x, y, z in lattice(DIMS, (0, 0, 0))]
+            cells = self.write("thin.vtu", vtk_file("UnstructuredGrid", ">" + vtu_piece(points, hexahedra(DIMS), values)))
+            grid = f' Origin="0 0 0" Spacing="1 1 {thick!r}" Direction="{root!r} 0 {root!r} 0 1 0 {-root!r} 0 {root!r}"'
+            image = self.write("thin.vti", structured_text("ImageData", DIMS, (0, 0, 0), "", field(), more=grid))
+            whole = " ".join(f"0 {n - 1}" for n in DIMS)
+            bent = self.write("thin.vts", vtk_file("StructuredGrid", f' WholeExtent="{whole}"><Piece Extent="{whole}">'
+                                                   f'{attributes("PointData", field())}<Points>'
+                                                   + data_array("Points", "f64", list(itertools.chain(*points)), 3)
+                                                   + "</Points></Piece>"))
+            for source in (cells, image, bent):
+                with self.subTest(source=source, thick=thick):
+                    if fails:
+                        self.fails_check(source, ISO)
+                    else:
+                        self.expect(0, "extract", source, "--iso", ISO, "--engine", "reference", "--check")
+
+    def test_files_whose_numbers_are_coarse(self):
+        """--check fails where the file would hold another shape than the mesh, and writes none."""
+        image = self.write("a.vti", vti((1e15, 0.0, 0.0)))
+        apart = self.write("apart.vtu", vtu_pieces((UTM, (0, 0, 0)), ((1e8, 0.0, 0.0), (0, 0, 0))))
+        for source, out, more, says in ((image, "a.ply", (), "so far from zero"), (apart, "a.stl", (), "blocks lie so far"),
+                                        (image, "a.vtp", ("--origin-at", "-1e17,0,0"), "--origin-at lies so far")):
+            with self.subTest(out=out, more=more):
+                result = self.expect(3, "extract", source, "--iso", ISO, "-o", self.path(out), "--engine", "reference",
+                                     "--check", *more)
+                self.assertRegex(result.stderr, says)
+                self.assertRegex(result.stderr, "check failed")
+                self.assertFalse(os.path.exists(self.path(out)))
+        near = self.surface(self.write("near.vti", vti((0.0, 0.0, 0.0))), "--iso", ISO)[1]
+        out = self.path("b.ply")
+        self.expect(0, "extract", image, "--iso", ISO, "-o", out, "--engine", "reference", "--check", "--origin-at",
+                    "1e15,0,0")
+        points, faces, _ = read_ply(out)
+        self.assertLess(abs(measures(points, faces)[0] / near["area"] - 1), 1e-6)
+
+    def test_origins_where_doubles_have_no_room(self):
+        near = self.surface(self.write("near.vti", vti((0.0, 0.0, 0.0))), "--iso", ISO)[1]
+        far = self.surface(self.write("far.vti", vti((1e18, -1e20, 0.0))), "--iso", ISO)[1]
+        self.assertEqual(near["hash"], far["hash"])
 
     def test_small_triangles_are_not_coarse(self):
         """Just beside values of samples all triangles are tiny, and the cells are not."""

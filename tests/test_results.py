@@ -216,7 +216,16 @@ class Notices(DataCase):
         report = self.extract([self.path("far.vtk")], "9.03")
         [surface] = report["surfaces"]
         self.assertGreater(surface["degenerate_triangles"], surface["triangles"] // 5)
-        self.assertRegex(report["notices"][-1], "vertices coincide at [0-9]+ points where no sample equals the isovalue")
+        [told] = report["notices"]
+        self.assertRegex(told, "float32 is coarse at [0-9]+ of [0-9]+ vertices: cells are as thin as [0-9.e-]+ of its steps")
+
+    def test_zero_area_for_other_reasons(self):
+        """A value that stands for none lies so far away that crossings fall onto the samples beside it."""
+        ball = [1e20 if p[2] < 2 else 4 - math.dist(p, (4.1, 4.2, 4.3)) for p in itertools.product(range(9), repeat=3)]
+        filled = self.raw("filled.raw", "f32", (9, 9, 9), ball)
+        [told] = self.notices(filled, "2.05")
+        self.assertRegex(told, r"have no area: samples lie so far from the isovalue, up to 1\S*e\+20, .*--nodata")
+        self.assertEqual(self.notices(filled, "2.05", "--nodata", "1e20"), [])
 
     def test_fields_that_are_not_there(self):
         ball = self.ball()

@@ -3,6 +3,7 @@
 #include "exit_status.h"
 #include "failure.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -27,67 +28,142 @@ static int cell_points(const prepared_block *b, int64_t cell, int64_t points[COR
     return CORNERS_MOST;
 }
 
+/* Of a uniform block without its offset, beside which a double may have no room for a cell. */
 static void point_position(const dataset_block *b, int64_t point, double out[3]) {
     const int64_t at[3] = {point % b->dims[0], point / b->dims[0] % b->dims[1], point / b->dims[0] / b->dims[1]};
     for (int axis = 0; axis < 3; axis++) {
         const double *row = b->matrix[axis];
-        out[axis] = b->kind == GRID_RECTILINEAR ? coordinate_at(b->axes[axis], at[axis]) : row[3];
+        out[axis] = b->kind == GRID_RECTILINEAR ? coordinate_at(b->axes[axis], at[axis]) : 0;
         for (int along = 0; along < 3 && b->kind == GRID_UNIFORM; along++)
             out[axis] += row[along] * (double)(at[along] + b->first[along]);
     }
 }
 
-/* The box of a cell. Returns the number of its points. */
-static int cell_box(const prepared_block *b, int64_t cell, int64_t points[CORNERS_MOST], double low[3],
-                    double high[3]) {
+/* A cell by its points, and where they are. */
+typedef struct cell_corners {
+    int count;
+    int64_t points[CORNERS_MOST];
+    double base[3]; /* where they count from */
+    double at[CORNERS_MOST][3];
+} cell_corners;
+
+static void find_corners(const prepared_block *b, int64_t cell, cell_corners *c) {
     const dataset_block *from = b->source;
-    const int count = cell_points(b, cell, points);
-    for (int n = 0; n < count; n++) {
-        double at[3];
+    c->count = cell_points(b, cell, c->points);
+    for (int axis = 0; axis < 3; axis++) c->base[axis] = from->kind == GRID_UNIFORM ? from->matrix[axis][3] : 0;
+    for (int n = 0; n < c->count; n++)
         if (from->kind == GRID_CURVILINEAR || from->kind == GRID_UNSTRUCTURED)
-            for (int axis = 0; axis < 3; axis++) at[axis] = coordinate_at(from->points, 3 * points[n] + axis);
+            for (int axis = 0; axis < 3; axis++) c->at[n][axis] = coordinate_at(from->points, 3 * c->points[n] + axis);
         else
-            point_position(from, points[n], at);
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = n ? fmin(low[axis], at[axis]) : at[axis];
-            high[axis] = n ? fmax(high[axis], at[axis]) : at[axis];
-        }
+            point_position(from, c->points[n], c->at[n]);
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int n = 0; n < 3; n++) out[n] = a[(n + 1) % 3] * b[(n + 2) % 3] - a[(n + 2) % 3] * b[(n + 1) % 3];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+enum { SIDES_MOST = 4 };
+
+/* The unit normals of a cell's sides and the cell's thickness along them. Of a cube the three at its first corner, as
+ * if it were a parallelepiped; of a tetrahedron all four. None of a flat cell. Returns how many. */
+static int find_sides(const cell_corners *c, double normals[SIDES_MOST][3], double thickness[SIDES_MOST]) {
+    double edges[3][3], across[2][3];
+    int count = 0;
+    for (int n = 0; n < 3; n++)
+        for (int axis = 0; axis < 3; axis++)
+            edges[n][axis] = c->at[c->count == 4 ? n + 1 : 1 << n][axis] - c->at[0][axis];
+    for (int axis = 0; axis < 3; axis++) {
+        across[0][axis] = edges[1][axis] - edges[0][axis];
+        across[1][axis] = edges[2][axis] - edges[0][axis];
+    }
+    for (int side = 0; side < (c->count == 4 ? 4 : 3); side++) {
+        double normal[3];
+        if (side < 3)
+            cross(edges[side], edges[(side + 1) % 3], normal);
+        else
+            cross(across[0], across[1], normal);
+        const double length = sqrt(dot(normal, normal)), height = fabs(dot(normal, edges[(side + 2) % 3])) / length;
+        if (!(height > 0) || !isfinite(height)) continue;
+        for (int axis = 0; axis < 3; axis++) normals[count][axis] = normal[axis] / length;
+        thickness[count++] = height;
     }
     return count;
 }
 
+static void add_cell(const cell_corners *c, cell_range *out) {
+    double normals[SIDES_MOST][3], thickness[SIDES_MOST];
+    const int sides = find_sides(c, normals, thickness);
+    for (int n = 0; n < sides; n++) out->thickness = fmin(out->thickness, thickness[n]);
+    for (int axis = 0; axis < 3; axis++) {
+        double low = c->at[0][axis], high = low;
+        for (int n = 1; n < c->count; n++) {
+            low = fmin(low, c->at[n][axis]);
+            high = fmax(high, c->at[n][axis]);
+        }
+        out->low[axis] = fmin(out->low[axis], c->base[axis] + low);
+        out->high[axis] = fmax(out->high[axis], c->base[axis] + high);
+        if (high > low) out->least[axis] = fmin(out->least[axis], high - low);
+    }
+}
+
+/* Cells are alike in a uniform block, and in a rectilinear one along each axis: those along its edges are all. */
+static void add_edges(const prepared_block *b, cell_range *out) {
+    const int64_t *d = b->source->dims;
+    int64_t stride = 1;
+    for (int axis = 0; axis < 3; stride *= d[axis++] - 1)
+        for (int64_t n = 0; n < d[axis] - 1; n += b->source->kind == GRID_UNIFORM && d[axis] > 2 ? d[axis] - 2 : 1) {
+            cell_corners c;
+            find_corners(b, n * stride, &c);
+            add_cell(&c, out);
+        }
+}
+
 void cell_range_find(const prepared_block *b, int all, cell_range *out) {
     const int64_t count = cell_count(b), stride = all ? 1 : count / CELLS_PROBED + 1;
+    const int is_regular = !b->is_cut && b->source->kind != GRID_CURVILINEAR;
     for (int axis = 0; axis < 3; axis++) {
         out->low[axis] = out->least[axis] = INFINITY;
         out->high[axis] = -INFINITY;
     }
-    for (int64_t cell = 0; cell < count;
-         cell = cell < count - 1 && cell + stride >= count ? count - 1 : cell + stride) {
-        int64_t points[CORNERS_MOST];
-        double low[3], high[3];
-        cell_box(b, cell, points, low, high);
-        for (int axis = 0; axis < 3; axis++) {
-            out->low[axis] = fmin(out->low[axis], low[axis]);
-            out->high[axis] = fmax(out->high[axis], high[axis]);
-            if (high[axis] > low[axis]) out->least[axis] = fmin(out->least[axis], high[axis] - low[axis]);
-        }
+    out->thickness = INFINITY;
+    if (is_regular && count) add_edges(b, out);
+    for (int64_t cell = is_regular ? count - 1 : 0; cell >= 0 && cell < count;) {
+        cell_corners c;
+        find_corners(b, cell, &c);
+        add_cell(&c, out);
+        cell = cell < count - 1 && cell + stride >= count ? count - 1 : cell + stride; /* the last one too */
     }
 }
 
-float *cell_sizes(const prepared_block *b) {
+double step_at(double value, int digits) {
+    const int least = digits == FLT_MANT_DIG ? FLT_MIN_EXP - FLT_MANT_DIG : DBL_MIN_EXP - DBL_MANT_DIG;
+    int exponent;
+    frexp(value, &exponent);
+    return ldexp(1, exponent - digits > least ? exponent - digits : least);
+}
+
+float *cell_steps(const prepared_block *b, const coordinate_numbers *numbers) {
     const int64_t count = cell_count(b);
-    float *sizes = calloc((size_t)b->source->point_count * 3 + 1, sizeof *sizes);
-    if (!sizes) fail(STATUS_FAILED, "no memory for the sizes of cells at %" PRId64 " points", b->source->point_count);
-    for (int64_t cell = 0; sizes && cell < count; cell++) {
-        int64_t points[CORNERS_MOST];
-        double low[3], high[3];
-        const int corners = cell_box(b, cell, points, low, high);
-        for (int n = 0; n < corners; n++)
-            for (int axis = 0; axis < 3; axis++) {
-                float *size = &sizes[3 * points[n] + axis];
-                *size = fmaxf(*size, (float)(high[axis] - low[axis]));
+    float *steps = calloc((size_t)b->source->point_count + 1, sizeof *steps);
+    if (!steps) fail(STATUS_FAILED, "no memory for the sizes of cells at %" PRId64 " points", b->source->point_count);
+    for (int64_t cell = 0; steps && cell < count; cell++) {
+        double normals[SIDES_MOST][3], thickness[SIDES_MOST];
+        cell_corners c;
+        find_corners(b, cell, &c);
+        const int sides = find_sides(&c, normals, thickness);
+        for (int n = 0; n < c.count && sides; n++) {
+            double fewest = (double)FLT_MAX, step[3];
+            for (int axis = 0; axis < 3; axis++)
+                step[axis] = step_at(c.at[n][axis] + (c.base[axis] - numbers->zero[axis]), numbers->digits);
+            for (int side = 0; side < sides; side++) {
+                const double *normal = normals[side];
+                const double moved = fabs(normal[0]) * step[0] + fabs(normal[1]) * step[1] + fabs(normal[2]) * step[2];
+                fewest = fmin(fewest, thickness[side] / moved);
             }
+            steps[c.points[n]] = fmaxf(steps[c.points[n]], (float)fmax(fewest, (double)FLT_MIN));
+        }
     }
-    return sizes;
+    return steps;
 }

@@ -1,4 +1,4 @@
-/* cell_sizes.h - where the cells of a block lie, and how large they are along x, y and z */
+/* cell_sizes.h - where the cells of a block lie, and how thin they are */
 #ifndef CELL_SIZES_H
 #define CELL_SIZES_H
 
@@ -7,13 +7,25 @@
 typedef struct cell_range {
     double low[3], high[3]; /* the box of the cells; low above high where there is none */
     double least[3];        /* least size of a cell along each axis that is not 0; infinite where all are */
+    double thickness;       /* least distance of two opposite sides, or of a corner and its opposite side, that is not
+                               0; infinite where all are */
 } cell_range;
 
 /* Of all cells, or where `all` is 0 of some thousands taken evenly. */
 void cell_range_find(const prepared_block *b, int all, cell_range *out);
 
-/* For every point the largest size along each axis of the cells that have it: 3 numbers each, 0 of a point without
- * cells. From malloc; NULL, with STATUS_FAILED's text set, where memory runs out. */
-float *cell_sizes(const prepared_block *b);
+/* Where coordinates count from, and how many binary digits they have: 24 or 53. */
+typedef struct coordinate_numbers {
+    double zero[3];
+    int digits;
+} coordinate_numbers;
+
+/* The distance from such a number to the next. */
+double step_at(double value, int digits);
+
+/* For every point, how many steps of its coordinates the cells that have it are thick: of the thickest cell, across its
+ * thinnest direction; 0 where none is known. From malloc; NULL, with STATUS_FAILED's text set, where memory runs out.
+ */
+float *cell_steps(const prepared_block *b, const coordinate_numbers *numbers);
 
 #endif

@@ -13,141 +13,132 @@
 
 enum { STEPS_FINE = 128 }; /* across a cell: fewer show */
 
-/* Where coordinates count from: a point, or NULL for each block's own origin; and how many binary digits they have. */
-typedef struct numbers {
-    const double *zero;
-    int digits;
-} numbers;
-
-/* The distance from a number of so many digits to the next. */
-static double step_at(double value, int digits) {
-    int exponent;
-    frexp(value, &exponent);
-    return ldexp(1, exponent - digits);
+/* The point that the coordinates of a block count from: the one given, or NULL for its own origin. */
+static coordinate_numbers numbers_of(const coarse_surface *s, int block, const double *zero, int digits) {
+    const double *from = zero ? zero : s->engine->parts[block].origin;
+    return (coordinate_numbers){.zero = {from[0], from[1], from[2]}, .digits = digits};
 }
 
-/* How far coordinates of a block's cells are from where they count from, at most. */
-static void find_reach(const cell_range *cells, const double *zero, double reach[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        reach[axis] = fmax(fabs(cells->low[axis] - zero[axis]), fabs(cells->high[axis] - zero[axis]));
+/* The largest coordinate of a block's cells along an axis. */
+static double reach_of(const cell_range *cells, const coordinate_numbers *numbers, int axis) {
+    return fmax(fabs(cells->low[axis] - numbers->zero[axis]), fabs(cells->high[axis] - numbers->zero[axis]));
 }
 
 /* Whether some vertex may lie where a cell has few steps: looks at cells, at all of them or at some. */
-static int may_be_coarse(const coarse_surface *s, numbers n, int all) {
-    for (int k = 0; k < s->engine->block_count; k++) {
+static int may_be_coarse(const coarse_surface *s, const double *zero, int digits, int all) {
+    for (int n = 0; n < s->engine->block_count; n++) {
+        const coordinate_numbers numbers = numbers_of(s, n, zero, digits);
         cell_range cells;
-        double reach[3];
-        if (!s->engine->parts[k].vertex_count) continue;
-        cell_range_find(&s->blocks->blocks[k], all, &cells);
-        find_reach(&cells, n.zero ? n.zero : s->engine->parts[k].origin, reach);
-        for (int axis = 0; axis < 3; axis++)
-            if (cells.least[axis] < STEPS_FINE * step_at(reach[axis], n.digits)) return 1;
+        double step = 0;
+        if (!s->engine->parts[n].vertex_count) continue;
+        cell_range_find(&s->blocks->blocks[n], all, &cells);
+        for (int axis = 0; axis < 3; axis++) step += step_at(reach_of(&cells, &numbers, axis), digits);
+        if (cells.thickness < STEPS_FINE * step) return 1;
     }
     return 0;
 }
 
-/* The sizes of the cells at every vertex of the mesh, from malloc; *sizes NULL where it fails. */
-static int carry_sizes(const coarse_surface *s, float **sizes) {
+/* How many steps cells are thick at every vertex of the mesh, from malloc; *steps NULL where it fails. */
+static int carry_steps(const coarse_surface *s, const double *zero, int digits, float **steps) {
     const int count = s->engine->block_count;
     dataset_field *fields = calloc((size_t)count + 1, sizeof *fields);
     int status = fields ? 0 : fail(STATUS_FAILED, "out of memory for %d blocks", count);
-    *sizes = NULL;
+    *steps = NULL;
     for (int n = 0; n < count && !status; n++) {
-        fields[n] = (dataset_field){.name = "cell sizes", .components = 3, .type = TC_F32};
+        const coordinate_numbers numbers = numbers_of(s, n, zero, digits);
+        fields[n] = (dataset_field){.name = "steps", .components = 1, .type = TC_F32};
         if (!s->engine->parts[n].vertex_count) continue;
-        fields[n].values = cell_sizes(&s->blocks->blocks[n]);
+        fields[n].values = cell_steps(&s->blocks->blocks[n], &numbers);
         if (!fields[n].values) status = STATUS_FAILED;
     }
-    if (!status && !(*sizes = malloc((size_t)(3 * s->mesh->vertex_count + 1) * sizeof **sizes)))
+    if (!status && !(*steps = malloc((size_t)(s->mesh->vertex_count + 1) * sizeof **steps)))
         status = fail(STATUS_FAILED, "out of memory for the sizes of cells at the surface");
-    if (!status) status = engine_carry(s->engine, s->how, &(point_field){.components = 3, .blocks = fields}, *sizes);
+    if (!status) status = engine_carry(s->engine, s->how, &(point_field){.components = 1, .blocks = fields}, *steps);
     for (int n = 0; n < count && fields; n++) free((void *)fields[n].values);
     free(fields);
     if (!status) return 0;
-    free(*sizes);
-    *sizes = NULL;
+    free(*steps);
+    *steps = NULL;
     return status;
 }
 
-/* Vertices where cells have few steps; step and size are those where the steps are fewest. */
+/* Vertices where cells have few steps. */
 typedef struct coarse_count {
     uint64_t coarse, least; /* below STEPS_FINE, COARSE_STEPS_LEAST */
-    double step, size;
+    double fewest;          /* steps */
 } coarse_count;
 
-static void add_vertex(coarse_count *c, const float *position, const double *offset, const float *sizes, int digits) {
-    int is_coarse = 0, is_least = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const double size = (double)sizes[axis], step = step_at((double)position[axis] + offset[axis], digits);
-        if (!(size > 0) || !(size < STEPS_FINE * step)) continue;
-        is_coarse = 1;
-        is_least = is_least || size < COARSE_STEPS_LEAST * step;
-        if (c->size > 0 && size / step >= c->size / c->step) continue;
-        c->size = size;
-        c->step = step;
+static int count_coarse(const coarse_surface *s, const double *zero, int digits, int all, coarse_count *out) {
+    float *steps;
+    *out = (coarse_count){.fewest = INFINITY};
+    if (!s->mesh->vertex_count || !may_be_coarse(s, zero, digits, all)) return 0;
+    int status = carry_steps(s, zero, digits, &steps);
+    for (uint64_t v = 0; v < s->mesh->vertex_count && !status; v++) {
+        if (!(steps[v] > 0) || steps[v] >= STEPS_FINE) continue;
+        out->coarse++;
+        out->least += steps[v] < COARSE_STEPS_LEAST;
+        out->fewest = fmin(out->fewest, (double)steps[v]);
     }
-    c->coarse += (uint64_t)is_coarse;
-    c->least += (uint64_t)is_least;
-}
-
-static int count_coarse(const coarse_surface *s, numbers how, int all, coarse_count *out) {
-    float *sizes;
-    uint64_t v = 0;
-    *out = (coarse_count){0};
-    if (!may_be_coarse(s, how, all)) return 0;
-    int status = carry_sizes(s, &sizes);
-    for (int n = 0; n < s->engine->block_count && !status; n++) {
-        const mesh_part *part = &s->engine->parts[n];
-        double offset[3] = {0, 0, 0};
-        for (int axis = 0; axis < 3 && how.zero; axis++) offset[axis] = part->origin[axis] - how.zero[axis];
-        for (uint64_t end = v + part->vertex_count; v < end; v++)
-            add_vertex(out, s->mesh->positions + 3 * v, offset, sizes + 3 * v, how.digits);
-    }
-    free(sizes);
+    free(steps);
     return status;
 }
 
-int coarse_tell_mesh(const coarse_surface *s, int check, uint64_t *coarse_vertices) {
+int coarse_tell_mesh(const coarse_surface *s, int check, coarse_verdict *verdict) {
     coarse_count found;
-    *coarse_vertices = 0;
-    if (!s->mesh->vertex_count || (!notice_wanted() && !check)) return 0;
-    int status = count_coarse(s, (numbers){NULL, FLT_MANT_DIG}, check, &found);
-    *coarse_vertices = found.least;
+    *verdict = (coarse_verdict){0};
+    if (!notice_wanted() && !check) return 0;
+    int status = count_coarse(s, NULL, FLT_MANT_DIG, check, &found);
+    verdict->any = found.coarse;
+    verdict->vertices = found.least;
     if (!status && found.coarse)
-        notice("isovalue %s: at %" PRIu64 " of %" PRIu64
-               " vertices float32 is coarse: it has steps of %.2g where cells "
-               "are %.2g wide; parts that lie far from each other are finer from files of their own",
-               s->iso->text, found.coarse, s->mesh->vertex_count, found.step, found.size);
+        notice("isovalue %s: float32 is coarse at %" PRIu64 " of %" PRIu64
+               " vertices: cells are as thin as %.2g of its "
+               "steps there; parts of the input that lie far from its middle are finer in files of their own",
+               s->iso->text, found.coarse, s->mesh->vertex_count, found.fewest);
     return status;
 }
 
-int coarse_check_file(const coarse_surface *s, const double zero[3], int digits) {
-    coarse_count found;
-    for (int n = 0; n < s->engine->block_count && digits < DBL_MANT_DIG; n++) {
+/* Coordinates beyond float32, where the file has no other. */
+static int check_reach(const coarse_surface *s, const double *zero) {
+    for (int n = 0; n < s->engine->block_count; n++) {
+        const coordinate_numbers numbers = numbers_of(s, n, zero, FLT_MANT_DIG);
         cell_range cells;
-        double reach[3];
         if (!s->engine->parts[n].vertex_count) continue;
         cell_range_find(&s->blocks->blocks[n], 0, &cells);
-        find_reach(&cells, zero, reach);
         for (int axis = 0; axis < 3; axis++)
-            if (reach[axis] > FLT_MAX)
+            if (reach_of(&cells, &numbers, axis) > (double)FLT_MAX)
                 return fail(STATUS_USAGE,
                             "--origin-at: the surface is %.3g away from that point, beyond float32, which STL holds",
-                            reach[axis]);
+                            reach_of(&cells, &numbers, axis));
     }
-    if (!notice_wanted()) return 0;
-    int status = count_coarse(s, (numbers){zero, digits}, 0, &found);
-    if (status || !found.coarse) return status;
+    return 0;
+}
+
+int coarse_tell_file(const coarse_surface *s, const double *zero, int is_chosen, int digits, int check,
+                     coarse_verdict *verdict) {
     const double *origin = s->mesh->origin;
+    coarse_count found;
+    *verdict = (coarse_verdict){0};
+    int status = digits == FLT_MANT_DIG ? check_reach(s, zero) : 0;
+    if (status || (!notice_wanted() && !check)) return status;
+    status = count_coarse(s, zero, digits, check, &found);
+    verdict->any = found.coarse;
+    verdict->vertices = found.least;
+    if (status || !found.coarse) return status;
     if (engine_origins_differ(s->engine))
+        notice("isovalue %s: blocks lie so far from each other that cells are as thin as %.2g steps of the file's "
+               "numbers: shapes are lost; --blocks separate keeps them, without --origin-at or with that of one block",
+               s->iso->text, found.fewest);
+    else if (is_chosen)
         notice(
-            "isovalue %s: blocks lie so far from each other that the file's numbers have steps of %.2g where cells are "
-            "%.2g wide: shapes are lost; --blocks separate keeps them, without --origin-at or with that of one block",
-            s->iso->text, found.step, found.size);
+            "isovalue %s: --origin-at lies so far from the surface that cells are as thin as %.2g steps of the file's "
+            "numbers: shapes are lost; choose a point near %s,%s,%s",
+            s->iso->text, found.fewest, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
+            shortest_number(origin[2]).text);
     else
-        notice("isovalue %s: --origin-at lies so far from the surface that the file's numbers have steps of %.2g where "
-               "cells are %.2g wide: shapes are lost; choose a point near %s,%s,%s",
-               s->iso->text, found.step, found.size, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
+        notice("isovalue %s: the surface lies so far from zero that cells are as thin as %.2g steps of the file's "
+               "numbers: shapes are lost; --origin-at %s,%s,%s keeps them",
+               s->iso->text, found.fewest, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
                shortest_number(origin[2]).text);
     return 0;
 }

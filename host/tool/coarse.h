@@ -2,7 +2,7 @@
  * coarse.h - whether numbers are fine enough for the shapes that they describe
  *
  * Far from the point that coordinates count from, steps of floating-point numbers grow. Where a cell is only a few
- * steps wide, its part of the surface is a caricature, and nothing else shows it.
+ * steps thick, its part of the surface is a caricature, and nothing else shows it.
  */
 #ifndef COARSE_H
 #define COARSE_H
@@ -18,14 +18,21 @@ typedef struct coarse_surface {
     const typed_isovalue *iso;
 } coarse_surface;
 
-/* A notice where float32 is coarse for the mesh itself: parts of one block lie far from each other. With `check`,
- * *coarse_vertices receives how many vertices lie where a cell is fewer than COARSE_STEPS_LEAST steps wide along some
- * axis. Returns 0 or STATUS_FAILED. */
-enum { COARSE_STEPS_LEAST = 8 };
-int coarse_tell_mesh(const coarse_surface *s, int check, uint64_t *coarse_vertices);
+enum { COARSE_STEPS_LEAST = 8 }; /* across a cell: with fewer the shape is lost */
 
-/* A notice where numbers of so many binary digits, 24 or 53, are coarse for coordinates that count from this point in
- * the file. STATUS_USAGE where coordinates are beyond float32 and the file has no other. */
-int coarse_check_file(const coarse_surface *s, const double zero[3], int digits);
+typedef struct coarse_verdict {
+    uint64_t any;      /* vertices where it shows */
+    uint64_t vertices; /* where cells are thinner than COARSE_STEPS_LEAST steps */
+} coarse_verdict;
+
+/* A notice where float32 is coarse for the mesh itself; with `check` every cell is looked at, also where notices are
+ * not wanted. Returns 0 or STATUS_FAILED. */
+int coarse_tell_mesh(const coarse_surface *s, int check, coarse_verdict *verdict);
+
+/* The same of numbers of so many binary digits, 24 or 53, that a file's coordinates are, which count from zero (NULL:
+ * from each block's own origin); is_chosen: by --origin-at. STATUS_USAGE where coordinates are beyond float32 and the
+ * file has no other. */
+int coarse_tell_file(const coarse_surface *s, const double *zero, int is_chosen, int digits, int check,
+                     coarse_verdict *verdict);
 
 #endif

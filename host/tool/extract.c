@@ -202,9 +202,20 @@ static int write_surface(job *j, const coarse_surface *source, const shown_surfa
     double begin = now_ms();
     int status = carry_to_mesh(&j->carried, &j->main, source->how, source->mesh);
     if (!status) status = surface_carry(shown, &j->carried);
-    if (!status) status = surface_files_write(j->o, source, shown, j->carried.fields, j->carried.count, &s->path);
+    if (!status) status = surface_files_write(j->o, s->iso, shown, j->carried.fields, j->carried.count, &s->path);
     j->report.write_ms += now_ms() - begin;
     return status;
+}
+
+/* Whether float32 is fine enough for the mesh, and the file's numbers for what is written. */
+static int tell_numbers(const job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
+    coarse_verdict mesh, file;
+    int status = coarse_tell_mesh(source, j->o->check, &mesh);
+    if (!status) status = surface_files_tell_numbers(j->o, source, shown, &file);
+    if (status) return status;
+    s->is_coarse = mesh.any > 0;
+    s->coarse_vertices = mesh.vertices > file.vertices ? mesh.vertices : file.vertices;
+    return 0;
 }
 
 /* The surface that is made of the engine's mesh: told, checked, written. */
@@ -216,8 +227,8 @@ static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_d
     if (status) return status;
     describe_mesh(j, shown, s);
     status = surface_tell_empty(&j->data, &j->field, s);
-    if (!status) status = coarse_tell_mesh(&source, j->o->check, &s->coarse_vertices);
-    if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, &shown->mesh, s);
+    if (!status) status = tell_numbers(j, &source, shown, s);
+    if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
     surface_tell_dropped(shown, s);
     if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);
     if (status || (status = progress_status())) return status;

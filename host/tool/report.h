@@ -31,7 +31,8 @@ typedef struct surface_report {
     uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
     int has_topology;
     mesh_topology topology;
-    uint64_t coarse_vertices; /* with has_topology: where cells are only few steps of float32 wide (coarse.h) */
+    int is_coarse;            /* float32 is, for the mesh (coarse.h) */
+    uint64_t coarse_vertices; /* with --check: where cells are only few steps of numbers thick */
     int has_verdict;
     int verified;
     char *path; /* of the file, or files, written, or NULL; from malloc */

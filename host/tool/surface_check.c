@@ -56,8 +56,8 @@ int surface_check(const block_list *blocks, const tc_mesh_data *m, surface_repor
                 (unsigned long long)t->invalid_triangles);
     if (!s->coarse_vertices) return 0;
     *good = 0;
-    message("isovalue %s: check failed: %llu vertices lie where float32 has fewer than %d steps across a cell: shapes "
-            "are lost there; contour parts that lie far from each other from files of their own",
+    message("isovalue %s: check failed: %llu vertices lie where cells are thinner than %d steps of the numbers that "
+            "coordinates are: shapes are lost there",
             s->iso->text, (unsigned long long)s->coarse_vertices, COARSE_STEPS_LEAST);
     return 0;
 }

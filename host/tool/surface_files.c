@@ -138,37 +138,44 @@ static char *describe_files(const options *o, const typed_isovalue *iso, int blo
     return text;
 }
 
-/* Tells which point the file's coordinates count from where that is no matter of course, and where they are coarse. */
-static int tell_origin(const options *o, const coarse_surface *source, const shown_surface *shown,
-                       const mesh_write_options *how) {
-    const double *origin = shown->mesh.origin;
-    const int digits = mesh_write_has_doubles(o->output, how) ? DBL_MANT_DIG : FLT_MANT_DIG;
-    if (how->origin_at) return coarse_check_file(source, how->origin_at, digits);
-    if (!mesh_write_is_relative(o->output, &shown->mesh, how)) return 0;
-    if (o->separate_blocks && shown->part_count > 1) {
-        notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to each block's "
-               "origin (--origin-at chooses one point; PLY, VTP and OBJ hold full coordinates)");
-        return 0;
-    }
-    if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
-        notice("STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to %s,%s,%s "
-               "(--origin-at chooses the point; PLY, VTP and OBJ hold full coordinates)",
-               shortest_number(origin[0]).text, shortest_number(origin[1]).text, shortest_number(origin[2]).text);
-    return engine_origins_differ(source->engine) ? coarse_check_file(source, origin, digits) : 0;
+static mesh_write_options write_options(const options *o, const shown_surface *shown) {
+    return (mesh_write_options){.format = o->format,
+                                .soup = o->soup,
+                                .parts = shown->parts,
+                                .part_count = shown->part_count,
+                                .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
 }
 
-int surface_files_write(const options *o, const coarse_surface *source, const shown_surface *shown,
+/* STL holds float32 alone: its coordinates count from the mesh's origin. */
+static void tell_relative(const double *origin, int is_own) {
+    static const char why[] = "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to";
+    static const char what[] = "PLY, VTP and OBJ hold full coordinates";
+    if (is_own)
+        notice("%s each block's origin (--origin-at chooses one point; %s)", why, what);
+    else if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
+        notice("%s %s,%s,%s (--origin-at chooses the point; %s)", why, shortest_number(origin[0]).text,
+               shortest_number(origin[1]).text, shortest_number(origin[2]).text, what);
+}
+
+int surface_files_tell_numbers(const options *o, const coarse_surface *source, const shown_surface *shown,
+                               coarse_verdict *verdict) {
+    static const double world[3] = {0, 0, 0};
+    *verdict = (coarse_verdict){0};
+    if (!o->output) return 0;
+    const mesh_write_options how = write_options(o, shown);
+    const int has_doubles = mesh_write_has_doubles(o->output, &how), digits = has_doubles ? DBL_MANT_DIG : FLT_MANT_DIG;
+    const double *zero = how.origin_at ? how.origin_at : has_doubles ? world : shown->mesh.origin;
+    const int is_own = o->separate_blocks && shown->part_count > 1 && !how.origin_at && !has_doubles;
+    if (mesh_write_is_relative(o->output, &shown->mesh, &how)) tell_relative(shown->mesh.origin, is_own);
+    if (is_own || (!has_doubles && !how.origin_at && !engine_origins_differ(source->engine))) return 0; /* the mesh's */
+    return coarse_tell_file(source, zero, how.origin_at != NULL, digits, o->check, verdict);
+}
+
+int surface_files_write(const options *o, const typed_isovalue *iso, const shown_surface *shown,
                         const mesh_field *fields, int field_count, char **written) {
-    const typed_isovalue *iso = source->iso;
-    mesh_write_options how = {.format = o->format,
-                              .soup = o->soup,
-                              .fields = fields,
-                              .field_count = field_count,
-                              .parts = shown->parts,
-                              .part_count = shown->part_count,
-                              .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
-    int status = tell_origin(o, source, shown, &how);
-    if (status) return status;
+    mesh_write_options how = write_options(o, shown);
+    how.fields = fields;
+    how.field_count = field_count;
     *written = o->separate_blocks ? describe_files(o, iso, shown->part_count) : file_name(o, iso, ALL_BLOCKS);
     if (!*written) return STATUS_FAILED;
     if (!o->separate_blocks) return mesh_write(*written, &shown->mesh, &how);

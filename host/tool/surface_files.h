@@ -12,9 +12,13 @@
 /* STATUS_USAGE where -o, --format, --blocks and --carry do not fit together, or would overwrite an input. */
 int surface_files_check(const options *o);
 
-/* Writes the surface of all blocks, made from source; fields may be NULL. *written, from malloc, names the files for
- * people. */
-int surface_files_write(const options *o, const coarse_surface *source, const shown_surface *shown,
+/* Tells which point the file's coordinates count from where that is no matter of course, and where its numbers are
+ * coarse (coarse.h). The surface is made from source. */
+int surface_files_tell_numbers(const options *o, const coarse_surface *source, const shown_surface *shown,
+                               coarse_verdict *verdict);
+
+/* Writes the surface of all blocks; fields may be NULL. *written, from malloc, names the files for people. */
+int surface_files_write(const options *o, const typed_isovalue *iso, const shown_surface *shown,
                         const mesh_field *fields, int field_count, char **written);
 
 #endif

@@ -17,8 +17,8 @@ void surface_tell_isovalue(const typed_isovalue *iso);
  * STATUS_FAILED. */
 int surface_tell_empty(const dataset *d, const scalar *field, const surface_report *s);
 
-/* More than a fifth of the triangles without area, and what to do; vertices that coincide where no sample equals the
- * isovalue, as float32 does not tell their coordinates apart. s has its summary. Returns 0 or STATUS_FAILED. */
-int surface_tell_degenerate(const dataset *d, const scalar *field, const tc_mesh_data *m, const surface_report *s);
+/* More than a fifth of the triangles without area, why, and what to do; not where coordinates are coarse, which is told
+ * already. s has its summary. Returns 0 or STATUS_FAILED. */
+int surface_tell_degenerate(const dataset *d, const scalar *field, const surface_report *s);
 
 #endif

@@ -102,6 +102,13 @@ static void uniform_extent(const double matrix[3][4], const tc_grid *grid, exten
     }
 }
 
+/* So far away that even a double has no room for the grid's size: the origin is where the first index lies. */
+static void uniform_origin(const double matrix[3][4], const extent *e, double origin[3]) {
+    origin_choose(e, origin);
+    for (int r = 0; r < 3; r++)
+        if (e->cell[r] > 0 && e->cell[r] < fabs(matrix[r][3]) * 0x1p-48) origin[r] = matrix[r][3];
+}
+
 /* Indices count from an even number near the grid's where these are large, as float32 holds i + t, too: cubes keep
  * their parity. */
 static void first_move(double matrix[3][4], tc_grid *grid) {
@@ -155,7 +162,7 @@ static tc_status matrix_take(const double given[3][4], const double *origin, tc_
     if (origin)
         for (int axis = 0; axis < 3; axis++) grid->origin[axis] = origin[axis];
     else
-        origin_choose(&e, grid->origin);
+        uniform_origin((const double(*)[4])matrix, &e, grid->origin);
     tc_status status = matrix_round((const double(*)[4])matrix, grid);
     if (status) return status;
     for (int r = 0; r < 3; r++)
