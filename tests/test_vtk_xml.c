@@ -339,7 +339,7 @@ static void test_bits(void) {
                 values[encoding == AS_TEXT ? n : n / 8] += n * n % 7 < 3 ? encoding == AS_TEXT ? 1 : 128 >> n % 8 : 0;
             array_add(&w, TC_U8, "b", components, values, (uint64_t)(encoding == AS_TEXT ? count : (count + 7) / 8));
             bytes_text(&w.text, "</PointData></Piece></ImageData>\n");
-            char *type = strstr((char *)w.text.data, "UInt8");
+            char *type = memmem(w.text.data, w.text.size, "UInt8", 5);
             memcpy(type, "Bit\" ", 5);
             type[5] = ' ';
             bytes file = vtk_xml_finish(&w);

@@ -70,7 +70,8 @@ def run(command, log, **how):
 
 
 def within(chroot, command, log):
-    run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", IN_CHROOT, "sh", chroot, command], log)
+    run(["env", "-i", "HOME=/root", "LANG=C.UTF-8", "PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
+         "unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", IN_CHROOT, "sh", chroot, command], log)
 
 
 def chroot_make(suite, chroot, log):

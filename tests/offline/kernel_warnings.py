@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""warnings.py quick|long TEXTS - no compiler has anything to say of the kernels, whatever the processor
+"""kernel_warnings.py quick|long TEXTS - no compiler has anything to say of the kernels, whatever the processor
 
 What a driver's compiler thinks of kernels it may print where users see it. So every program of both texts (TEXTS is
 kernel_texts, which writes them) is compiled by every clang there is, with -Wall, for processors with and without
