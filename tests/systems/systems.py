@@ -70,7 +70,8 @@ def run(command, log, **how):
 
 
 def within(chroot, command, log):
-    run(["env", "-i", "HOME=/root", "LANG=C.UTF-8", "PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
+    ours = [word for name in os.environ if name.startswith(("TETRACUBES_", "TEST_")) for word in ("-u", name)]
+    run(["env", *ours,
          "unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", IN_CHROOT, "sh", chroot, command], log)
 
 
