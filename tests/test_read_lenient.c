@@ -59,11 +59,17 @@ static void test_nrrd_headers(void) {
         {"NRRD0005\ntype:uchar\ndimension:3\nsizes:5 4 3\nencoding:raw\nkinds: x-axis ??? space\nmy: own\n\n",
          NULL,
          {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+        {NRRD_U8 "space: RAS\nspace directions: none none none\n\n",
+         "none of its space directions is known",
+         {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+        {NRRD_U8 "space: RAS\nspace directions: (nan,nan,nan) none none\nspace origin: (7,8,9)\n\n",
+         "spacing is taken for 1",
+         {1, 0, 0, 7, 0, 1, 0, 8, 0, 0, 1, 9}},
+        {NRRD_U8 "space directions: none none none\nspacings: 2 3 4\n\n", NULL, {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0}},
     };
     check_headers("a.nrrd", cases, sizeof cases / sizeof *cases);
 }
 
-/* Axes that are none of space, told by NaN alone. */
 /* What stands twice is taken as it stands last, with a notice. */
 static void test_repeated(void) {
     static const header_case nrrd[] = {
@@ -81,6 +87,7 @@ static void test_repeated(void) {
     check_headers("a.mha", meta, sizeof meta / sizeof *meta);
 }
 
+/* Axes that are none of space, told by NaN alone. */
 static void test_nrrd_outside(void) {
     static const struct {
         const char *fields;

@@ -316,6 +316,7 @@ int nrrd_read(const read_request *request, const mapping *file, volume *out) {
     if (*h.repeated)
         volume_notice(out, "its header has '%s' twice: the %s is taken", h.repeated,
                       field_of(h.repeated) == FIELD_DIMENSION ? "first" : "last");
+    nrrd_settle_directions(&h, out);
     nrrd_axes(&h, &stored);
     h.from.axes = &stored;
     h.from.start = text.position;

@@ -35,6 +35,9 @@ typedef struct nrrd_header {
  * with time the fourth number is dropped, and a direction along time alone is as "none". */
 int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, double (*vectors)[3], int count);
 
+/* Directions of which none is known are as none given, with a notice. */
+void nrrd_settle_directions(nrrd_header *h, volume *out);
+
 /* Which axes are of space, components and frames. */
 void nrrd_axes(const nrrd_header *h, axes *out);
 
