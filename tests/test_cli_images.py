@@ -130,6 +130,18 @@ class Placement(ImageCase):
         self.refuses(4, "info", self.write_scalars("a.nrrd", "axis mins: 1 inf 1\n"), says="--origin")
 
 
+    def test_no_direction(self):
+        values = [float(x) for x, y, z in lattice(DIMS)]
+        inputs = [self.write_bytes("a.mha", "NDims = 3\nDimSize = 5 4 3\nTransformMatrix = 1 0 0 0 0 0 0 0 1\n"
+                                   "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n", struct.pack("<60f", *values))]
+        if "VTK XML" in self.expect(0, "--version").stdout:
+            text = vti_text(DIMS, [("s", "f32", values)])
+            inputs.append(self.write("a.vti", text.replace("<ImageData ", '<ImageData Direction="1 0 0 0 0 0 0 0 1" ')))
+        for path in inputs:
+            self.refuses(4, "info", path, says="(TransformMatrix|Direction) has only zeros for axis 2")
+            self.expect(0, "info", path, "--spacing", "1,1,1")
+
+
 class Magnitude(ImageCase):
     def check_range(self, path, values, kind, *more):
         info = self.report("info", path, "--component", "magnitude", *more)

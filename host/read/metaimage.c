@@ -312,9 +312,21 @@ static int place_data(meta_header *h, uint64_t header_end) {
     return 0;
 }
 
+/* An axis whose row of TransformMatrix is zeros, from 1; 0 where there is none. */
+static int find_axis_without_direction(const meta_header *h, int count) {
+    for (int axis = 0; axis < count && h->direction.count; axis++) {
+        int is_zero = 1;
+        for (int r = 0; r < count; r++) is_zero &= h->direction.values[axis * h->dimension + r] == 0;
+        if (is_zero) return axis + 1;
+    }
+    return 0;
+}
+
 static int fill_matrix(const meta_header *h, double matrix[3][4]) {
     int n = h->dimension < SPATIAL_AXES ? h->dimension : SPATIAL_AXES;
     const number_list *distance = h->spacing.count ? &h->spacing : &h->element_size;
+    const int lost = h->request->has_spacing ? 0 : find_axis_without_direction(h, n);
+    if (lost) return world_no_direction(h->path, "TransformMatrix", lost);
     for (int r = 0; r < SPATIAL_AXES; r++) matrix[r][r] = 1;
     for (int axis = 0; axis < n; axis++) {
         double spacing = distance->count ? distance->values[axis] : 1;

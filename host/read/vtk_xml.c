@@ -187,9 +187,12 @@ static const xml_array *find_array(const xml_reader *r, const xml_piece *piece, 
 
 static int set_matrix(const xml_reader *r, dataset_block *block) {
     const xml_document *doc = &r->doc;
+    const double *d = doc->direction;
     double matrix[3][4];
+    for (int a = 0; a < 3 && !r->request->has_spacing; a++)
+        if (d[a] == 0 && d[3 + a] == 0 && d[6 + a] == 0) return world_no_direction(doc->path, "Direction", a + 1);
     for (int row = 0; row < 3; row++) {
-        for (int a = 0; a < 3; a++) matrix[row][a] = doc->direction[3 * row + a] * doc->spacing[a];
+        for (int a = 0; a < 3; a++) matrix[row][a] = d[3 * row + a] * doc->spacing[a];
         matrix[row][3] = doc->origin[row];
     }
     int status = world_place(r->request, doc->path, matrix);

@@ -26,6 +26,12 @@ int world_spans(double matrix[3][4]) {
     return is_finite && spanned != 0;
 }
 
+int world_no_direction(const char *path, const char *name, int axis) {
+    return fail(STATUS_INPUT,
+                "%s: its %s has only zeros for axis %d, which then has no direction: correct it, or give --spacing",
+                path, name, axis);
+}
+
 int world_place(const read_request *request, const char *path, double matrix[3][4]) {
     for (int a = 0; a < 3 && request->has_spacing; a++) set_spacing(matrix, a, request->spacing[a]);
     for (int r = 0; r < 3 && request->has_origin; r++) matrix[r][3] = request->origin[r];

@@ -12,4 +12,7 @@ int world_place(const read_request *request, const char *path, double matrix[3][
 /* Whether the matrix is finite and invertible. */
 int world_spans(double matrix[3][4]);
 
+/* STATUS_INPUT: what has that name in the file has no direction for an axis, counted from 1. */
+int world_no_direction(const char *path, const char *name, int axis);
+
 #endif
