@@ -137,9 +137,9 @@ class Usage(Case):
         self.refuses(2, "extract", "x.nrrd", "--iso", says="needs a value")
         self.refuses(2, "extract", "--iso", "1", says="input")
         self.refuses(2, "extract", "a.nrrd", "b.nrrd", "--iso", "1", says="b.nrrd")
-        for bad in ("abc", "nan", "inf", "-inf", "1e999", "1,,2", "1,", "", "1x", "1 2", " 1"):
+        for bad in ("abc", "nan", "inf", "-inf", "1e999", "1,,2", "1,", "", "1x", "1 2", " ", "1, ,2"):
             self.refuses(2, "extract", "x.nrrd", "--iso", bad, says="finite number")
-        for bad in ("1,2", "1,2,3,4", "0,2,2", "-1,2,2", "2,2,x", "2;2;2", "99999999999999999999,2,2", ""):
+        for bad in ("1,2", "1,2,3,4", "0,2,2", "-1,2,2", "2,2,x", "2;2;2", "2 2,2", "2,2 2", "99999999999999999999,2,2", ""):
             self.refuses(2, "extract", "x.raw", "--iso", "1", "--type", "u8", "--dims", bad, says="--dims")
         for bad in ("1,2", "0,1,1", "1,-1,1", "1,1,nan", "1,1,1x"):
             self.refuses(2, "extract", "x.raw", "--iso", "1", "--spacing", bad, says="--spacing")
@@ -154,6 +154,19 @@ class Usage(Case):
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--nodata", "none", says="--nodata")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--component", "-1", says="--component")
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--json=yes", says="no value")
+
+    def test_blanks_in_lists(self):
+        raw = self.generate("sphere", "a.raw", "8,9,10", "f32")
+        wanted = self.report("extract", raw, "--type", "f32", "--dims", "8,9,10", "--spacing", "1,2,3", "--iso", "100,150",
+                             "--engine", "reference")
+        spaced = self.report("extract", raw, "--type", "f32", "--dims", "8, 9 ,10 ", "--spacing", " 1,\t2, 3", "--iso",
+                             " 100, 150 ", "--engine", "reference")
+        for report in (wanted, spaced):
+            self.assertEqual([surface["iso"] for surface in report["surfaces"]], [100, 150])
+        self.assertEqual(*([surface["hash"] for surface in report["surfaces"]] for report in (wanted, spaced)))
+        self.expect(0, "extract", raw, "--type", "f32", "--dims", "8,9,10", "--iso", "100, 150", "--engine", "reference",
+                    "-o", self.path("a%.ply"))
+        self.assertEqual(self.files(), ["a.raw", "a100.ply", "a150.ply"])
 
     def test_combinations(self):
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--verify", "--engine", "reference", says="--verify")
@@ -244,9 +257,10 @@ class Files(Case):
         self.refuses(1, *extract, "-o", self.path("full.ply"), says="full.ply")
         self.refuses(1, "generate", "sphere", "--dims", "64,64,64", "--type", "u8", "-o", self.path("full.nrrd"),
                      says="full.nrrd")
-        for arguments in (["--help"], extract + ["--json"], ["info", volume]):
+        for arguments in (["--help"], extract + ["--json"], ["info", volume], ["info", volume, "--json"]):
             with open("/dev/full", "w") as full:
-                self.refuses(1, *arguments, stdout=full, says="standard output")
+                told = self.refuses(1, *arguments, stdout=full, says="standard output: No space").stderr
+                self.assertEqual(told.count("tetracubes: "), 1, told)
 
     def test_generated_samples(self):
         for kind, size in SIZES.items():

@@ -256,10 +256,12 @@ int main(int argc, char **argv) {
     int status = dispatch(argc, argv);
     int is_written = fflush(stdout) == 0 && !ferror(stdout), error = errno;
     streams_restore();
+    const int is_told = status && streams_has_failed();
     if (status) message("%s", failure_text());
-    if (!is_written) {
-        message("could not write the results to standard output: %s", strerror(error));
-        if (!status) status = STATUS_FAILED;
+    if (!is_written && !is_told) {
+        const int lost = streams_fail(error);
+        message("%s", failure_text());
+        if (!status) status = lost;
     }
     if (driver_failed) _exit(status); /* a driver may crash or hang once more where it tidies up */
     return status;

@@ -165,6 +165,8 @@ static const option table[] = {
 
 /* ---------------------------------------------------------------------------------------------------------- values */
 
+static const char *skip_blanks(const char *at) { return at + strspn(at, " \t"); }
+
 /* A finite number at *at, *at then behind it; 0 where there is none. Blanks are no part of a number. */
 static int take_real(const char **at, double *value) {
     if (!**at || isspace((unsigned char)**at)) return 0;
@@ -184,8 +186,11 @@ static int take_whole(const char **at, uint64_t *value) {
     return errno == 0;
 }
 
+/* Blanks around the number are left out. */
 static int append_isovalue(const char *text, size_t length, options *o) {
     typed_isovalue fresh = {0};
+    for (; length && strchr(" \t", *text); length--) text++;
+    while (length && strchr(" \t", text[length - 1])) length--;
     if (length >= sizeof fresh.text)
         return fail(STATUS_USAGE, "--iso: '%.20s...' is longer than a number needs to be", text);
     memcpy(fresh.text, text, length);
@@ -212,7 +217,9 @@ static int parse_isovalues(const char *text, options *o) {
 static int parse_reals(const option *spec, const char *text, double out[3]) {
     const char *at = text;
     for (int axis = 0; axis < 3; axis++) {
+        at = skip_blanks(at);
         int good = take_real(&at, &out[axis]) && (spec->kind != VALUE_SPACING || out[axis] > 0.0);
+        at = skip_blanks(at);
         if (!good || *at != (axis < 2 ? ',' : '\0'))
             return fail(STATUS_USAGE, "%s: '%s' is not three finite numbers%s, as in 1,1,2.5", spec->name, text,
                         spec->kind == VALUE_SPACING ? " above 0" : "");
@@ -224,8 +231,11 @@ static int parse_reals(const option *spec, const char *text, double out[3]) {
 static int parse_dims(const option *spec, const char *text, int64_t out[3]) {
     const char *at = text;
     for (int axis = 0; axis < 3; axis++) {
-        uint64_t count;
-        if (!take_whole(&at, &count) || count == 0 || count > INT64_MAX || *at != (axis < 2 ? ',' : '\0'))
+        uint64_t count = 0;
+        at = skip_blanks(at);
+        int good = take_whole(&at, &count) && count > 0 && count <= INT64_MAX;
+        at = skip_blanks(at);
+        if (!good || *at != (axis < 2 ? ',' : '\0'))
             return fail(STATUS_USAGE, "%s: '%s' is not three whole numbers above 0, as in 256,256,128", spec->name,
                         text);
         out[axis] = (int64_t)count;

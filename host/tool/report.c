@@ -5,7 +5,9 @@
 #include "failure.h"
 #include "notice.h"
 #include "output.h"
+#include "streams.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdatomic.h>
@@ -69,8 +71,10 @@ int report_print(json_t *object, int digits) {
     digits = digits_of(object, digits);
     int failed =
         !object || lacks_memory || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
+    const int error = errno;
     json_decref(object);
-    if (failed) return fail(STATUS_FAILED, "could not print the report: out of memory, or standard output is full");
+    if (failed && ferror(stdout)) return streams_fail(error);
+    if (failed) return fail(STATUS_FAILED, "could not print the report: out of memory");
     putchar('\n');
     return 0;
 }

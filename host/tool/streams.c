@@ -1,8 +1,11 @@
 #include "streams.h"
 
+#include "exit_status.h"
+#include "failure.h"
 #include "output.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
@@ -43,3 +46,9 @@ void streams_restore(void) {
     if (original.null) fclose(original.null);
     original.null = NULL;
 }
+
+#define NOT_WRITTEN "could not write the results to standard output: "
+
+int streams_fail(int error) { return fail(STATUS_FAILED, NOT_WRITTEN "%s", strerror(error)); }
+
+int streams_has_failed(void) { return strncmp(failure_text(), NOT_WRITTEN, strlen(NOT_WRITTEN)) == 0; }

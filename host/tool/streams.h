@@ -14,4 +14,10 @@ void streams_choose(const char *output);
 /* Sets them back: failures are told in any case, as the file is then not whole. */
 void streams_restore(void);
 
+/* STATUS_FAILED with the text that standard output does not take the results, for this errno. */
+int streams_fail(int error);
+
+/* Whether that was the last failure. */
+int streams_has_failed(void);
+
 #endif
