@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
+#include "sample_types.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -60,6 +61,9 @@ static int take_dims(const char *text, bench_options *o) {
     return 0;
 }
 
+#define TYPE_BEHIND_BLANK(type, name, ...) " " #name
+#define TYPE_BEHIND_COMMA(type, name, ...) ", " #name
+
 static int take_type(const char *text, bench_options *o) {
     if (o->type_count == LIST_MAX) return list_full("--type");
     for (int type = 0; tc_type_name((tc_type)type); type++)
@@ -67,7 +71,7 @@ static int take_type(const char *text, bench_options *o) {
             o->types[o->type_count++] = (tc_type)type;
             return 0;
         }
-    return fail(STATUS_USAGE, "--type: '%s' is none of u8, i8, u16, i16, u32, i32, f32, f64", text);
+    return fail(STATUS_USAGE, "--type: '%s' is none of %s", text, &SAMPLE_TYPES(TYPE_BEHIND_COMMA)[2]);
 }
 
 static int parse_isovalue(const char *name, const char *text, double *value) {
@@ -144,7 +148,7 @@ static const option table[] = {
     {"--dims", "N", take_dims,
      "N samples along each axis, or NX,NY,NZ; default 64, 128, 256, 512 *"},
     {"--type", "T", take_type,
-     "u8 i8 u16 i16 u32 i32 f32 f64; default u8, then f32 *"},
+     "one of" SAMPLE_TYPES(TYPE_BEHIND_BLANK) "; default u8, then f32 *"},
     {"--iso", "V", take_iso,
      "isovalue; default 127.5; needed with --input"},
     {"--second", "V", take_second,

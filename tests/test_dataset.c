@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "expect.h"
 #include "failure.h"
+#include "sample_types.h"
 #include "folder.h"
 #include "random.h"
 #include "select.h"

@@ -14,6 +14,8 @@
  */
 #include "field.h"
 
+#include "sample_types.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -203,31 +205,18 @@ const field *field_find(const char *name) {
 
 static double coordinate(int64_t i, int64_t n) { return n > 1 ? 2.0 * (double)i / (double)(n - 1) - 1.0 : 0.0; }
 
-/* Conversion in C truncates toward zero; what the type cannot hold saturates first. */
-#define STORE_INTEGER(type, low, high)                                                                                 \
-    for (int i = 0; i < count; i++)                                                                                    \
-    ((type *)out)[i] = (type)(row[i] < (low) ? (low) : row[i] > (high) ? (high) : row[i])
-
 static void store(const double *row, int count, tc_type type, void *out) {
     switch (type) {
-    case TC_U8:
-        STORE_INTEGER(uint8_t, 0.0, 255.0);
+/* Conversion in C truncates toward zero; what the type cannot hold saturates first. */
+#define STORE_CASE(type, name, c_type, least, most, ...)                                                               \
+    case type:                                                                                                         \
+        for (int i = 0; i < count; i++)                                                                                \
+            ((c_type *)out)[i] = (c_type)(row[i] < (double)(least)  ? (double)(least)                                  \
+                                          : row[i] > (double)(most) ? (double)(most)                                   \
+                                                                    : row[i]);                                         \
         break;
-    case TC_I8:
-        STORE_INTEGER(int8_t, -128.0, 127.0);
-        break;
-    case TC_U16:
-        STORE_INTEGER(uint16_t, 0.0, 65535.0);
-        break;
-    case TC_I16:
-        STORE_INTEGER(int16_t, -32768.0, 32767.0);
-        break;
-    case TC_U32:
-        STORE_INTEGER(uint32_t, 0.0, 4294967295.0);
-        break;
-    case TC_I32:
-        STORE_INTEGER(int32_t, -2147483648.0, 2147483647.0);
-        break;
+        INTEGER_TYPES(STORE_CASE)
+#undef STORE_CASE
     case TC_F32:
         for (int i = 0; i < count; i++) ((float *)out)[i] = (float)row[i];
         break;
@@ -237,15 +226,10 @@ static void store(const double *row, int count, tc_type type, void *out) {
     }
 }
 
-static size_t type_bytes(tc_type type) {
-    static const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return bytes[type];
-}
-
 void field_sample(const field *f, const int64_t dims[3], tc_type type, uint64_t seed, int64_t z0, int64_t z1,
                   void *samples) {
     const recipe *make = &recipes[f - fields];
-    const size_t bytes = type_bytes(type);
+    const size_t bytes = sample_bytes(type);
     block b = {.seed = seed};
     double row[BLOCK];
     for (int64_t x0 = 0; x0 < dims[0]; x0 += BLOCK) {

@@ -5,6 +5,7 @@
 
 #include "failure.h"
 #include "grids.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,18 +47,12 @@ static uint64_t integer_sample(const trial_volume *v, uint64_t n) {
 static void sample_put(trial_volume *v, uint64_t n) {
     bool is_gap = v->missing && n % GAP_IN == 0;
     switch (v->type) {
-    case TC_U8:
-    case TC_I8:
-        ((uint8_t *)v->samples)[n] = (uint8_t)integer_sample(v, n);
+#define PUT_CASE(type, name, c_type, ...)                                                                              \
+    case type:                                                                                                         \
+        ((c_type *)v->samples)[n] = (c_type)integer_sample(v, n);                                                      \
         break;
-    case TC_U16:
-    case TC_I16:
-        ((uint16_t *)v->samples)[n] = (uint16_t)integer_sample(v, n);
-        break;
-    case TC_U32:
-    case TC_I32:
-        ((uint32_t *)v->samples)[n] = (uint32_t)integer_sample(v, n);
-        break;
+        INTEGER_TYPES(PUT_CASE)
+#undef PUT_CASE
     case TC_F32:
         ((float *)v->samples)[n] = (float)(is_gap ? gap(n) : real_sample(v, n));
         break;
@@ -67,10 +62,20 @@ static void sample_put(trial_volume *v, uint64_t n) {
     }
 }
 
+/* The middle of an integer's range, where its sign changes; of floating point a subnormal number. */
 static double isovalue_of(tc_type type) {
-    static const double isovalues[] = {[TC_U8] = 128,         [TC_I8] = 0,  [TC_U16] = 32768,    [TC_I16] = 0,
-                                       [TC_U32] = 2147483648, [TC_I32] = 0, [TC_F32] = 0x1p-140, [TC_F64] = 0x1p-1040};
-    return isovalues[type];
+    switch (type) {
+#define MIDDLE_CASE(type, name, c_type, least, most, ...)                                                              \
+    case type:                                                                                                         \
+        return floor((double)(least) / 2 + (double)(most) / 2) + 1;
+        INTEGER_TYPES(MIDDLE_CASE)
+#undef MIDDLE_CASE
+    case TC_F32:
+        return 0x1p-140;
+    case TC_F64:
+        return 0x1p-1040;
+    }
+    return 0;
 }
 
 /* Cells of about unit size, none alike; the grid is mirrored where left-handed is. */
@@ -101,7 +106,7 @@ tc_status trial_volume_make(trial_volume *v) {
     v->options.samples = v->samples;
     v->options.dims[0] = NX, v->options.dims[1] = NY, v->options.dims[2] = NZ;
     v->options.has_nodata = v->missing;
-    v->options.nodata = v->type == TC_F32 || v->type == TC_F64 ? 0.0 : v->isovalue + 3;
+    v->options.nodata = type_is_real(v->type) ? 0.0 : v->isovalue + 3;
     for (int n = 0; n < 12; n++) v->options.matrix[n / 4][n % 4] = sheared[n / 4][n % 4];
     for (uint64_t n = 0; n < SAMPLES; n++) sample_put(v, n);
     coordinates_make(v);

@@ -3,33 +3,11 @@
 #include "cell_types.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "layout.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-double value_at(tc_type type, const void *values, uint64_t n) {
-    switch (type) {
-    case TC_U8:
-        return ((const uint8_t *)values)[n];
-    case TC_I8:
-        return ((const int8_t *)values)[n];
-    case TC_U16:
-        return ((const uint16_t *)values)[n];
-    case TC_I16:
-        return ((const int16_t *)values)[n];
-    case TC_U32:
-        return ((const uint32_t *)values)[n];
-    case TC_I32:
-        return ((const int32_t *)values)[n];
-    case TC_F32:
-        return (double)((const float *)values)[n];
-    case TC_F64:
-        return ((const double *)values)[n];
-    }
-    return NAN;
-}
 
 /* Sums at the points while cells are gone through. */
 typedef struct sums {
@@ -99,16 +77,15 @@ static void divide(const sums *s, dataset_field *out, void *values) {
 
 int average_to_points(dataset *d, const dataset_block *b, const uint8_t *blanked_cells, const dataset_field *of_cells,
                       dataset_field *out) {
-    int is_wide = of_cells->type == TC_U32 || of_cells->type == TC_I32 || of_cells->type == TC_F64;
     sums s = {.b = b, .blanked_cells = blanked_cells, .of_cells = of_cells};
     uint64_t count;
     *out = (dataset_field){.name = of_cells->name, .components = of_cells->components};
-    out->type = is_wide ? TC_F64 : TC_F32;
+    out->type = type_is_wide(of_cells->type) ? TC_F64 : TC_F32;
     if (__builtin_mul_overflow((uint64_t)b->point_count, (uint64_t)out->components, &count) || count > INT64_MAX / 8)
         return fail(STATUS_FAILED, "field \"%s\" has more values than memory can hold", out->name);
     s.total = calloc(count ? count : 1, sizeof *s.total);
     s.cells = calloc(b->point_count ? (size_t)b->point_count : 1, sizeof *s.cells);
-    void *values = s.total && s.cells ? dataset_allocate(d, count * element_bytes((int)out->type)) : NULL;
+    void *values = s.total && s.cells ? dataset_allocate(d, count * sample_bytes(out->type)) : NULL;
     if (values) {
         if (b->kind == GRID_UNSTRUCTURED)
             add_unstructured(&s);

@@ -1,11 +1,8 @@
-/* average.h - values of cells as values at points, and single values of any type */
+/* average.h - values of cells as values at points */
 #ifndef AVERAGE_H
 #define AVERAGE_H
 
 #include "dataset.h"
-
-/* Value n of an array, exact. */
-double value_at(tc_type type, const void *values, uint64_t n);
 
 /*
  * Every point gets the mean of the present cells around it, summed in double in the order of cells: f64 for u32, i32

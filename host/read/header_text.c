@@ -6,6 +6,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,4 +80,10 @@ char *next_word(char **text) {
     *text = *end ? end + 1 : end;
     *end = 0;
     return start;
+}
+
+int names_have(const char *names, const char *word) {
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "|%.60s|", word);
+    return *word && !strchr(word, '|') && strcasestr(names, wanted) != NULL;
 }

@@ -27,6 +27,9 @@ int parse_numbers(const char *text, double *values, int max);
 /* Cuts white space from both ends, in place. */
 char *trim(char *text);
 
+/* Whether the names, a bar before, between and behind them, have the word among them, in any case. */
+int names_have(const char *names, const char *word);
+
 /* The next word of *text, which moves behind it, or NULL. */
 char *next_word(char **text);
 

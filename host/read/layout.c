@@ -9,11 +9,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-size_t element_bytes(int element) {
-    static const unsigned char bytes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8};
-    return bytes[element];
-}
-
 /* The index along an axis of frames or components that the request chooses; 0 where it may leave that open. */
 static int choose(const char *path, const axes *from, int axis, const read_request *request, uint64_t *index) {
     int is_component = from->role[axis] == AXIS_COMPONENT, wanted = is_component ? request->component : request->frame;
@@ -82,14 +77,14 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
     return status;
 }
 
-tc_type layout_type(const layout *l) { return l->scaled || l->element > TC_F64 ? TC_F64 : (tc_type)l->element; }
+tc_type layout_type(const layout *l) { return l->scaled ? TC_F64 : element_sample_type(l->element); }
 
 static int64_t values_per_sample(const layout *l) { return l->components > 1 ? l->components : 1; }
 
 int layout_is_plain(const layout *l, const unsigned char *stored) {
     size_t bytes = element_bytes(l->element);
     uint64_t values = (uint64_t)values_per_sample(l), row = values * (uint64_t)l->dims[0];
-    return !l->scaled && l->element <= TC_F64 && (!l->swapped || bytes == 1) &&
+    return !l->scaled && l->element < SAMPLE_TYPE_COUNT && (!l->swapped || bytes == 1) &&
            (values == 1 || l->component_stride == 1) && (l->dims[0] == 1 || l->stride[0] == values) &&
            (l->dims[1] == 1 || l->stride[1] == row) &&
            (l->dims[2] == 1 || l->stride[2] == row * (uint64_t)l->dims[1]) && (uintptr_t)stored % bytes == 0;
@@ -157,38 +152,20 @@ static void copy_row(unsigned char *to, const unsigned char *from, int64_t n, si
 /* The element as a double; *exact is cleared where a 64-bit integer has none. */
 static double element_value(const unsigned char *from, int element, int swapped, int *exact) {
     union {
-        uint8_t u8;
-        int8_t i8;
-        uint16_t u16;
-        int16_t i16;
-        uint32_t u32;
-        int32_t i32;
-        uint64_t u64;
-        int64_t i64;
-        float f32;
-        double f64;
+#define MEMBER(element, name, c_type, ...) c_type name;
+        STORED_TYPES(MEMBER)
+#undef MEMBER
         unsigned char bytes[8];
     } v;
     size_t bytes = element_bytes(element);
     copy_elements(v.bytes, from, 1, bytes, bytes, swapped);
     double value;
     switch (element) {
-    case TC_U8:
-        return v.u8;
-    case TC_I8:
-        return v.i8;
-    case TC_U16:
-        return v.u16;
-    case TC_I16:
-        return v.i16;
-    case TC_U32:
-        return v.u32;
-    case TC_I32:
-        return v.i32;
-    case TC_F32:
-        return (double)v.f32;
-    case TC_F64:
-        return v.f64;
+#define VALUE_CASE(type, name, ...)                                                                                    \
+    case type:                                                                                                         \
+        return (double)v.name;
+        SAMPLE_TYPES(VALUE_CASE)
+#undef VALUE_CASE
     case ELEMENT_I64: /* 2^63 itself, to which large values round, would overflow on the way back */
         value = (double)v.i64;
         if (value >= 0x1p63 || (int64_t)value != v.i64) *exact = 0;
@@ -212,7 +189,7 @@ static int convert_elements(double *to, const unsigned char *from, int64_t n, si
 /* n elements, each `step` elements behind the one before. Returns 0 where one has no exact double. */
 static int take_run(const layout *l, unsigned char *to, const unsigned char *from, int64_t n, uint64_t step) {
     size_t bytes = element_bytes(l->element);
-    if (l->scaled || l->element > TC_F64)
+    if (l->scaled || l->element >= SAMPLE_TYPE_COUNT)
         return convert_elements((double *)(void *)to, from, n, (size_t)step * bytes, l);
     copy_row(to, from, n, (size_t)step * bytes, bytes, l->swapped);
     return 1;
@@ -221,7 +198,7 @@ static int take_run(const layout *l, unsigned char *to, const unsigned char *fro
 /* A row of samples: one run where they have one value, or their values lie side by side; else a run for each sample. */
 static int take_row(const layout *l, unsigned char *to, const unsigned char *from) {
     int64_t values = values_per_sample(l);
-    size_t bytes = element_bytes(l->element), sample = (size_t)values * element_bytes((int)layout_type(l));
+    size_t bytes = element_bytes(l->element), sample = (size_t)values * sample_bytes(layout_type(l));
     int exact = 1;
     if (values == 1) return take_run(l, to, from, l->dims[0], l->stride[0]);
     if (l->component_stride == 1 && l->stride[0] == (uint64_t)values)
@@ -234,7 +211,7 @@ static int take_row(const layout *l, unsigned char *to, const unsigned char *fro
 
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples) {
     size_t bytes = element_bytes(l->element);
-    size_t row = (size_t)l->dims[0] * (size_t)values_per_sample(l) * element_bytes((int)layout_type(l));
+    size_t row = (size_t)l->dims[0] * (size_t)values_per_sample(l) * sample_bytes(layout_type(l));
     unsigned char *to = samples;
     for (int64_t z = 0; z < l->dims[2]; z++)
         for (int64_t y = 0; y < l->dims[1]; y++, to += row) {

@@ -9,15 +9,10 @@
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
+#include "stored_types.h"
 #include "volume.h"
 
 enum { MAX_AXES = 16 };
-
-/* Stored sample types: those of tc_type by the same number, and two that become f64. */
-enum element { ELEMENT_I64 = TC_F64 + 1, ELEMENT_U64 };
-
-/* Bytes of one element. */
-size_t element_bytes(int element);
 
 enum axis_role { AXIS_SPACE, AXIS_COMPONENT, AXIS_FRAME };
 
@@ -29,7 +24,7 @@ typedef struct axes {
 } axes;
 
 typedef struct layout {
-    int element;
+    int element;               /* stored_types.h */
     int swapped;               /* the other byte order than this machine's */
     uint64_t count;            /* elements stored */
     uint64_t bytes;            /* of all of them */

@@ -1,12 +1,12 @@
 /* magnitude.c - the Euclidean length of tuples; see magnitude.h */
 #include "magnitude.h"
 
-#include "average.h"
+#include "sample_types.h"
 
 #include <float.h>
 #include <math.h>
 
-tc_type magnitude_type(tc_type type) { return type == TC_U32 || type == TC_I32 || type == TC_F64 ? TC_F64 : TC_F32; }
+tc_type magnitude_type(tc_type type) { return type_is_wide(type) ? TC_F64 : TC_F32; }
 
 /* Of values whose squares, or their sum, no double holds: they are divided by the greatest first. */
 static double scaled_length(tc_type type, const void *values, uint64_t first, int components) {

@@ -44,27 +44,13 @@ typedef struct meta_header {
 } meta_header;
 
 static int parse_type(meta_header *h, const char *text) {
-    static const struct {
-        const char *name;
-        int element;
-    } types[] = {{"MET_CHAR", TC_I8},
-                 {"MET_ASCII_CHAR", TC_I8},
-                 {"MET_UCHAR", TC_U8},
-                 {"MET_SHORT", TC_I16},
-                 {"MET_USHORT", TC_U16},
-                 {"MET_INT", TC_I32},
-                 {"MET_UINT", TC_U32},
-                 {"MET_LONG", TC_I32},
-                 {"MET_ULONG", TC_U32},
-                 {"MET_LONG_LONG", ELEMENT_I64},
-                 {"MET_ULONG_LONG", ELEMENT_U64},
-                 {"MET_FLOAT", TC_F32},
-                 {"MET_DOUBLE", TC_F64}};
+    char name[64];
     size_t length = strlen(text);
     if (length > 6 && strcasecmp(text + length - 6, "_ARRAY") == 0) length -= 6;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (strlen(types[i].name) == length && strncasecmp(text, types[i].name, length) == 0) {
-            h->element = types[i].element;
+    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : 0), text);
+    for (int element = 0; element < ELEMENT_COUNT; element++)
+        if (names_have(stored_types[element].metaimage, name)) {
+            h->element = element;
             return 0;
         }
     return fail(STATUS_INPUT, "%s: its ElementType '%.40s' cannot be read; MET_UCHAR to MET_DOUBLE can", h->path, text);

@@ -176,17 +176,10 @@ static int find_element(const nifti_header *h, int *element, int64_t *components
         int datatype, element, components;
         const char *meaning;
     } types[] = {
-        {NIFTI_TYPE_UINT8, TC_U8, 1, NULL},
-        {NIFTI_TYPE_INT8, TC_I8, 1, NULL},
-        {NIFTI_TYPE_UINT16, TC_U16, 1, NULL},
-        {NIFTI_TYPE_INT16, TC_I16, 1, NULL},
-        {NIFTI_TYPE_UINT32, TC_U32, 1, NULL},
-        {NIFTI_TYPE_INT32, TC_I32, 1, NULL},
-        {NIFTI_TYPE_UINT64, ELEMENT_U64, 1, NULL},
-        {NIFTI_TYPE_INT64, ELEMENT_I64, 1, NULL},
-        {NIFTI_TYPE_FLOAT32, TC_F32, 1, NULL},
-        {NIFTI_TYPE_FLOAT64, TC_F64, 1, NULL},
-        {NIFTI_TYPE_RGB24, TC_U8, 3, "red, green, blue"},
+#define PLAIN_ROW(element, nrrd, metaimage, nifti, ...) {nifti, element, 1, NULL},
+        STORED_NAMES(PLAIN_ROW)
+#undef PLAIN_ROW
+            {NIFTI_TYPE_RGB24, TC_U8, 3, "red, green, blue"},
         {NIFTI_TYPE_RGBA32, TC_U8, 4, "red, green, blue, alpha"},
         {NIFTI_TYPE_COMPLEX64, TC_F32, 2, "real, imaginary"},
         {NIFTI_TYPE_COMPLEX128, TC_F64, 2, "real, imaginary"},

@@ -1,5 +1,7 @@
 #include "nodata.h"
 
+#include "sample_types.h"
+
 #include <math.h>
 
 static int is_whole(double value, double least, double most) {
@@ -9,18 +11,11 @@ static int is_whole(double value, double least, double most) {
 int nodata_of_type(tc_type type, double typed, double *value) {
     *value = typed;
     switch (type) {
-    case TC_U8:
-        return is_whole(typed, 0, UINT8_MAX);
-    case TC_I8:
-        return is_whole(typed, INT8_MIN, INT8_MAX);
-    case TC_U16:
-        return is_whole(typed, 0, UINT16_MAX);
-    case TC_I16:
-        return is_whole(typed, INT16_MIN, INT16_MAX);
-    case TC_U32:
-        return is_whole(typed, 0, UINT32_MAX);
-    case TC_I32:
-        return is_whole(typed, INT32_MIN, INT32_MAX);
+#define WHOLE_CASE(type, name, c_type, least, most, ...)                                                               \
+    case type:                                                                                                         \
+        return is_whole(typed, least, most);
+        INTEGER_TYPES(WHOLE_CASE)
+#undef WHOLE_CASE
     case TC_F32:
         if (!isfinite((float)typed)) return 0;
         *value = (double)(float)typed;
@@ -31,32 +26,17 @@ int nodata_of_type(tc_type type, double typed, double *value) {
     return 0;
 }
 
-#define FIND(c_type)                                                                                                   \
-    {                                                                                                                  \
-        const c_type *at = values, wanted = (c_type)value;                                                             \
-        while (n < count && at[n] != wanted) n++;                                                                      \
-    }                                                                                                                  \
-    break
-
 uint64_t nodata_find(tc_type type, const void *values, uint64_t count, double value) {
     uint64_t n = 0;
     switch (type) {
-    case TC_U8:
-        FIND(uint8_t);
-    case TC_I8:
-        FIND(int8_t);
-    case TC_U16:
-        FIND(uint16_t);
-    case TC_I16:
-        FIND(int16_t);
-    case TC_U32:
-        FIND(uint32_t);
-    case TC_I32:
-        FIND(int32_t);
-    case TC_F32:
-        FIND(float);
-    case TC_F64:
-        FIND(double);
+#define FIND_CASE(type, name, c_type, ...)                                                                             \
+    case type: {                                                                                                       \
+        const c_type *at = values, wanted = (c_type)value;                                                             \
+        while (n < count && at[n] != wanted) n++;                                                                      \
+        break;                                                                                                         \
+    }
+        SAMPLE_TYPES(FIND_CASE)
+#undef FIND_CASE
     }
     return n;
 }

@@ -19,32 +19,10 @@
 
 enum { HEADER_BYTES = 1 << 24 };
 
-/* Whether the names, with bars around each, have the word among them, in any case. */
-static int names_have(const char *names, const char *word) {
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "|%.60s|", word);
-    return *word && !strchr(word, '|') && strcasestr(names, wanted) != NULL;
-}
-
 static int parse_type(nrrd_header *h, const char *text) {
-    static const struct {
-        const char *names;
-        int element;
-    } types[] = {
-        {"|signed char|int8|int8_t|", TC_I8},
-        {"|uchar|unsigned char|uint8|uint8_t|", TC_U8},
-        {"|short|short int|signed short|signed short int|int16|int16_t|", TC_I16},
-        {"|ushort|unsigned short|unsigned short int|uint16|uint16_t|", TC_U16},
-        {"|int|signed int|int32|int32_t|", TC_I32},
-        {"|uint|unsigned int|uint32|uint32_t|", TC_U32},
-        {"|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|", ELEMENT_I64},
-        {"|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|", ELEMENT_U64},
-        {"|float|float32|", TC_F32},
-        {"|double|float64|", TC_F64},
-    };
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (names_have(types[i].names, text)) {
-            h->element = types[i].element;
+    for (int element = 0; element < ELEMENT_COUNT; element++)
+        if (names_have(stored_types[element].nrrd, text)) {
+            h->element = element;
             return 0;
         }
     return fail(STATUS_INPUT, "%s: its type '%.40s' cannot be read; integers of 8 to 64 bits, float and double can",

@@ -14,6 +14,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define TYPE_BEHIND_BAR(type, name, ...) "|" #name
+
 static int check_options(const read_request *request) {
     const int64_t *d = request->dims;
     if (!d[0] && !d[1] && !d[2])
@@ -21,9 +23,9 @@ static int check_options(const read_request *request) {
     if (d[0] < 1 || d[1] < 1 || d[2] < 1)
         return fail(STATUS_USAGE, "--dims %" PRId64 ",%" PRId64 ",%" PRId64 ": each must be at least 1", d[0], d[1],
                     d[2]);
-    if (request->type < TC_U8 || request->type > TC_F64)
-        return fail(STATUS_USAGE, "%s: raw data needs its type; give --type u8|i8|u16|i16|u32|i32|f32|f64",
-                    request->path);
+    if (request->type < 0 || request->type >= SAMPLE_TYPE_COUNT)
+        return fail(STATUS_USAGE, "%s: raw data needs its type; give --type %s", request->path,
+                    &SAMPLE_TYPES(TYPE_BEHIND_BAR)[1]);
     for (int i = 0; i < 3; i++) {
         if (!isfinite(request->spacing[i]) || request->spacing[i] == 0)
             return fail(STATUS_USAGE, "--spacing: %g is no distance; give three finite numbers other than 0",

@@ -3,9 +3,9 @@
 #include "average.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "layout.h"
 #include "magnitude.h"
 #include "nodata.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -164,7 +164,7 @@ static int take_component(dataset *d, const dataset_block *b, const dataset_fiel
     int is_length = component == COMPONENT_MAGNITUDE;
     out->type = is_length ? magnitude_type(f->type) : f->type;
     out->components = 1;
-    size_t bytes = element_bytes((int)out->type), stride = bytes * (size_t)f->components;
+    size_t bytes = sample_bytes(out->type), stride = bytes * (size_t)f->components;
     uint64_t count = tuple_count(b, f);
     unsigned char *values = dataset_allocate(d, count * bytes);
     if (!values) return STATUS_FAILED;
@@ -203,7 +203,7 @@ static int is_missing(const dataset_field *f, uint64_t n, const missing_value *n
 static int mask_missing(dataset *d, const dataset_block *b, const dataset_field *f, const missing_value *nodata,
                         const uint8_t **mask) {
     uint64_t count = tuple_count(b, f), n = 0;
-    int may_be_missing = nodata->is_there || f->type == TC_F32 || f->type == TC_F64;
+    int may_be_missing = nodata->is_there || type_is_real(f->type);
     while (may_be_missing && n < count && !is_missing(f, n, nodata)) n++;
     if (!may_be_missing || n == count) return 0;
     uint8_t *merged = dataset_allocate(d, count);

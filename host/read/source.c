@@ -103,11 +103,9 @@ enum { WORD_BYTES = 1152 }; /* of a number: a double to its last decimal, 1,075 
 
 /* Writes one number of text as an element in this machine's byte order. Returns 0 where it is none, or out of range. */
 static int store_number(const char *word, int element, unsigned char *to) {
-    static const int64_t low[] = {0, INT8_MIN, 0, INT16_MIN, 0, INT32_MIN},
-                         high[] = {UINT8_MAX, INT8_MAX, UINT16_MAX, INT16_MAX, UINT32_MAX, INT32_MAX};
     char *end;
     errno = 0;
-    if (element == TC_F32 || element == TC_F64) {
+    if (element_is_real(element)) {
         double wide = strtod(word, &end);
         float narrow = (float)wide;
         memcpy(to, element == TC_F32 ? (void *)&narrow : (void *)&wide, element_bytes(element));
@@ -125,19 +123,7 @@ static int store_number(const char *word, int element, unsigned char *to) {
         if (*end || !(fabs(whole) <= 0x1p53) || whole != floor(whole)) return 0;
         value = (long long)whole;
     }
-    if (element < TC_F32 && (value < low[element] || value > high[element])) return 0;
-    size_t bytes = element_bytes(element);
-    uint64_t bits = (uint64_t)value;
-    uint32_t bits32 = (uint32_t)bits;
-    uint16_t bits16 = (uint16_t)bits;
-    uint8_t bits8 = (uint8_t)bits;
-    memcpy(to,
-           bytes == 8   ? (void *)&bits
-           : bytes == 4 ? (void *)&bits32
-           : bytes == 2 ? (void *)&bits16
-                        : &bits8,
-           bytes);
-    return 1;
+    return element_put_integer(element, value < 0 ? 0 - (uint64_t)value : (uint64_t)value, value < 0, to);
 }
 
 static int is_between(unsigned char c) { return isspace(c) || c == ','; }
@@ -256,7 +242,7 @@ static int no_memory(const char *path, uint64_t bytes) {
 static int gather(const source *from, const layout *l, const unsigned char *stored, volume *out) {
     uint64_t bytes = 0, count = (uint64_t)l->dims[0] * (uint64_t)l->dims[1] * (uint64_t)l->dims[2];
     count *= (uint64_t)l->components; /* all of them elements stored */
-    if (__builtin_mul_overflow(count, element_bytes((int)layout_type(l)), &bytes)) bytes = UINT64_MAX;
+    if (__builtin_mul_overflow(count, sample_bytes(layout_type(l)), &bytes)) bytes = UINT64_MAX;
     void *samples = samples_allocate(bytes);
     if (!samples) return no_memory(from->header_path, bytes);
     int status = layout_gather(from->header_path, l, stored, samples);

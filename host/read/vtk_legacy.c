@@ -97,9 +97,10 @@ static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t 
     int type = 0, status = legacy_type(r, &type);
     if (status) return status;
     if (type >= LEGACY_STRING) return legacy_fail(r, "has texts for %s; numbers are needed", what);
-    const int wanted = type <= TC_I16 || type == TC_F32 || type == LEGACY_BIT ? TC_F32 : TC_F64;
+    const int is_narrow = type == LEGACY_BIT || (type < SAMPLE_TYPE_COUNT && !type_is_wide((tc_type)type));
+    const int wanted = is_narrow ? TC_F32 : TC_F64;
     if ((status = legacy_array(r, what, type, count, components, wanted, &values, &unfit))) return status;
-    const int is_real = type == TC_F32 || type == TC_F64; /* of integers the unfit ones are rounded */
+    const int is_real = element_is_real(type); /* of integers the unfit ones are rounded */
     if (unfit && is_real)
         return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite; correct them", unfit, what);
     if (wanted == TC_F32)

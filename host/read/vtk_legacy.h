@@ -15,7 +15,7 @@
 enum { LEGACY_WORD = 256, LEGACY_FIELDS = 4096 };
 
 /* Types of stored values beyond those of tc_type and enum element. */
-enum { LEGACY_BIT = ELEMENT_U64 + 1, LEGACY_STRING, LEGACY_VARIANT };
+enum { LEGACY_BIT = ELEMENT_COUNT, LEGACY_STRING, LEGACY_VARIANT };
 
 /* What the attributes that follow belong to. */
 enum legacy_section { SECTION_GEOMETRY, SECTION_POINTS, SECTION_CELLS };

@@ -20,43 +20,35 @@ typedef union block {
     double aligned;
 } block;
 
+/* The length of the longest of the names between bars that the word begins with, in any case; 0 where there is none. */
+static size_t longest_beginning(const char *names, const char *word) {
+    size_t longest = 0;
+    for (const char *name = names + 1; *name; name += strcspn(name, "|") + 1) {
+        size_t length = strcspn(name, "|");
+        if (length > longest && !strncasecmp(word, name, length)) longest = length;
+    }
+    return longest;
+}
+
+static const struct {
+    const char *names;
+    int type;
+} other_types[] = {{"|bit|", LEGACY_BIT}, {"|string|utf8_string|", LEGACY_STRING}, {"|variant|", LEGACY_VARIANT}};
+
 int legacy_type(legacy *r, int *type) {
-    static const struct {
-        const char *name;
-        int type;
-    } types[] = {{"uint8", TC_U8},
-                 {"uint16", TC_U16},
-                 {"uint32", TC_U32},
-                 {"uint64", ELEMENT_U64},
-                 {"unsigned_int64", ELEMENT_U64},
-                 {"int64", ELEMENT_I64},
-                 {"float64", TC_F64},
-                 {"unsigned_char", TC_U8},
-                 {"char", TC_I8},
-                 {"signed_char", TC_I8},
-                 {"unsigned_short", TC_U16},
-                 {"short", TC_I16},
-                 {"unsigned_int", TC_U32},
-                 {"int", TC_I32},
-                 {"vtkIdType", TC_I32},
-                 {"unsigned_long", ELEMENT_U64},
-                 {"long", ELEMENT_I64},
-                 {"vtktypeint64", ELEMENT_I64},
-                 {"vtktypeuint64", ELEMENT_U64},
-                 {"float", TC_F32},
-                 {"double", TC_F64},
-                 {"bit", LEGACY_BIT},
-                 {"string", LEGACY_STRING},
-                 {"utf8_string", LEGACY_STRING},
-                 {"variant", LEGACY_VARIANT}};
     char word[LEGACY_WORD];
+    size_t longest = 0;
     int status = legacy_need(r, "a type of values", word);
     if (status) return status;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (!strncasecmp(word, types[i].name, strlen(types[i].name))) {
-            *type = types[i].type;
-            return 0;
-        }
+    for (int n = 0; n < ELEMENT_COUNT + (int)(sizeof other_types / sizeof *other_types); n++) {
+        const int is_other = n >= ELEMENT_COUNT;
+        size_t length =
+            longest_beginning(is_other ? other_types[n - ELEMENT_COUNT].names : stored_types[n].vtk_legacy, word);
+        if (length <= longest) continue; /* "int64" begins with "int", too */
+        longest = length;
+        *type = is_other ? other_types[n - ELEMENT_COUNT].type : n;
+    }
+    if (longest) return 0;
     return legacy_fail(r,
                        "has values of type '%.40s', which is unknown; bit, unsigned_char to double, vtktypeint64, "
                        "vtkIdType, string and variant are known",

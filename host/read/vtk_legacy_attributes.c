@@ -59,7 +59,7 @@ static int read_array(legacy *r, const char *name, int type, int64_t components)
     void *values = NULL;
     uint64_t rounded = 0;
     int64_t count = tuple_count(r);
-    int wanted = type == LEGACY_BIT ? TC_U8 : type == ELEMENT_I64 || type == ELEMENT_U64 ? TC_F64 : type;
+    int wanted = type == LEGACY_BIT ? TC_U8 : (int)element_sample_type(type);
     unsigned ghosts = ghost_mask(r, name, type, components);
     char what[LEGACY_WORD + 16];
     snprintf(what, sizeof what, "array '%.100s'", name);

@@ -55,7 +55,7 @@ static int read_indices(legacy *r, const char *what, int64_t count, int64_t **ou
     void *values = NULL;
     uint64_t unfit = 0;
     if (status) return status;
-    if (type == TC_F32 || type == TC_F64 || type >= LEGACY_STRING)
+    if (element_is_real(type) || type >= LEGACY_STRING)
         return legacy_fail(r, "has %s that are no integers; vtktypeint64 is usual", what);
     if ((status = legacy_array(r, what, type, count, 1, ELEMENT_I64, &values, &unfit))) return status;
     if (unfit) return legacy_fail(r, "has %s beyond 2^63; it is damaged", what);

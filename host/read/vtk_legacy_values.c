@@ -11,33 +11,29 @@ enum { LONGEST_NUMBER = 400 };
 
 /* ---------------------------------------------------------------------------------------------------- decoding */
 
-/* An integer of text as 64 bits of two's complement. 0 where it is none or the type cannot hold it. */
-static int parse_integer(const char *word, const char *end, int type, uint64_t *bits) {
-    static const uint64_t low[] = {0, 1u << 7, 0, 1u << 15, 0, 1u << 31, 0, 0, 1ull << 63, 0},
-                          high[] = {UINT8_MAX, INT8_MAX, UINT16_MAX, INT16_MAX, UINT32_MAX,
-                                    INT32_MAX, 0,        0,          INT64_MAX, UINT64_MAX};
+/* The absolute value of an integer of text. 0 where it is none. */
+static int parse_integer(const char *word, const char *end, int *is_negative, uint64_t *value) {
     const char *p = word;
-    int is_negative = *p == '-';
-    uint64_t value = 0;
+    *is_negative = *p == '-';
+    *value = 0;
     if (*p == '-' || *p == '+') p++;
     if (p == end) return 0;
     for (; p < end && *p >= '0' && *p <= '9'; p++)
-        if (__builtin_mul_overflow(value, 10, &value) || __builtin_add_overflow(value, (uint64_t)(*p - '0'), &value))
+        if (__builtin_mul_overflow(*value, 10, value) || __builtin_add_overflow(*value, (uint64_t)(*p - '0'), value))
             return 0;
     if (p < end) { /* an integer written as 3.0 or 1e2 */
         char *stop;
         double number = strtod(word, &stop);
         if (stop != end || number != floor(number) || fabs(number) > 0x1p53) return 0;
-        value = (uint64_t)fabs(number);
+        *value = (uint64_t)fabs(number);
     }
-    if (value > (is_negative ? low : high)[type]) return 0;
-    *bits = is_negative ? 0 - value : value;
     return 1;
 }
 
 static int parse_value(const char *word, const char *end, int type, uint8_t *to) {
     char *stop;
-    uint64_t bits;
+    uint64_t absolute;
+    int is_negative;
     if (type == TC_F32) {
         float value = strtof(word, &stop);
         memcpy(to, &value, sizeof value);
@@ -48,24 +44,10 @@ static int parse_value(const char *word, const char *end, int type, uint8_t *to)
         memcpy(to, &value, sizeof value);
         return stop == end;
     }
-    if (!parse_integer(word, end, type == LEGACY_BIT ? TC_U8 : type, &bits)) return 0;
-    uint8_t bits8 = type == LEGACY_BIT ? bits != 0 : (uint8_t)bits;
-    uint16_t bits16 = (uint16_t)bits;
-    uint32_t bits32 = (uint32_t)bits;
-    switch (type == LEGACY_BIT ? 1 : element_bytes(type)) {
-    case 1:
-        *to = bits8;
-        break;
-    case 2:
-        memcpy(to, &bits16, 2);
-        break;
-    case 4:
-        memcpy(to, &bits32, 4);
-        break;
-    default:
-        memcpy(to, &bits, 8);
-    }
-    return 1;
+    if (!parse_integer(word, end, &is_negative, &absolute)) return 0;
+    if (type != LEGACY_BIT) return element_put_integer(type, absolute, is_negative, to);
+    *to = absolute != 0;
+    return absolute <= UINT8_MAX && (!is_negative || !absolute);
 }
 
 /* The next word where it lies, or, at the very end of the file, in `last`, since parsing goes on to a character that
@@ -193,18 +175,19 @@ int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t
         return unfit;                                                                                                  \
     } while (0)
 
+/* A case of a switch over stored types for integers whose values the wanted type all has. */
+#define CONVERT_CASE(wanted_type, type, c_type)                                                                        \
+    case type:                                                                                                         \
+        CONVERT(c_type, wanted_type, 1);
+
 static uint64_t to_f32(int type, const uint8_t *from, uint64_t count, void *to) {
     uint64_t unfit = 0;
     switch (type) {
-    case TC_U8:
     case LEGACY_BIT:
         CONVERT(uint8_t, float, 1);
-    case TC_I8:
-        CONVERT(int8_t, float, 1);
-    case TC_U16:
-        CONVERT(uint16_t, float, 1);
-    case TC_I16:
-        CONVERT(int16_t, float, 1);
+#define TO_F32(type, name, c_type, ...) CONVERT_CASE(float, type, c_type)
+        INTEGER_TYPES(TO_F32)
+#undef TO_F32
     default:
         CONVERT(float, float, isfinite(result));
     }
@@ -213,21 +196,13 @@ static uint64_t to_f32(int type, const uint8_t *from, uint64_t count, void *to) 
 static uint64_t to_i64(int type, const uint8_t *from, uint64_t count, void *to) {
     uint64_t unfit = 0;
     switch (type) {
-    case TC_U8:
     case LEGACY_BIT:
         CONVERT(uint8_t, int64_t, 1);
-    case TC_I8:
-        CONVERT(int8_t, int64_t, 1);
-    case TC_U16:
-        CONVERT(uint16_t, int64_t, 1);
-    case TC_I16:
-        CONVERT(int16_t, int64_t, 1);
-    case TC_U32:
-        CONVERT(uint32_t, int64_t, 1);
-    case TC_I32:
-        CONVERT(int32_t, int64_t, 1);
     case ELEMENT_I64:
         CONVERT(int64_t, int64_t, 1);
+#define TO_I64(type, name, c_type, ...) CONVERT_CASE(int64_t, type, c_type)
+        INTEGER_TYPES(TO_I64)
+#undef TO_I64
     default:
         CONVERT(uint64_t, int64_t, result >= 0);
     }
@@ -238,14 +213,13 @@ static uint64_t to_i64(int type, const uint8_t *from, uint64_t count, void *to) 
 static uint64_t to_f64(int type, const uint8_t *from, uint64_t count, void *to) {
     uint64_t unfit = 0;
     switch (type) {
-    case TC_U32:
-        CONVERT(uint32_t, double, 1);
-    case TC_I32:
-        CONVERT(int32_t, double, 1);
     case TC_F64:
         CONVERT(double, double, isfinite(result));
     case ELEMENT_I64:
         CONVERT(int64_t, double, result < 0x1p63 && (int64_t)result == value);
+#define TO_F64(type, name, c_type, ...) CONVERT_CASE(double, type, c_type)
+        INTEGER_TYPES(TO_F64)
+#undef TO_F64
     default:
         CONVERT(uint64_t, double, result < 0x1p64 && (uint64_t)result == value);
     }

@@ -106,41 +106,24 @@ static int load_briefly(xml_reader *r, const xml_array *array, uint64_t count, c
     return status;
 }
 
-#define CONVERT(stored)                                                                                                \
-    for (uint64_t i = 0; i < count; i++) {                                                                             \
-        stored value;                                                                                                  \
-        memcpy(&value, from + i * sizeof value, sizeof value);                                                         \
-        to[i] = (converted)value;                                                                                      \
-    }                                                                                                                  \
-    break
-
-#define CONVERT_INTEGERS                                                                                               \
-    case TC_U8:                                                                                                        \
-        CONVERT(uint8_t);                                                                                              \
-    case TC_I8:                                                                                                        \
-        CONVERT(int8_t);                                                                                               \
-    case TC_U16:                                                                                                       \
-        CONVERT(uint16_t);                                                                                             \
-    case TC_I16:                                                                                                       \
-        CONVERT(int16_t);                                                                                              \
-    case TC_U32:                                                                                                       \
-        CONVERT(uint32_t);                                                                                             \
-    case TC_I32:                                                                                                       \
-        CONVERT(int32_t);                                                                                              \
-    case ELEMENT_I64:                                                                                                  \
-        CONVERT(int64_t);                                                                                              \
-    case ELEMENT_U64:                                                                                                  \
-        CONVERT(uint64_t)
+#define CONVERT_CASE(converted, type, stored)                                                                          \
+    case type:                                                                                                         \
+        for (uint64_t i = 0; i < count; i++) {                                                                         \
+            stored value;                                                                                              \
+            memcpy(&value, from + i * sizeof value, sizeof value);                                                     \
+            to[i] = (converted)value;                                                                                  \
+        }                                                                                                              \
+        break;
+#define TO_DOUBLE(type, name, c_type, ...)  CONVERT_CASE(double, type, c_type)
+#define TO_INTEGER(type, name, c_type, ...) CONVERT_CASE(int64_t, type, c_type)
 
 static void convert_to_doubles(double *to, const unsigned char *from, uint64_t count, int element) {
-    typedef double converted;
-    switch (element) { CONVERT_INTEGERS; }
+    switch (element) { STORED_INTEGERS(TO_DOUBLE) }
 }
 
 /* Those of 64 bits without sign that exceed the signed ones become negative. */
 static void convert_to_integers(int64_t *to, const unsigned char *from, uint64_t count, int element) {
-    typedef int64_t converted;
-    switch (element) { CONVERT_INTEGERS; }
+    switch (element) { STORED_INTEGERS(TO_INTEGER) }
 }
 
 /* Coordinates, from any type of number: integers become doubles. */
@@ -163,7 +146,7 @@ static int load_coordinates(xml_reader *r, const xml_array *array, uint64_t coun
 static int load_integers(xml_reader *r, const xml_array *array, uint64_t count, int64_t *to) {
     const unsigned char *stored = NULL;
     void *owned;
-    if (array->element == TC_F32 || array->element == TC_F64)
+    if (element_is_real(array->element))
         return fail(STATUS_INPUT, "%s: its array '%.60s' is of floating point; it must be of integers", r->doc.path,
                     r->doc.names + array->name);
     int status = load_briefly(r, array, count, &stored, &owned);
@@ -357,7 +340,7 @@ static int load_cells(xml_reader *r, const xml_piece *piece, dataset_block *bloc
 /* ----------------------------------------------------------------------------------------------------------- fields */
 
 static int is_integral(const xml_array *array) {
-    return array->element >= 0 && array->element != TC_F32 && array->element != TC_F64 && !array->is_bits;
+    return array->element >= 0 && !element_is_real(array->element) && !array->is_bits;
 }
 
 /* Whether the array tells what is missing: vtkGhostType, or vtkGhostLevels of older files' cells. */
@@ -407,7 +390,7 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
 static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
     uint64_t count;
     const void *values;
-    int wide = array->element > TC_F64, is_rounded = 0;
+    int wide = array->element >= SAMPLE_TYPE_COUNT, is_rounded = 0;
     dataset_field *field;
     if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
     if (wide) {
@@ -429,7 +412,7 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
     *field = (dataset_field){.name = names + array->name,
                              .on_cells = array->section == SECTION_CELL_DATA,
                              .components = (int)array->components,
-                             .type = wide ? TC_F64 : (tc_type)array->element,
+                             .type = element_sample_type(array->element),
                              .is_rounded = is_rounded,
                              .values = values};
     return 0;

@@ -322,7 +322,7 @@ int vtk_xml_take(xml_values *v, void *to) {
     else if (!source_take(&v->data, to, v->bytes))
         status = is_cut(v);
     if (status || !v->doc->swapped || element == 1) return status;
-    layout swap = {.element = v->array->element > TC_F64 ? TC_F64 : v->array->element,
+    layout swap = {.element = (int)element_sample_type(v->array->element), /* of 64-bit integers the bytes alone */
                    .swapped = 1,
                    .dims = {(int64_t)v->count, 1, 1},
                    .stride = {1, 0, 0}};

@@ -198,15 +198,9 @@ static enum xml_section find_section(const char *name) {
 }
 
 static int find_element(const char *type) {
-    static const struct {
-        const char *name;
-        int element;
-    } types[] = {{"UInt8", TC_U8},    {"Int8", TC_I8},     {"UInt16", TC_U16},      {"Int16", TC_I16},
-                 {"UInt32", TC_U32},  {"Int32", TC_I32},   {"UInt64", ELEMENT_U64}, {"Int64", ELEMENT_I64},
-                 {"Float32", TC_F32}, {"Float64", TC_F64}, {"Bit", TC_U8}};
-    for (size_t i = 0; type && i < sizeof types / sizeof *types; i++)
-        if (strcmp(type, types[i].name) == 0) return types[i].element;
-    return -1;
+    for (int element = 0; type && element < ELEMENT_COUNT; element++)
+        if (strcmp(type, stored_types[element].vtk_xml) == 0) return element;
+    return type && strcmp(type, "Bit") == 0 ? TC_U8 : -1;
 }
 
 static int parse_offset(const xml_document *doc, const char *text, uint64_t *offset) {

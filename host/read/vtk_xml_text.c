@@ -51,46 +51,29 @@ static int parse_real(const char *word, double *value) {
     return end != word && !*end;
 }
 
-/* As bits of 64-bit two's complement. */
-static int parse_integer(const char *word, int element, uint64_t *bits) {
-    static const uint64_t most[] = {
-        [TC_U8] = UINT8_MAX,   [TC_I8] = INT8_MAX,   [TC_U16] = UINT16_MAX,     [TC_I16] = INT16_MAX,
-        [TC_U32] = UINT32_MAX, [TC_I32] = INT32_MAX, [ELEMENT_I64] = INT64_MAX, [ELEMENT_U64] = UINT64_MAX};
-    int is_signed = element == TC_I8 || element == TC_I16 || element == TC_I32 || element == ELEMENT_I64;
-    int is_negative = *word == '-';
-    uint64_t value = 0;
+/* Its absolute value. */
+static int parse_integer(const char *word, int *is_negative, uint64_t *value) {
+    *is_negative = *word == '-';
+    *value = 0;
     if (*word == '-' || *word == '+') word++;
     if (!is_digit(*word)) return 0;
     for (; is_digit(*word); word++)
-        if (__builtin_mul_overflow(value, 10u, &value) ||
-            __builtin_add_overflow(value, (uint64_t)(*word - '0'), &value))
+        if (__builtin_mul_overflow(*value, 10u, value) ||
+            __builtin_add_overflow(*value, (uint64_t)(*word - '0'), value))
             return 0;
-    *bits = is_negative ? 0 - value : value;
-    return !*word && value <= most[element] + (uint64_t)(is_negative && is_signed) &&
-           (!is_negative || is_signed || !value);
+    return !*word;
 }
 
 /* Writes one number as an element in this machine's byte order. Returns 0 where the word is none, or out of range. */
 static int store_number(const char *word, int element, unsigned char *to) {
     double wide;
-    uint64_t bits;
-    if (element == TC_F32 || element == TC_F64) {
-        if (!parse_real(word, &wide)) return 0;
-        float narrow = (float)wide;
-        memcpy(to, element == TC_F32 ? (void *)&narrow : (void *)&wide, element_bytes(element));
-        return 1;
-    }
-    if (!parse_integer(word, element, &bits)) return 0;
-    uint8_t bits8 = (uint8_t)bits;
-    uint16_t bits16 = (uint16_t)bits;
-    uint32_t bits32 = (uint32_t)bits;
-    size_t bytes = element_bytes(element);
-    memcpy(to,
-           bytes == 1   ? (void *)&bits8
-           : bytes == 2 ? (void *)&bits16
-           : bytes == 4 ? (void *)&bits32
-                        : &bits,
-           bytes);
+    uint64_t absolute;
+    int is_negative;
+    if (!element_is_real(element))
+        return parse_integer(word, &is_negative, &absolute) && element_put_integer(element, absolute, is_negative, to);
+    if (!parse_real(word, &wide)) return 0;
+    float narrow = (float)wide;
+    memcpy(to, element == TC_F32 ? (void *)&narrow : (void *)&wide, element_bytes(element));
     return 1;
 }
 

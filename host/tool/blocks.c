@@ -6,6 +6,7 @@
 #include "failure.h"
 #include "input.h"
 #include "notice.h"
+#include "sample_types.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -257,12 +258,18 @@ int block_grid(const options *o, const block_list *list, int n, tc_context *cont
 }
 
 static int has_nonfinite(const prepared_block *b) {
-    int64_t count = b->source->point_count;
-    for (int64_t n = 0; b->scalar->type == TC_F32 && n < count; n++)
-        if (!isfinite(((const float *)b->scalar->samples)[n])) return 1;
-    for (int64_t n = 0; b->scalar->type == TC_F64 && n < count; n++)
-        if (!isfinite(((const double *)b->scalar->samples)[n])) return 1;
-    return 0;
+    const int64_t count = b->source->point_count;
+    switch ((int)b->scalar->type) {
+#define FIND_CASE(type, name, c_type, ...)                                                                             \
+    case type:                                                                                                         \
+        for (int64_t n = 0; n < count; n++)                                                                            \
+            if (!isfinite(((const c_type *)b->scalar->samples)[n])) return 1;                                          \
+        return 0;
+        REAL_TYPES(FIND_CASE)
+#undef FIND_CASE
+    default:
+        return 0;
+    }
 }
 
 int blocks_may_touch(const block_list *list) {

@@ -1,11 +1,11 @@
 #include "carry.h"
 
-#include "average.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
 #include "notice.h"
 #include "report.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdlib.h>

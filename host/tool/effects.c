@@ -6,6 +6,7 @@
 #include "field.h"
 #include "mesh_write.h"
 #include "notice.h"
+#include "sample_types.h"
 
 #include <string.h>
 
@@ -33,7 +34,7 @@ static int has_no_device(const situation *s) { return s->o->engine == TC_ENGINE_
 static int is_not_raw(const situation *s) { return !options_given(s->o, "--dims"); }
 
 static int has_bytes(const situation *s) {
-    return options_given(s->o, "--dims") && (s->o->type == TC_U8 || s->o->type == TC_I8);
+    return options_given(s->o, "--dims") && s->o->type >= 0 && sample_bytes((tc_type)s->o->type) == 1;
 }
 
 static int is_not_noise(const situation *s) {

@@ -1,9 +1,9 @@
 #include "faces.h"
 
-#include "average.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "notice.h"
+#include "sample_types.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -11,6 +11,7 @@
 #include "nearest.h"
 #include "output.h"
 #include "progress.h"
+#include "stored_types.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -34,8 +35,6 @@ void generate_help(FILE *out) {
     for (const field *f = fields; f->name; f++) fprintf(out, "  %-15s %s\n", f->name, f->definition);
     fprintf(out, "\nA good isovalue for all of them is 127.5 (for i8, which ends at 127, 64).\n");
 }
-
-static const char *const nrrd_types[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float", "double"};
 
 static int unknown_field(const char *name) {
     const char *names[32];
@@ -91,12 +90,13 @@ static void write_header(const recipe *r, output *out) {
     const char *native = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? "big" : "little";
     const int64_t *n = r->o->dims;
     char text[1024], padding[ALIGNMENT + 2];
+    const char *type = stored_types[r->o->type].nrrd + 1; /* the first of its names */
     int length = snprintf(text, sizeof text,
                           "NRRD0004\n# %s: %s\n"
-                          "type: %s\ndimension: 3\nsizes: %" PRId64 " %" PRId64 " %" PRId64 "\n"
+                          "type: %.*s\ndimension: 3\nsizes: %" PRId64 " %" PRId64 " %" PRId64 "\n"
                           "space dimension: 3\nspace directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n"
                           "space origin: (%.17g,%.17g,%.17g)\nendian: %s\nencoding: raw\n",
-                          r->f->name, r->f->definition, nrrd_types[r->o->type], n[0], n[1], n[2], step(n[0]),
+                          r->f->name, r->f->definition, (int)strcspn(type, "|"), type, n[0], n[1], n[2], step(n[0]),
                           step(n[1]), step(n[2]), start(n[0]), start(n[1]), start(n[2]), native);
     int pad = ALIGNMENT - (length + 1) % ALIGNMENT; /* the line to add, its end included; the empty line is the + 1 */
     if (pad == 1) pad += ALIGNMENT;

@@ -1,11 +1,11 @@
 /* obstacle.c - looks for one cell that a surface could pass through; see obstacle.h */
 #include "obstacle.h"
 
-#include "average.h"
 #include "blocks.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "notice.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "nearest.h"
+#include "sample_types.h"
 #include "volume.h"
 
 #include <ctype.h>
@@ -45,7 +46,11 @@ typedef struct option {
     const char *help; /* lines split by \n */
 } option;
 
-static const char *const type_choices[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64", NULL};
+#define TYPE_CHOICE(type, name, ...) [type] = #name,
+static const char *const type_choices[SAMPLE_TYPE_COUNT + 1] = {SAMPLE_TYPES(TYPE_CHOICE)};
+#define TYPE_BEHIND_BLANK(type, name, ...) " " #name
+#define TYPE_BEFORE_BLANK(type, name, ...) #name " "
+
 static const char *const endian_choices[] = {"little", "big", NULL};
 static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
 static const char *const method_choices[] = {"tetra", "hybrid", NULL};
@@ -129,9 +134,9 @@ static const option table[] = {
     {"--dims", NULL, "NX,NY,NZ", COMMAND_GENERATE, VALUE_DIMS, IN(dims), NULL,
      "samples along x, y and z"},
     {"--type", NULL, "T", READS, VALUE_CHOICE, IN(type), type_choices,
-     "raw input: u8 i8 u16 i16 u32 i32 f32 f64"},
+     "raw input:" SAMPLE_TYPES(TYPE_BEHIND_BLANK)},
     {"--type", NULL, "T", COMMAND_GENERATE, VALUE_CHOICE, IN(type), type_choices,
-     "u8 i8 u16 i16 u32 i32 f32 f64 (integers truncate and saturate)"},
+     SAMPLE_TYPES(TYPE_BEFORE_BLANK) "(integers truncate and saturate)"},
     {"--endian", NULL, "E", READS, VALUE_CHOICE, IN(big_endian), endian_choices,
      "raw input: little (default) or big"},
     {"--skip", NULL, "BYTES", READS, VALUE_SIZE, IN(skip), NULL,

@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "field.h"
+#include "sample_types.h"
 #include "selftest.h"
 
 #include <math.h>
@@ -14,35 +15,17 @@
 
 /* Multiples of 32 (i8: of 16), from u8 samples. */
 static void step_samples(const trial *t, size_t count, void *samples) {
-    unsigned char *bytes = samples; /* converted from the last to the first, in place */
+    const unsigned char *bytes = samples; /* converted from the last to the first, in place */
     field_sample(field_find(t->field), t->dims, TC_U8, NOISE_SEED, 0, t->dims[2], samples);
     for (size_t n = count; n-- > 0;) {
-        unsigned value = bytes[n] & 0xe0u;
+        const unsigned value = bytes[n] & 0xe0u;
         switch (t->type) {
-        case TC_U8:
-            bytes[n] = (unsigned char)value;
-            break;
-        case TC_I8:
-            ((int8_t *)samples)[n] = (int8_t)(value >> 1);
-            break;
-        case TC_U16:
-            ((uint16_t *)samples)[n] = (uint16_t)value;
-            break;
-        case TC_I16:
-            ((int16_t *)samples)[n] = (int16_t)value;
-            break;
-        case TC_U32:
-            ((uint32_t *)samples)[n] = value;
-            break;
-        case TC_I32:
-            ((int32_t *)samples)[n] = (int32_t)value;
-            break;
-        case TC_F32:
-            ((float *)samples)[n] = (float)value;
-            break;
-        case TC_F64:
-            ((double *)samples)[n] = value;
-            break;
+#define STEP_CASE(type, name, c_type, least, most, ...)                                                                \
+    case type:                                                                                                         \
+        ((c_type *)samples)[n] = (c_type)((double)(most) < UINT8_MAX ? value >> 1 : value);                            \
+        break;
+            SAMPLE_TYPES(STEP_CASE)
+#undef STEP_CASE
         }
     }
 }

@@ -7,7 +7,7 @@
  */
 #include "statistics.h"
 
-#include "average.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <string.h>
@@ -44,8 +44,8 @@ static extent extent_of_present(const sample_array *array) {
     return e;
 }
 
-#define EXTENT_OF_INTEGERS(c_type)                                                                                     \
-    {                                                                                                                  \
+#define EXTENT_OF_INTEGERS(type, name, c_type, ...)                                                                    \
+    case type: {                                                                                                       \
         const c_type *at = array->samples;                                                                             \
         c_type least = at[first], most = at[first];                                                                    \
         for (uint64_t n = first; n < array->count; n += stride) {                                                      \
@@ -55,11 +55,11 @@ static extent extent_of_present(const sample_array *array) {
         e.finite_count = (array->count - first + stride - 1) / stride;                                                 \
         e.least = (double)least;                                                                                       \
         e.most = (double)most;                                                                                         \
-    }                                                                                                                  \
-    break
+        break;                                                                                                         \
+    }
 
-#define EXTENT_OF_REALS(c_type)                                                                                        \
-    {                                                                                                                  \
+#define EXTENT_OF_REALS(type, name, c_type, ...)                                                                       \
+    case type: {                                                                                                       \
         const c_type *at = array->samples;                                                                             \
         for (uint64_t n = first; n < array->count; n += stride) {                                                      \
             double value = (double)at[n];                                                                              \
@@ -70,29 +70,15 @@ static extent extent_of_present(const sample_array *array) {
             e.least = value < e.least ? value : e.least;                                                               \
             e.most = value > e.most ? value : e.most;                                                                  \
         }                                                                                                              \
-    }                                                                                                                  \
-    break
+        break;                                                                                                         \
+    }
 
 static extent extent_of(const sample_array *array, uint64_t first, uint64_t stride) {
     extent e = nothing;
     if (array->count <= first) return e;
     switch (array->type) {
-    case TC_U8:
-        EXTENT_OF_INTEGERS(uint8_t);
-    case TC_I8:
-        EXTENT_OF_INTEGERS(int8_t);
-    case TC_U16:
-        EXTENT_OF_INTEGERS(uint16_t);
-    case TC_I16:
-        EXTENT_OF_INTEGERS(int16_t);
-    case TC_U32:
-        EXTENT_OF_INTEGERS(uint32_t);
-    case TC_I32:
-        EXTENT_OF_INTEGERS(int32_t);
-    case TC_F32:
-        EXTENT_OF_REALS(float);
-    case TC_F64:
-        EXTENT_OF_REALS(double);
+        INTEGER_TYPES(EXTENT_OF_INTEGERS)
+        REAL_TYPES(EXTENT_OF_REALS)
     }
     return e;
 }
@@ -161,11 +147,12 @@ static void count_sample(statistics *s, double value) {
     s->bins[bin]++;
 }
 
-#define COUNT_SAMPLES(c_type)                                                                                          \
-    for (uint64_t n = 0; n < array->count; n++)                                                                        \
-        if (isfinite((double)((const c_type *)array->samples)[n]))                                                     \
-            count_sample(s, (double)((const c_type *)array->samples)[n]);                                              \
-    break
+#define COUNT_SAMPLES(type, name, c_type, ...)                                                                         \
+    case type:                                                                                                         \
+        for (uint64_t n = 0; n < array->count; n++)                                                                    \
+            if (isfinite((double)((const c_type *)array->samples)[n]))                                                 \
+                count_sample(s, (double)((const c_type *)array->samples)[n]);                                          \
+        break;
 
 static void fill_bins_of_present(const sample_array *array, statistics *s) {
     for (uint64_t n = 0; n < array->count; n++) {
@@ -179,30 +166,13 @@ static void fill_bins(const sample_array *array, statistics *s) {
         fill_bins_of_present(array, s);
         return;
     }
-    switch (array->type) {
-    case TC_U8:
-        COUNT_SAMPLES(uint8_t);
-    case TC_I8:
-        COUNT_SAMPLES(int8_t);
-    case TC_U16:
-        COUNT_SAMPLES(uint16_t);
-    case TC_I16:
-        COUNT_SAMPLES(int16_t);
-    case TC_U32:
-        COUNT_SAMPLES(uint32_t);
-    case TC_I32:
-        COUNT_SAMPLES(int32_t);
-    case TC_F32:
-        COUNT_SAMPLES(float);
-    case TC_F64:
-        COUNT_SAMPLES(double);
-    }
+    switch (array->type) { SAMPLE_TYPES(COUNT_SAMPLES) }
 }
 
 void statistics_of(const sample_array *arrays, int count, statistics *out) {
     int all_integers = 1;
     memset(out, 0, sizeof *out);
-    for (int n = 0; n < count; n++) all_integers &= arrays[n].type != TC_F32 && arrays[n].type != TC_F64;
+    for (int n = 0; n < count; n++) all_integers &= !type_is_real(arrays[n].type);
     find_range(arrays, count, out);
     choose_bins(all_integers, out);
     for (int n = 0; n < count && out->finite_count; n++) fill_bins(&arrays[n], out);

@@ -4,6 +4,7 @@
 #include "failure.h"
 #include "input.h"
 #include "notice.h"
+#include "sample_types.h"
 #include "statistics.h"
 
 #include <inttypes.h>
@@ -57,8 +58,6 @@ int surface_tell_empty(const dataset *d, const scalar *field, const surface_repo
 /* --------------------------------------------------------------------------------------------------------- zero area
  */
 
-static int is_integer(tc_type type) { return type != TC_F32 && type != TC_F64; }
-
 /* Samples that equal the isovalue as it is interpolated with: in float for types that a float holds. */
 static int count_ties(const dataset *d, const scalar *field, double isovalue, uint64_t *ties) {
     sample_array *arrays = input_samples(d, field);
@@ -77,7 +76,7 @@ static int has_far_sample(const double range[2], double isovalue) {
 }
 
 static int tell_zero_area(const dataset *d, const scalar *field, const surface_report *s, uint64_t ties) {
-    const int has_half = is_integer(field->blocks->type) && s->iso->value == floor(s->iso->value);
+    const int has_half = !type_is_real(field->blocks->type) && s->iso->value == floor(s->iso->value);
     const uint64_t degenerate = s->summary.degenerate_triangles;
     double range[2];
     sample_array *arrays = input_samples(d, field);

@@ -12,6 +12,7 @@
  */
 #include "file_text.h"
 #include "formats.h"
+#include "stored_types.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -61,13 +62,13 @@ static void add_properties(file_text *header, const shown_mesh *s) {
     for (int i = 0; i < s->field_count && names; i++)
         for (int c = 0; c < s->fields[i].components; c++) {
             name_property(&s->fields[i], c, names, count);
-            text_add(header, "property float %s\n", names[count++]);
+            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, names[count++]);
         }
     free(names);
 }
 
 static void make_header(const shown_mesh *s, file_text *header) {
-    const char *type = s->is_moved ? "double" : "float";
+    const char *type = stored_types[s->is_moved ? TC_F64 : TC_F32].ply;
     text_add(header,
              "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
              "property %s x\nproperty %s y\nproperty %s z\n%s",

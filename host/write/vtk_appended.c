@@ -56,7 +56,7 @@ static void add_array(vtk_file *f, const vtk_array *array, const char *name) {
     text_add(&f->text,
              "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
              "offset=\"%llu\"/>\n",
-             array->type, name, array->components, (unsigned long long)f->appended_bytes);
+             stored_types[array->type].vtk_xml, name, array->components, (unsigned long long)f->appended_bytes);
     f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));
 }
 

@@ -13,9 +13,11 @@
 
 #include "file_text.h"
 #include "output.h"
+#include "stored_types.h"
 
 typedef struct vtk_array {
-    const char *name, *type; /* "Float32", ... */
+    const char *name;
+    int type; /* stored_types.h */
     int components;
     uint64_t record_count;
     size_t record_bytes;
@@ -52,7 +54,7 @@ static inline int vtk_needs_wide(uint64_t points, uint64_t corners) {
     return points > VTK_WIDE_FROM || corners > VTK_WIDE_FROM;
 }
 
-static inline const char *vtk_index_type(int is_wide) { return is_wide ? "Int64" : "Int32"; }
+static inline int vtk_index_type(int is_wide) { return is_wide ? (int)ELEMENT_I64 : (int)TC_I32; }
 
 /* Writes an index of that type; returns the address behind. */
 static inline unsigned char *put_index(unsigned char *to, uint64_t index, int is_wide) {

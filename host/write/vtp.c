@@ -54,7 +54,7 @@ static unsigned char *encode_ends(const void *source, uint64_t first, uint64_t e
 static vtk_array array_of(const char *name, const shown_values *values) {
     int is_plain = !values->shown->soup;
     return (vtk_array){.name = name,
-                       .type = "Float32",
+                       .type = TC_F32,
                        .components = values->components,
                        .record_count = file_vertex_count(values->shown),
                        .record_bytes = (size_t)values->components * sizeof(float),
@@ -79,7 +79,7 @@ static void add_fields(vtk_file *f, const shown_mesh *s, shown_values *fields) {
 /* In double precision. */
 static void add_positions(vtk_file *f, const shown_mesh *s) {
     vtk_array_add(f, &(vtk_array){.name = "Points",
-                                  .type = "Float64",
+                                  .type = TC_F64,
                                   .components = 3,
                                   .record_count = file_vertex_count(s),
                                   .record_bytes = 3 * sizeof(double),

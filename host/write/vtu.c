@@ -38,14 +38,12 @@ static unsigned char *encode_types(const void *source, uint64_t first, uint64_t 
 }
 
 static void add_field(vtk_file *f, const complex_file *c, const dataset_field *field) {
-    static const char *const types[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "Float32", "Float64"};
-    static const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
     static const char *const own[] = {"Points", "connectivity", "offsets", "types", NULL};
     const vtk_array array = {.name = field->name,
-                             .type = types[field->type],
+                             .type = (int)field->type,
                              .components = field->components,
                              .record_count = c->point_count,
-                             .record_bytes = (size_t)field->components * bytes[field->type],
+                             .record_bytes = (size_t)field->components * sample_bytes(field->type),
                              .source = field->values};
     vtk_field_add(f, &array, own);
 }
@@ -67,7 +65,7 @@ static void add_cells(vtk_file *f, const complex_file *c) {
                                   .encode = encode_ends,
                                   .source = c});
     vtk_array_add(f, &(vtk_array){.name = "types",
-                                  .type = "UInt8",
+                                  .type = TC_U8,
                                   .components = 1,
                                   .record_count = c->tetrahedron_count,
                                   .record_bytes = 1,
@@ -92,7 +90,7 @@ int complex_write(const char *path, const complex_file *c) {
     for (int i = 0; i < c->field_count; i++) add_field(&f, c, &c->fields[i]);
     text_add(&f.text, "      </PointData>\n      <Points>\n");
     vtk_array_add(&f, &(vtk_array){.name = "Points",
-                                   .type = c->points_f64 ? "Float64" : "Float32",
+                                   .type = c->points_f64 ? TC_F64 : TC_F32,
                                    .components = 3,
                                    .record_count = c->point_count,
                                    .record_bytes = c->points_f64 ? 24 : 12,

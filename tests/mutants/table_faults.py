@@ -209,7 +209,7 @@ MUTANTS = [
             "if (h->is_analyze) h->qform_code = h->sform_code = h->intent = 0;", "", "Analyze has a qform")),
     *point("VTK and Plot3D as programs write them",
            ("host/read/vtk_legacy_array.c", "test_vtk_legacy",
-            "!strncasecmp(word, types[i].name, strlen(types[i].name))", "!strcasecmp(word, types[i].name)",
+            "!strncasecmp(word, name, length))", "!strncasecmp(word, name, length) && !word[length])",
             "int1 is no type"),
            ("host/read/vtk_legacy_values.c", "test_vtk_legacy", "    r->at -= length - used;\n    return 1;",
             "    return used == length;", "VTK's text: numbers without blanks are refused"),

@@ -296,7 +296,7 @@ MUTANTS = [
            ("(uintptr_t)o->samples % tc_type_bytes(o->type)", "0 % tc_type_bytes(o->type)",
             "samples that are not aligned are taken")),
     *group("host/lib/reference/carry_vertex.c",
-           ("a * components + n);", "b * components + n);", "carried fields: the higher end's value for both"),
+           ("(a * components + n));", "(b * components + n));", "carried fields: the higher end's value for both"),
            ("double value = t == 1 ? to : from + (double)t * (to - from);", "double value = from + (double)t * (to - from);",
             "carried fields: t = 1 is not the end itself"),
            ("(float)(t == 0 ? from : value)", "(float)value", "carried fields: t = 0 is not the end itself"),

@@ -85,7 +85,7 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_tetrahedra *
     s.grid = (tc_grid){0};
     status = grid_describe(&o, &s.grid);
     if (!status) status = source_check(&s.grid);
-    s.may_miss = s.grid.blanked_samples || s.grid.has_nodata || s.grid.type >= TC_F32;
+    s.may_miss = s.grid.blanked_samples || s.grid.has_nodata || type_is_real(s.grid.type);
     const uint64_t cubes = (uint64_t)((s.grid.dims[0] - 1) * (s.grid.dims[1] - 1) * (s.grid.dims[2] - 1));
     if (!status) status = complex_make(cubes_cut, &s, cubes, &made, &bad_cell);
     grid_release(&s.grid);

@@ -40,7 +40,7 @@ static bool point_usable(const tc_grid *grid, int64_t n) { return floats_usable(
 /* Blanked samples are not looked for. */
 static bool chunk_misses(const tc_grid *grid, int64_t first, int64_t end) {
     bool misses = false;
-    if (!grid->samples || !(grid->has_nodata || grid->type == TC_F32 || grid->type == TC_F64)) return false;
+    if (!grid->samples || !(grid->has_nodata || type_is_real(grid->type))) return false;
     if (grid->type == TC_F32 && !grid->has_nodata)
         return !floats_finite((const float *)grid->samples + first, end - first);
     for (int64_t n = first; n < end && !misses; n++) misses = grid_sample_missing(grid, n);

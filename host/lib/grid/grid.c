@@ -8,16 +8,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
-static const size_t type_bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-
 /* Indices up to here are exact in float32, as which vertices are placed: where a grid begins farther from 0 they count
  * from a number near it, but as many samples along an axis have to be exact in any case. */
 static const int64_t index_limit = 1 << 24;
 
-size_t tc_type_bytes(tc_type type) { return (unsigned)type <= TC_F64 ? type_bytes[type] : 0; }
+size_t tc_type_bytes(tc_type type) { return sample_bytes(type); }
 
-const char *tc_type_name(tc_type type) { return (unsigned)type <= TC_F64 ? type_names[type] : NULL; }
+const char *tc_type_name(tc_type type) {
+#define TYPE_NAME(type, name, ...) [type] = #name,
+    static const char *const names[SAMPLE_TYPE_COUNT] = {SAMPLE_TYPES(TYPE_NAME)};
+#undef TYPE_NAME
+    return (unsigned)type < SAMPLE_TYPE_COUNT ? names[type] : NULL;
+}
 
 void tc_grid_options_init(tc_grid_options *options) {
     if (!options) return;

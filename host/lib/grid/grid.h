@@ -5,6 +5,7 @@
 #define GRID_H
 
 #include "grid/origin.h"
+#include "sample_types.h"
 #include "tetracubes.h"
 #include "opencl/tuning.h"
 
@@ -63,29 +64,10 @@ uint64_t grid_array_plane_bytes(const tc_grid *grid, int array);
 /* 0 where the first sample's cube is even. */
 unsigned grid_parity(const tc_grid *grid);
 
-static inline double value_at(tc_type type, const void *values, int64_t n) {
-    switch (type) {
-    case TC_U8:
-        return ((const uint8_t *)values)[n];
-    case TC_I8:
-        return ((const int8_t *)values)[n];
-    case TC_U16:
-        return ((const uint16_t *)values)[n];
-    case TC_I16:
-        return ((const int16_t *)values)[n];
-    case TC_U32:
-        return ((const uint32_t *)values)[n];
-    case TC_I32:
-        return ((const int32_t *)values)[n];
-    case TC_F32:
-        return (double)((const float *)values)[n];
-    default:
-        return ((const double *)values)[n];
-    }
-}
-
 /* A sample in the host's memory. */
-static inline double grid_value_at(const tc_grid *grid, int64_t n) { return value_at(grid->type, grid->samples, n); }
+static inline double grid_value_at(const tc_grid *grid, int64_t n) {
+    return value_at(grid->type, grid->samples, (uint64_t)n);
+}
 
 /* A sample that is blanked or has no value; where samples are in cl_samples only the first can be known. */
 static inline bool grid_sample_missing(const tc_grid *grid, int64_t n) {

@@ -1,5 +1,7 @@
 #include "grid/inside.h"
 
+#include "sample_types.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -43,18 +45,11 @@ static inside_range f64_range(double isovalue) {
 
 inside_range inside_range_of(tc_type type, double isovalue) {
     switch (type) {
-    case TC_U8:
-        return integer_range(isovalue, 0, UINT8_MAX);
-    case TC_I8:
-        return integer_range(isovalue, INT8_MIN, INT8_MAX);
-    case TC_U16:
-        return integer_range(isovalue, 0, UINT16_MAX);
-    case TC_I16:
-        return integer_range(isovalue, INT16_MIN, INT16_MAX);
-    case TC_U32:
-        return integer_range(isovalue, 0, UINT32_MAX);
-    case TC_I32:
-        return integer_range(isovalue, INT32_MIN, INT32_MAX);
+#define RANGE_CASE(type, name, c_type, least, most, ...)                                                               \
+    case type:                                                                                                         \
+        return integer_range(isovalue, least, most);
+        INTEGER_TYPES(RANGE_CASE)
+#undef RANGE_CASE
     case TC_F32:
         return f32_range(isovalue);
     default:
@@ -71,18 +66,11 @@ static bool integer_pattern(double value, double least, double most, uint64_t pa
 bool sample_patterns(tc_type type, double value, uint64_t patterns[2]) {
     patterns[0] = patterns[1] = 0;
     switch (type) {
-    case TC_U8:
-        return integer_pattern(value, 0, UINT8_MAX, patterns);
-    case TC_I8:
-        return integer_pattern(value, INT8_MIN, INT8_MAX, patterns);
-    case TC_U16:
-        return integer_pattern(value, 0, UINT16_MAX, patterns);
-    case TC_I16:
-        return integer_pattern(value, INT16_MIN, INT16_MAX, patterns);
-    case TC_U32:
-        return integer_pattern(value, 0, UINT32_MAX, patterns);
-    case TC_I32:
-        return integer_pattern(value, INT32_MIN, INT32_MAX, patterns);
+#define PATTERN_CASE(type, name, c_type, least, most, ...)                                                             \
+    case type:                                                                                                         \
+        return integer_pattern(value, least, most, patterns);
+        INTEGER_TYPES(PATTERN_CASE)
+#undef PATTERN_CASE
     case TC_F32:
         if (!isfinite(value) || (double)(float)value != value) return false;
         patterns[0] = patterns[1] = bits_of_f32((float)value);

@@ -43,8 +43,6 @@ void context_finish(const tc_context *context) {
     if (context->queue && !context_is_inherited(context)) cl->Finish(context->queue);
 }
 
-bool type_is_wide(tc_type type) { return type == TC_U32 || type == TC_I32 || type == TC_F64; }
-
 bool device_makes_vertices(const tc_context *context, tc_type type) {
     return context->info.has_fp64 || !type_is_wide(type);
 }

@@ -8,6 +8,7 @@
 #include "base/host_block.h"
 #include "opencl/kernel_kind.h"
 #include "opencl/opencl.h"
+#include "sample_types.h"
 #include "tetracubes.h"
 #include "opencl/tuning.h"
 
@@ -103,9 +104,6 @@ void context_finish(const tc_context *context);
 
 /* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
-
-/* u32, i32 and f64 samples: vertices are made in double. */
-bool type_is_wide(tc_type type);
 
 /* False where vertices of a wide type have to be made on the host. */
 bool device_makes_vertices(const tc_context *context, tc_type type);

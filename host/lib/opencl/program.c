@@ -6,6 +6,7 @@
 #include "opencl/program.h"
 
 #include "failure.h"
+#include "sample_types.h"
 #include "opencl/kernel_sources.h"
 #include "opencl/pocl_cache.h"
 #include "opencl/program_cache.h"
@@ -15,25 +16,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The kernels' names for a sample type: unsigned type of its width, width in bits where floating, value of a sample. */
+/* The kernels' names for a sample type (sample_types.h). */
 typedef struct type_text {
-    const char *bits;
-    int floating;
-    const char *value;
+    const char *bits, *value;
 } type_text;
 
-static const type_text type_texts[] = {
-    [TC_U8] = {"uchar", 0, "(float)(b)"},   [TC_I8] = {"uchar", 0, "(float)as_char(b)"},
-    [TC_U16] = {"ushort", 0, "(float)(b)"}, [TC_I16] = {"ushort", 0, "(float)as_short(b)"},
-    [TC_U32] = {"uint", 0, "(double)(b)"},  [TC_I32] = {"uint", 0, "(double)as_int(b)"},
-    [TC_F32] = {"uint", 32, "as_float(b)"}, [TC_F64] = {"ulong", 64, "as_double(b)"},
-};
+#define TYPE_TEXT(type, name, c_type, least, most, cl_bits, cl_value) [type] = {#cl_bits, #cl_value},
+static const type_text type_texts[SAMPLE_TYPE_COUNT] = {SAMPLE_TYPES(TYPE_TEXT)};
+
+/* The width in bits, as the kernels know types of floating point. */
+static unsigned floating_bits(tc_type type) { return type_is_real(type) ? 8 * (unsigned)sample_bytes(type) : 0; }
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
 static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    const type_text *type = &type_texts[kind.type];
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%d -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d", type->bits,
-             type->floating, kind.missing, context->launch.work_items, kind.hybrid);
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d",
+             type_texts[kind.type].bits, floating_bits(kind.type), kind.missing, context->launch.work_items,
+             kind.hybrid);
 }
 
 static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {

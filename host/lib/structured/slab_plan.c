@@ -70,8 +70,7 @@ static uint64_t axes_bytes(const tc_grid *grid) {
 }
 
 static bool can_miss_samples(const tc_grid *grid) {
-    return grid->has_nodata || grid->blanked_samples || grid->blanked_cells || grid->type == TC_F32 ||
-           grid->type == TC_F64;
+    return grid->has_nodata || grid->blanked_samples || grid->blanked_cells || type_is_real(grid->type);
 }
 
 /* Bytes of everything but the mesh; *largest: of the largest buffer. */
