@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "progress.h"
+#include "read.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -126,16 +127,19 @@ int samples_read(const bench_options *o, samples *out) {
         memcpy(request.dims, o->dims[0], sizeof request.dims);
         request.type = (int)o->types[0];
     }
-    int status = volume_read(&request, &out->read);
+    int status = dataset_read(&request, &out->read);
     if (status) return status;
-    const volume *v = &out->read;
+    if (!out->read.frames)
+        return fail(STATUS_INPUT, "%s: is no image; of images this program reads raw, NRRD, MetaImage and NIfTI",
+                    o->input);
+    const dataset_block *b = out->read.blocks;
     tc_grid_options_init(&out->grid);
-    memcpy(out->grid.dims, v->dims, sizeof v->dims);
-    memcpy(out->grid.first_index, v->first, sizeof v->first);
-    memcpy(out->grid.matrix, v->matrix, sizeof v->matrix);
-    out->grid.type = v->type;
-    out->grid.samples = v->samples;
-    out->bytes = (uint64_t)v->dims[0] * (uint64_t)v->dims[1] * (uint64_t)v->dims[2] * tc_type_bytes(v->type);
+    memcpy(out->grid.dims, b->dims, sizeof b->dims);
+    memcpy(out->grid.first_index, b->first, sizeof b->first);
+    memcpy(out->grid.matrix, b->matrix, sizeof b->matrix);
+    out->grid.type = b->fields->type;
+    out->grid.samples = b->fields->values;
+    out->bytes = (uint64_t)b->point_count * tc_type_bytes(b->fields->type);
     return 0;
 }
 
@@ -154,6 +158,6 @@ void samples_release(samples *s) {
     if (s->made) munmap(s->made, s->bytes);
     if (s->coordinates) munmap(s->coordinates, s->coordinate_bytes);
     tc_tetrahedra_release(&s->complex);
-    volume_release(&s->read);
+    dataset_release(&s->read);
     *s = (samples){0};
 }

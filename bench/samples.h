@@ -3,15 +3,15 @@
 #define SAMPLES_H
 
 #include "bench_options.h"
-#include "volume.h"
+#include "dataset.h"
 
 typedef struct samples {
     const field *made_from; /* NULL: a file */
     const char *name;       /* of the field, or of the file without its folders */
     tc_grid_options grid;
     uint64_t bytes;
-    void *made;  /* page-aligned, so that a device that shares the host's memory uses it in place; or NULL */
-    volume read; /* the file's, where there is one */
+    void *made;   /* page-aligned, so that a device that shares the host's memory uses it in place; or NULL */
+    dataset read; /* the file's, where there is one */
     bench_grid placed;
     float *coordinates; /* axes one after the other, or points; page-aligned, or NULL */
     uint64_t coordinate_bytes;

@@ -12,7 +12,8 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "folder.h"
-#include "volume.h"
+#include "read.h"
+#include "sample_types.h"
 
 #include <bzlib.h>
 #include <inttypes.h>
@@ -154,26 +155,46 @@ static inline const char *file_behind(const char *name, const char *header, cons
     return path;
 }
 
-static inline double volume_value(const volume *v, uint64_t i) {
-    switch (v->type) {
-    case TC_U8:
-        return ((const uint8_t *)v->samples)[i];
-    case TC_I8:
-        return ((const int8_t *)v->samples)[i];
-    case TC_U16:
-        return ((const uint16_t *)v->samples)[i];
-    case TC_I16:
-        return ((const int16_t *)v->samples)[i];
-    case TC_U32:
-        return ((const uint32_t *)v->samples)[i];
-    case TC_I32:
-        return ((const int32_t *)v->samples)[i];
-    case TC_F32:
-        return (double)((const float *)v->samples)[i];
-    default:
-        return ((const double *)v->samples)[i];
+/* An image as the tests look at it: its dataset, and what its block and field say. */
+typedef struct read_image {
+    dataset d;
+    int64_t dims[3];
+    double matrix[3][4];
+    tc_type type;
+    int components;
+    const void *samples;
+} read_image;
+
+/* As dataset_read; grids that are no images are refused. *v is zeroed where it fails. */
+static inline int image_read(const read_request *request, read_image *v) {
+    memset(v, 0, sizeof *v);
+    memset(&v->d, 0x55, sizeof v->d);
+    int status = dataset_read(request, &v->d);
+    if (!status && !v->d.frames) {
+        dataset_release(&v->d);
+        status = fail(STATUS_INPUT, "%s: is no image", request->path);
     }
+    if (status) return status;
+    const dataset_block *b = v->d.blocks;
+    EXPECT(v->d.block_count == 1 && b->kind == GRID_UNIFORM && b->field_count == 1 && !*b->fields->name,
+           "%s: an image of %d blocks", request->path, v->d.block_count);
+    EXPECT(b->point_count == b->dims[0] * b->dims[1] * b->dims[2] &&
+               b->cell_count == (b->dims[0] - 1) * (b->dims[1] - 1) * (b->dims[2] - 1),
+           "%s: %" PRId64 " points, %" PRId64 " cells", request->path, b->point_count, b->cell_count);
+    memcpy(v->dims, b->dims, sizeof v->dims);
+    memcpy(v->matrix, b->matrix, sizeof v->matrix);
+    v->type = b->fields->type;
+    v->components = b->fields->components;
+    v->samples = b->fields->values;
+    return 0;
 }
+
+static inline void image_release(read_image *v) {
+    dataset_release(&v->d);
+    memset(v, 0, sizeof *v);
+}
+
+static inline double image_value(const read_image *v, uint64_t i) { return value_at(v->type, v->samples, i); }
 
 /* What a volume should be: the stored values at offset + stride * i, of the stored type. */
 typedef struct expected {
@@ -187,8 +208,8 @@ typedef struct expected {
 
 static inline void expect_volume(const char *what, const read_request *request, const expected *e) {
     static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    volume v;
-    int status = volume_read(request, &v);
+    read_image v;
+    int status = image_read(request, &v);
     EXPECT(status == 0, "%s: status %d: %s", what, status, failure_text());
     if (status) return;
     int is_scaled = e->slope != 0;
@@ -196,8 +217,8 @@ static inline void expect_volume(const char *what, const read_request *request, 
     EXPECT(v.type == type, "%s: type %d, not %d", what, v.type, type);
     EXPECT(!memcmp(v.dims, e->dims, sizeof v.dims), "%s: dims %" PRId64 " %" PRId64 " %" PRId64, what, v.dims[0],
            v.dims[1], v.dims[2]);
-    EXPECT(!e->format || !strcmp(v.format, e->format), "%s: format %s", what, v.format);
-    EXPECT(!e->space || !strcmp(v.space, e->space), "%s: space '%s'", what, v.space);
+    EXPECT(!e->format || !strcmp(v.d.format, e->format), "%s: format %s", what, v.d.format);
+    EXPECT(!e->space || !strcmp(v.d.space, e->space), "%s: space '%s'", what, v.d.space);
     EXPECT((uintptr_t)v.samples % stored_bytes((int)type) == 0, "%s: samples are not aligned", what);
     for (int i = 0; i < 12; i++) {
         double wanted = (e->matrix ? e->matrix : identity)[i];
@@ -208,30 +229,29 @@ static inline void expect_volume(const char *what, const read_request *request, 
     for (uint64_t i = 0; i < count && v.type == type; i++) {
         double value = test_value(e->stored, e->offset + i * (e->stride ? e->stride : 1));
         if (is_scaled) value = e->slope * value + e->intercept;
-        wrong += volume_value(&v, i) != value;
+        wrong += image_value(&v, i) != value;
     }
     EXPECT(wrong == 0, "%s: %" PRIu64 " samples are wrong", what, wrong);
-    volume_release(&v);
-    EXPECT(!v.samples && !v.mapping && !v.allocation, "%s: not zeroed by its release", what);
+    dataset_release(&v.d);
+    EXPECT(!v.d.blocks && !v.d.mapping && !v.d.memory, "%s: not zeroed by its release", what);
 }
 
-static inline int is_zero(const volume *v) {
-    static const volume zero;
+static inline int is_zero(const read_image *v) {
+    static const read_image zero;
     return !memcmp(v, &zero, sizeof zero);
 }
 
 /* The read must fail with the status, a text that holds every given part, and a zeroed volume. */
 static inline void expect_failure(const char *what, const read_request *request, int status, const char *part) {
-    volume v;
-    memset(&v, 0x55, sizeof v);
+    read_image v;
     fail(0, "(no text)");
-    int got = volume_read(request, &v);
+    int got = image_read(request, &v);
     EXPECT(got == status, "%s: status %d, not %d: %s", what, got, status, failure_text());
     EXPECT(strstr(failure_text(), part), "%s: text has no '%s': %s", what, part, failure_text());
     if (got)
         EXPECT(is_zero(&v), "%s: not zeroed", what);
     else
-        volume_release(&v);
+        image_release(&v);
 }
 
 static inline read_request request_for(const char *path) {

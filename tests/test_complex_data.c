@@ -8,7 +8,7 @@
  * (status 77).
  */
 #include "complex.h"
-#include "dataset.h"
+#include "read.h"
 #include "expect.h"
 #include "failure.h"
 

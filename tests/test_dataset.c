@@ -12,6 +12,7 @@
 #include "sample_types.h"
 #include "folder.h"
 #include "random.h"
+#include "read.h"
 #include "select.h"
 
 #include <math.h>
@@ -62,7 +63,7 @@ static void add_field(dataset_block *b, const char *name, int on_cells, int comp
                       const void *values) {
     dataset_field *f;
     if (dataset_field_add(b, &f)) abort();
-    *f = (dataset_field){name, on_cells, components, type, 0, values};
+    *f = (dataset_field){.name = name, .on_cells = on_cells, .components = components, .type = type, .values = values};
 }
 
 static void says(const char *text) { EXPECT(strstr(failure_text(), text), "'%s' is not in: %s", text, failure_text()); }

@@ -35,13 +35,13 @@ static void test_raw(void) {
                 e.matrix = matrix;
                 expect_volume("raw", &r, &e);
 
-                volume v;
+                read_image v;
                 int native = big == (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__) || stored_bytes(type) == 1;
-                if (volume_read(&r, &v) == 0)
-                    EXPECT(!!v.mapping == (native && skip % stored_bytes(type) == 0) && !v.mapping == !!v.allocation,
+                if (image_read(&r, &v) == 0)
+                    EXPECT(!!v.d.mapping == (native && skip % stored_bytes(type) == 0) && !v.d.mapping == !!v.d.memory,
                            "raw of type %d, big %d, skip %d is %s", type, big, (int)skip,
-                           v.mapping ? "mapped" : "copied");
-                volume_release(&v);
+                           v.d.mapping ? "mapped" : "copied");
+                image_release(&v);
                 bytes_free(&file);
                 bytes_free(&samples);
             }
@@ -226,12 +226,12 @@ static void test_nrrd_stream_skip(void) {
     read_request r = request_for(file_write("a.nrrd", file.data, file.size));
     expected e = plain(TC_U8, "NRRD");
     expect_volume("two gzip members, bytes skipped inside", &r, &e);
-    volume v;
-    EXPECT(volume_read(&r, &v) == 0 && strstr(v.notice, "more data"), "notice: '%s'", v.notice);
-    volume_release(&v);
+    read_image v;
+    EXPECT(image_read(&r, &v) == 0 && strstr(v.d.notice, "more data"), "notice: '%s'", v.d.notice);
+    image_release(&v);
     r = write_nrrd(TC_U8, 0, "gzip", "");
-    EXPECT(volume_read(&r, &v) == 0 && !*v.notice, "notice: '%s'", v.notice);
-    volume_release(&v);
+    EXPECT(image_read(&r, &v) == 0 && !*v.d.notice, "notice: '%s'", v.d.notice);
+    image_release(&v);
     bytes_free(&inner);
     bytes_free(&samples);
     bytes_free(&file);

@@ -71,14 +71,14 @@ static void test_case(const char *data, const data_case *c) {
     snprintf(path, sizeof path, "%s/%s", data, c->name);
     read_request r = request_for(path);
     r.component = c->component;
-    volume v;
-    int status = volume_read(&r, &v);
+    read_image v;
+    int status = image_read(&r, &v);
     EXPECT(status == 0, "%s: status %d: %s", c->name, status, failure_text());
     if (status) return;
     EXPECT(v.type == c->type, "%s: type %d", c->name, v.type);
     EXPECT(!memcmp(v.dims, c->dims, sizeof v.dims), "%s: dims %" PRId64 " %" PRId64 " %" PRId64, c->name, v.dims[0],
            v.dims[1], v.dims[2]);
-    EXPECT(!strcmp(v.space, c->space), "%s: space '%s'", c->name, v.space);
+    EXPECT(!strcmp(v.d.space, c->space), "%s: space '%s'", c->name, v.d.space);
     for (int i = 0; i < 3; i++) {
         double length =
             sqrt(v.matrix[0][i] * v.matrix[0][i] + v.matrix[1][i] * v.matrix[1][i] + v.matrix[2][i] * v.matrix[2][i]);
@@ -86,11 +86,11 @@ static void test_case(const char *data, const data_case *c) {
     }
     double low = INFINITY, high = -INFINITY;
     for (int64_t i = 0; i < v.dims[0] * v.dims[1] * v.dims[2]; i++) {
-        low = fmin(low, volume_value(&v, (uint64_t)i));
-        high = fmax(high, volume_value(&v, (uint64_t)i));
+        low = fmin(low, image_value(&v, (uint64_t)i));
+        high = fmax(high, image_value(&v, (uint64_t)i));
     }
     EXPECT(isnan(c->low) || (low == c->low && high == c->high), "%s: values %g to %g", c->name, low, high);
-    volume_release(&v);
+    image_release(&v);
 }
 
 /* One volume in several wrappings. */
@@ -99,12 +99,12 @@ static void test_same(const char *data, const char *first, const char *second) {
     snprintf(a_path, sizeof a_path, "%s/malformed/nrrd_pynrrd/BallBinary30x30x30%s", data, first);
     snprintf(b_path, sizeof b_path, "%s/malformed/nrrd_pynrrd/BallBinary30x30x30%s", data, second);
     read_request a_request = request_for(a_path), b_request = request_for(b_path);
-    volume a, b;
-    int a_status = volume_read(&a_request, &a), b_status = volume_read(&b_request, &b);
+    read_image a, b;
+    int a_status = image_read(&a_request, &a), b_status = image_read(&b_request, &b);
     EXPECT(!a_status && !b_status && !memcmp(a.samples, b.samples, 54000), "%s differs from %s: %s", second, first,
            failure_text());
-    volume_release(&a);
-    volume_release(&b);
+    image_release(&a);
+    image_release(&b);
 }
 
 /* Whatever a file holds: a volume that can be read to its end, or STATUS_INPUT; STATUS_USAGE where the text asks for an
@@ -116,9 +116,9 @@ static int test_any(const char *path, const struct stat *about, int kind, struct
     for (int choice = -1; choice < 1; choice++) {
         read_request r = request_for(path);
         r.component = r.frame = choice;
-        volume v;
+        read_image v;
         fail(0, "(no text)");
-        int status = volume_read(&r, &v);
+        int status = image_read(&r, &v);
         int is_raw = strlen(path) > 4 && !strcmp(path + strlen(path) - 4, ".raw");
         int is_open = is_raw || strstr(failure_text(), "; choose one with --");
         EXPECT(status == 0 || status == (is_open ? STATUS_USAGE : STATUS_INPUT), "%s: status %d: %s", path, status,
@@ -127,8 +127,8 @@ static int test_any(const char *path, const struct stat *about, int kind, struct
         EXPECT(status == 0 || is_zero(&v), "%s: not zeroed", path);
         volatile double sum = 0;
         for (int64_t i = 0; !status && i < v.dims[0] * v.dims[1] * v.dims[2]; i++)
-            sum = sum + volume_value(&v, (uint64_t)i);
-        volume_release(&v);
+            sum = sum + image_value(&v, (uint64_t)i);
+        image_release(&v);
     }
     return 0;
 }

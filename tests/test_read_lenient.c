@@ -12,11 +12,11 @@ static expected plain(int type, const double *matrix) {
 
 /* notice: a part of it; NULL: there must be none. */
 static void expect_noticed(const char *what, const read_request *request, const expected *e, const char *notice) {
-    volume v;
+    read_image v;
     expect_volume(what, request, e);
-    if (volume_read(request, &v)) return;
-    EXPECT(notice ? strstr(v.notice, notice) != NULL : !*v.notice, "%s: notice '%s'", what, v.notice);
-    volume_release(&v);
+    if (image_read(request, &v)) return;
+    EXPECT(notice ? strstr(v.d.notice, notice) != NULL : !*v.d.notice, "%s: notice '%s'", what, v.d.notice);
+    image_release(&v);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ NRRD */
@@ -249,11 +249,11 @@ static void test_packed_masks(void) {
         snprintf(header, sizeof header, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: %d %d %d\nencoding: %s\n\n", SIDE,
                  SIDE, SIDE, bzip2 ? "bzip2" : "gzip");
         read_request r = request_for(file_behind("m.nrrd", header, &packed));
-        volume v;
-        int status = volume_read(&r, &v);
+        read_image v;
+        int status = image_read(&r, &v);
         EXPECT(status == 0 && !memcmp(v.samples, mask, size), "a mask of %zu packed bytes: %s", packed.size,
                failure_text());
-        volume_release(&v);
+        image_release(&v);
         bytes_free(&packed);
     }
     free(mask);
@@ -586,17 +586,17 @@ static void test_described(void) {
             snprintf(header, sizeof header, "NRRD0005\ntype: %s\n%sendian: %s\nencoding: raw\n\n", names[type],
                      cases[n / 2].fields, big ? "big" : "little");
             read_request r = request_for(file_behind("a.nrrd", header, &samples));
-            volume v;
+            read_image v;
             r.describe = 1;
-            int status = volume_read(&r, &v);
-            EXPECT(status == 0 && v.components == 3 && v.frames == cases[n / 2].frames, "%s: status %d, %s", header,
+            int status = image_read(&r, &v);
+            EXPECT(status == 0 && v.components == 3 && v.d.frames == cases[n / 2].frames, "%s: status %d, %s", header,
                    status, failure_text());
             uint64_t wrong = 0;
             for (uint64_t i = 0; i < 3 * (uint64_t)COUNT && !status; i++)
-                wrong += volume_value(&v, i) !=
+                wrong += image_value(&v, i) !=
                          test_value(type, i % 3 * cases[n / 2].of_component + i / 3 * cases[n / 2].of_sample);
             EXPECT(!wrong, "%s: %" PRIu64 " values are wrong", header, wrong);
-            volume_release(&v);
+            image_release(&v);
             bytes_free(&samples);
         }
 }

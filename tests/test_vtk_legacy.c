@@ -32,10 +32,7 @@ static const struct {
 
 enum { TYPES = sizeof types / sizeof *types };
 
-static double value_at(const dataset_field *f, int64_t i) {
-    volume v = {.type = f->type, .samples = f->values};
-    return volume_value(&v, (uint64_t)i);
-}
+static double field_value(const dataset_field *f, int64_t i) { return value_at(f->type, f->values, (uint64_t)i); }
 
 static int64_t value_count(const dataset_block *b, const dataset_field *f) {
     return (f->on_cells ? b->cell_count : b->point_count) * f->components;
@@ -81,7 +78,7 @@ static void expect_field(const char *what, const dataset *d, const char *name, i
            (int)f->type, f->components);
     if ((int)f->type != type || f->components != components) return;
     for (int64_t i = 0; i < value_count(d->blocks, f); i++)
-        EXPECT(value_at(f, i) == values[i], "%s: '%s'[%" PRId64 "] is %g, not %g", what, name, i, value_at(f, i),
+        EXPECT(field_value(f, i) == values[i], "%s: '%s'[%" PRId64 "] is %g, not %g", what, name, i, field_value(f, i),
                values[i]);
 }
 
@@ -222,7 +219,7 @@ static void touch(const dataset *d) {
     volatile double sum = 0;
     const dataset_block *b = d->blocks;
     for (int f = 0; f < b->field_count; f++)
-        for (int64_t i = 0; i < value_count(b, &b->fields[f]); i++) sum = sum + value_at(&b->fields[f], i);
+        for (int64_t i = 0; i < value_count(b, &b->fields[f]); i++) sum = sum + field_value(&b->fields[f], i);
     for (int64_t i = 0; (b->points.f32 || b->points.f64) && i < 3 * b->point_count; i++)
         sum = sum + coordinate_at(b->points, i);
     for (int a = 0; a < 3; a++)
@@ -355,7 +352,8 @@ static void test_forms(void) {
         EXPECT(first[0] == -1 && first[1] == 5 && first[2] == 7 && dims[0] == 2 && dims[1] == 2 && dims[2] == 1,
                "extent");
         EXPECT(d.blocks->matrix[1][1] == 2 && d.blocks->matrix[1][3] == 1, "matrix of an extent");
-        EXPECT(c && isnan(value_at(c, 0)) && t && isinf(value_at(t, 1)) && six && value_at(six, 8) == 9, "nan, inf");
+        EXPECT(c && isnan(field_value(c, 0)) && t && isinf(field_value(t, 1)) && six && field_value(six, 8) == 9,
+               "nan, inf");
         expect_field("forms", &d, "bare", 0, TC_F32, 1, bare);
         expect_field("forms", &d, "rgb", 0, TC_U8, 1, rgb);
         expect_field("forms", &d, "n", 0, TC_I16, 1, n);
@@ -508,7 +506,7 @@ static void test_columns(void) {
     for (int n = 0; n < 1000; n++) bytes_text(&file, "-%d.0E+00", n);
     int status = read_bytes("line.vtk", file.data, file.size, &d);
     EXPECT(!status, "%s", failure_text());
-    for (int n = 0; n < 1000 && !status; n++) EXPECT(value_at(d.blocks->fields, n) == -n, "number %d of a line", n);
+    for (int n = 0; n < 1000 && !status; n++) EXPECT(field_value(d.blocks->fields, n) == -n, "number %d of a line", n);
     if (!status) dataset_release(&d);
     bytes_free(&file);
 }
@@ -590,7 +588,7 @@ static void test_in_place(void) {
     for (int n = 0; n < 2 && !status; n++) {
         const dataset_field *f = &d.blocks->fields[n];
         int64_t wrong = 0;
-        for (int64_t i = 0; i < COUNT; i++) wrong += value_at(f, i) != (double)(i % 251 + n);
+        for (int64_t i = 0; i < COUNT; i++) wrong += field_value(f, i) != (double)(i % 251 + n);
         EXPECT(!wrong, "in place: %" PRId64 " values of %s", wrong, f->name);
         EXPECT((const unsigned char *)f->values > (unsigned char *)d.mapping &&
                    (const unsigned char *)f->values < (unsigned char *)d.mapping + d.mapping_bytes,
@@ -790,8 +788,8 @@ static void test_published(const char *data) {
                published[i].field);
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (int64_t k = 0; f && k < value_count(b, f); k++) {
-            low = fmin(low, value_at(f, k));
-            high = fmax(high, value_at(f, k));
+            low = fmin(low, field_value(f, k));
+            high = fmax(high, field_value(f, k));
         }
         EXPECT(fabs(low - published[i].low) <= 1e-5 * fabs(published[i].low) &&
                    fabs(high - published[i].high) <= 1e-5 * fabs(published[i].high),

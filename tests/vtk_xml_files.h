@@ -182,9 +182,6 @@ static inline int read_bytes(const char *name, const bytes *file, dataset *out) 
     return read_path(file_write(name, file->data, file->size), out);
 }
 
-static inline double field_value(const dataset_field *f, uint64_t i) {
-    volume v = {.type = f->type, .samples = f->values};
-    return volume_value(&v, i);
-}
+static inline double field_value(const dataset_field *f, uint64_t i) { return value_at(f->type, f->values, i); }
 
 #endif

@@ -1,9 +1,9 @@
 #include "dataset.h"
 
+#include "array_memory.h"
 #include "control.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "layout.h"
 #include "mapping.h"
 
 #include <stdarg.h>
@@ -19,16 +19,21 @@ typedef struct dataset_memory {
 } dataset_memory;
 
 void *dataset_allocate(dataset *d, uint64_t bytes) {
+    void *memory = samples_allocate(bytes ? bytes : 1);
+    if (memory && !dataset_keep(d, memory)) return memory;
+    fail(STATUS_FAILED, "no memory for %llu bytes of the input", (unsigned long long)bytes);
+    return NULL;
+}
+
+int dataset_keep(dataset *d, void *memory) {
     dataset_memory *entry = malloc(sizeof *entry);
-    void *memory = entry ? samples_allocate(bytes ? bytes : 1) : NULL;
-    if (!memory) {
-        free(entry);
-        fail(STATUS_FAILED, "no memory for %llu bytes of the input", (unsigned long long)bytes);
-        return NULL;
+    if (!entry) {
+        free(memory);
+        return fail(STATUS_FAILED, "no memory for the list of the input's arrays");
     }
     *entry = (dataset_memory){d->memory, memory};
     d->memory = entry;
-    return memory;
+    return 0;
 }
 
 char *dataset_text(dataset *d, const char *text) {
@@ -52,6 +57,16 @@ int dataset_field_add(dataset_block *block, dataset_field **out) {
     block->fields = fields;
     *out = &fields[block->field_count++];
     **out = (dataset_field){0};
+    return 0;
+}
+
+int dataset_image_begin(dataset *d) {
+    dataset_block *block = NULL;
+    dataset_field *field = NULL;
+    if (dataset_block_add(d, &block) || dataset_field_add(block, &field)) return STATUS_FAILED;
+    block->kind = GRID_UNIFORM;
+    field->name = "";
+    d->frames = 1;
     return 0;
 }
 
@@ -111,7 +126,6 @@ void dataset_release(dataset *d) {
     free(d->blocks);
     free(d->absent);
     mapping_close(&(mapping){d->mapping, d->mapping_bytes});
-    volume_release(&d->image);
     for (int n = 0; n < d->notice_count; n++) free(d->notices[n]);
     free(d->notices);
     *d = (dataset){0};

@@ -8,7 +8,7 @@
 #ifndef DATASET_H
 #define DATASET_H
 
-#include "volume.h"
+#include "tetracubes.h"
 
 typedef struct dataset_field {
     const char *name; /* "" where the format has no names */
@@ -17,6 +17,7 @@ typedef struct dataset_field {
     tc_type type;     /* 64-bit integers have become f64, */
     int is_rounded;   /* some of them to the nearest, as no double holds them */
     const void *values;
+    const char *meaning; /* of the components, "red, green, blue"; NULL where unknown */
 } dataset_field;
 
 /* Coordinates in the precision that the file has: one of the two leads anywhere. */
@@ -67,15 +68,13 @@ typedef struct dataset {
     dataset_absent *absent; /* each name once */
     int absent_count;
 
-    volume image; /* of the readers of uniform images: owns what their one block points to */
-    void *mapping;
+    int64_t frames; /* of images, one uniform block with one field without a name: volumes to choose from, of which this
+                       is the first; 1 where one was chosen, or is alone. 0: other grids */
+
+    void *mapping; /* a file mapped into memory, or NULL */
     size_t mapping_bytes;
     struct dataset_memory *memory; /* list of all that dataset_allocate gave */
 } dataset;
-
-/* Reads the file, or the files of request->paths, in the format that content, else ending, tells. Returns 0 and a
- * dataset to be released, or an exit status (exit_status.h) with its text (failure.h), *out zeroed. */
-int dataset_read(const read_request *request, dataset *out);
 
 /* Frees or unmaps all and zeroes *d. */
 void dataset_release(dataset *d);
@@ -84,12 +83,19 @@ void dataset_release(dataset *d);
  * set, where there is none. 0 bytes: memory all the same. */
 void *dataset_allocate(dataset *d, uint64_t bytes);
 
+/* Takes over memory from samples_allocate: it lives as long as the dataset, or is freed at once where this fails. 0 or
+ * STATUS_FAILED. */
+int dataset_keep(dataset *d, void *memory);
+
 /* A copy of the text that lives as long as the dataset. */
 char *dataset_text(dataset *d, const char *text);
 
 /* Adds a zeroed block or field; *out stays valid until the next is added. 0 or STATUS_FAILED. */
 int dataset_block_add(dataset *d, dataset_block **out);
 int dataset_field_add(dataset_block *block, dataset_field **out);
+
+/* Begins an image: its block, and its field without a name. 0 or STATUS_FAILED. */
+int dataset_image_begin(dataset *d);
 
 /* Notes an array that is left out, with a notice for the first of its name: format makes the reason. The texts are
  * copied. 0 or STATUS_FAILED. */

@@ -5,9 +5,7 @@
 #include "failure.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 /* The index along an axis of frames or components that the request chooses; 0 where it may leave that open. */
 static int choose(const char *path, const axes *from, int axis, const read_request *request, uint64_t *index) {
@@ -222,15 +220,4 @@ int layout_gather(const char *path, const layout *l, const unsigned char *stored
                             path);
         }
     return 0;
-}
-
-void *samples_allocate(uint64_t bytes) {
-    enum { SMALL_PAGE = 4096, HUGE_PAGE = 2 << 20, HUGE_FROM = 256 << 10 };
-    size_t page = bytes < HUGE_FROM ? SMALL_PAGE : HUGE_PAGE;
-    void *memory = NULL;
-    if (bytes > SIZE_MAX / 2) return NULL;
-    size_t whole_pages = ((size_t)bytes + page - 1) & ~(page - 1);
-    if (posix_memalign(&memory, page, whole_pages ? whole_pages : page)) return NULL;
-    if (page == HUGE_PAGE) madvise(memory, whole_pages, MADV_HUGEPAGE);
-    return memory;
 }

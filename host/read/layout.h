@@ -9,8 +9,8 @@
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
+#include "request.h"
 #include "stored_types.h"
-#include "volume.h"
 
 enum { MAX_AXES = 16 };
 
@@ -32,7 +32,7 @@ typedef struct layout {
     uint64_t stride[3];        /* elements from one sample to the next */
     int components;            /* values of a sample that are taken out (0 as 1), */
     uint64_t component_stride; /* so many elements from one to the next */
-    int64_t frames;            /* as in volume */
+    int64_t frames;            /* as in dataset */
     uint64_t offset;           /* element of the first sample */
     int scaled;                /* slope * value + intercept, in double */
     double slope;
@@ -51,9 +51,5 @@ int layout_is_plain(const layout *l, const unsigned char *stored);
 /* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of so many components, of layout_type.
  * STATUS_INPUT where a 64-bit integer has no exact double, its row and those before it filled with the nearest. */
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
-
-/* Memory for samples, to be freed: page-aligned, so that devices can use it in place, and in huge pages where large,
- * since new small ones cost more than reading a file. NULL where there is none. */
-void *samples_allocate(uint64_t bytes);
 
 #endif

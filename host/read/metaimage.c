@@ -220,7 +220,7 @@ static int parse_header(meta_header *h, header_text *text) {
 
 /* Cuts what is too much, with a notice; what is too little is an error unless the request stands for it. */
 static int check_list(const meta_header *h, const char *key, number_list *list, int needed, int is_replaced,
-                      volume *out) {
+                      dataset *out) {
     if (!list->count) return 0;
     if (list->count < needed && is_replaced) {
         list->count = 0;
@@ -230,8 +230,8 @@ static int check_list(const meta_header *h, const char *key, number_list *list, 
         return fail(STATUS_INPUT, "%s: %s has %d values, but NDims = %d asks for %d", h->path, key, list->count,
                     h->dimension, needed);
     if (list->count > needed)
-        volume_notice(out, "%s has %d values, of which its %d axes need %d: those are used", key, list->count,
-                      h->dimension, needed);
+        dataset_notice(out, "%s has %d values, of which its %d axes need %d: those are used", key, list->count,
+                       h->dimension, needed);
     return 0;
 }
 
@@ -245,14 +245,14 @@ static void cut_matrix(number_list *matrix, int n) {
 }
 
 /* Of more files than the sizes ask for, the first. */
-static void cut_names(meta_header *h, volume *out) {
+static void cut_names(meta_header *h, dataset *out) {
     int64_t expected = 1;
     if (h->from.axes_per_file < 1 || h->from.axes_per_file >= h->dimension) return;
     for (int64_t i = h->from.axes_per_file; i < h->dimension; i++)
         if (h->sizes[i] < 1 || __builtin_mul_overflow(expected, h->sizes[i], &expected)) return;
     if (h->from.files.count <= expected) return;
-    volume_notice(out, "it names %" PRId64 " data files, of which its sizes ask for %" PRId64 ": the first are used",
-                  h->from.files.count, expected);
+    dataset_notice(out, "it names %" PRId64 " data files, of which its sizes ask for %" PRId64 ": the first are used",
+                   h->from.files.count, expected);
     data_names_cut(&h->from.files, expected);
 }
 
@@ -268,7 +268,7 @@ static int take_sizes(meta_header *h) {
     return 0;
 }
 
-static int check_header(meta_header *h, volume *out) {
+static int check_header(meta_header *h, dataset *out) {
     int n = h->dimension, status;
     if (h->element < 0) return fail(STATUS_INPUT, "%s: its header has no ElementType; add it", h->path);
     if (h->spacing.count) h->element_size.count = 0;
@@ -337,7 +337,7 @@ static void list_axes(const meta_header *h, axes *out) {
     }
 }
 
-int metaimage_read(const read_request *request, const mapping *file, volume *out) {
+int metaimage_read(const read_request *request, const mapping *file, dataset *out) {
     size_t limit = file->size < HEADER_BYTES ? file->size : HEADER_BYTES;
     header_text text = {.path = request->path, .bytes = file->bytes, .size = limit};
     meta_header h = {.path = request->path,
@@ -348,10 +348,10 @@ int metaimage_read(const read_request *request, const mapping *file, volume *out
     axes stored;
     layout l;
     int status;
-    if ((status = parse_header(&h, &text)) || (status = check_header(&h, out)) ||
-        (status = fill_matrix(&h, out->matrix)) || (status = place_data(&h, text.position)))
+    if ((status = dataset_image_begin(out)) || (status = parse_header(&h, &text)) || (status = check_header(&h, out)) ||
+        (status = fill_matrix(&h, out->blocks->matrix)) || (status = place_data(&h, text.position)))
         goto cleanup;
-    if (*h.repeated) volume_notice(out, "its header has '%s' twice: the last is taken", h.repeated);
+    if (*h.repeated) dataset_notice(out, "its header has '%s' twice: the last is taken", h.repeated);
     list_axes(&h, &stored);
     if ((status = layout_make(h.path, &stored, h.element, request, &l))) goto cleanup;
     h.from.axes = &stored;

@@ -225,7 +225,7 @@ static const char *space_name(int code) {
 }
 
 /* The voxel sizes that the matrix is made of; those that are none become 1, and a qform has none below 0. */
-static void take_voxel_sizes(const nifti_header *h, double sizes[3], volume *out) {
+static void take_voxel_sizes(const nifti_header *h, double sizes[3], dataset *out) {
     int is_changed = 0;
     for (int i = 0; i < 3; i++) {
         double given = h->pixdim[i + 1];
@@ -233,15 +233,15 @@ static void take_voxel_sizes(const nifti_header *h, double sizes[3], volume *out
         is_changed |= i + 1 <= h->dim[0] && sizes[i] != given;
     }
     if (is_changed && !h->request->has_spacing)
-        volume_notice(out, "its voxel sizes %s %s %s (pixdim) are taken for %s %s %s",
-                      shortest_coordinate(h->pixdim[1]).text, shortest_coordinate(h->pixdim[2]).text,
-                      shortest_coordinate(h->pixdim[3]).text, shortest_coordinate(sizes[0]).text,
-                      shortest_coordinate(sizes[1]).text, shortest_coordinate(sizes[2]).text);
+        dataset_notice(out, "its voxel sizes %s %s %s (pixdim) are taken for %s %s %s",
+                       shortest_coordinate(h->pixdim[1]).text, shortest_coordinate(h->pixdim[2]).text,
+                       shortest_coordinate(h->pixdim[3]).text, shortest_coordinate(sizes[0]).text,
+                       shortest_coordinate(sizes[1]).text, shortest_coordinate(sizes[2]).text);
 }
 
 static double finite_or_zero(double value) { return isfinite(value) ? value : 0; }
 
-static void take_qform(const nifti_header *h, const double sizes[3], volume *out) {
+static void take_qform(const nifti_header *h, const double sizes[3], dataset *out) {
     double q[3], offset[3];
     int is_changed = 0;
     for (int i = 0; i < 3; i++) {
@@ -249,43 +249,43 @@ static void take_qform(const nifti_header *h, const double sizes[3], volume *out
         offset[i] = finite_or_zero(h->qoffset[i]);
         is_changed |= !isfinite(h->quatern[i]) || !isfinite(h->qoffset[i]);
     }
-    if (is_changed) volume_notice(out, "its qform has values that are not finite, they are taken for 0");
+    if (is_changed) dataset_notice(out, "its qform has values that are not finite, they are taken for 0");
     nifti_dmat44 matrix = nifti_quatern_to_dmat44(q[0], q[1], q[2], offset[0], offset[1], offset[2], sizes[0], sizes[1],
                                                   sizes[2], h->pixdim[0] < 0 ? -1 : 1);
     for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 4; c++) out->matrix[r][c] = matrix.m[r][c];
+        for (int c = 0; c < 4; c++) out->blocks->matrix[r][c] = matrix.m[r][c];
 }
 
-static int fill_matrix(nifti_header *h, volume *out) {
+static int fill_matrix(nifti_header *h, dataset *out) {
     double sizes[3];
     int is_sform = h->sform_code > 0 && world_spans(h->sform), code = is_sform ? h->sform_code : h->qform_code;
     if (is_sform) {
-        memcpy(out->matrix, h->sform, sizeof h->sform);
+        memcpy(out->blocks->matrix, h->sform, sizeof h->sform);
     } else {
         take_voxel_sizes(h, sizes, out);
-        for (int i = 0; i < 3; i++) out->matrix[i][i] = sizes[i];
+        for (int i = 0; i < 3; i++) out->blocks->matrix[i][i] = sizes[i];
         if (h->qform_code > 0) take_qform(h, sizes, out);
     }
     if (h->sform_code > 0 && !is_sform)
-        volume_notice(out, "its sform does not span space, the %s is taken", code > 0 ? "qform" : "voxel size");
+        dataset_notice(out, "its sform does not span space, the %s is taken", code > 0 ? "qform" : "voxel size");
     snprintf(out->space, sizeof out->space, "%s", code > 0 ? space_name(code) : "voxel size only");
-    return world_place(h->request, h->path, out->matrix);
+    return world_place(h->request, h->path, out->blocks->matrix);
 }
 
-static void fill_scaling(const nifti_header *h, layout *l, volume *out) {
+static void fill_scaling(const nifti_header *h, layout *l, dataset *out) {
     double intercept = finite_or_zero(h->intercept);
     if (h->datatype == NIFTI_TYPE_RGB24 || h->datatype == NIFTI_TYPE_RGBA32) return; /* colours are not scaled */
     if (!isfinite(h->slope)) {
-        volume_notice(out, "its slope is not a number and is taken for none");
+        dataset_notice(out, "its slope is not a number and is taken for none");
         return;
     }
     if (h->slope == 0) return;
     if (!isfinite(h->intercept))
-        volume_notice(out, "its intercept (scl_inter) is not a finite number and is taken for 0");
+        dataset_notice(out, "its intercept (scl_inter) is not a finite number and is taken for 0");
     if (h->slope == 1 && intercept == 0) return;
     if (h->is_analyze)
-        volume_notice(out, "its values are multiplied by %s (funused1), as SPM does",
-                      shortest_coordinate(h->slope).text);
+        dataset_notice(out, "its values are multiplied by %s (funused1), as SPM does",
+                       shortest_coordinate(h->slope).text);
     l->scaled = 1;
     l->slope = h->slope;
     l->intercept = intercept;
@@ -339,7 +339,7 @@ static int find_data(const nifti_header *h, const char *image_path, const mappin
 }
 
 /* Interprets the header, then loads data of the image file, which is the header's own or its partner. */
-static int load(nifti_header *h, const char *image_path, const mapping *image, int is_single, volume *out) {
+static int load(nifti_header *h, const char *image_path, const mapping *image, int is_single, dataset *out) {
     int element = TC_U8, status;
     int64_t components = 1;
     const char *meaning = NULL;
@@ -360,20 +360,21 @@ static int load(nifti_header *h, const char *image_path, const mapping *image, i
     return source_load(&from, &l, out);
 }
 
-int nifti_read(const read_request *request, const mapping *file, volume *out) {
+int nifti_read(const read_request *request, const mapping *file, dataset *out) {
     static const char *const header_endings[] = {".hdr", ".HDR"}, *const image_endings[] = {".img", ".IMG"};
     char partner[4096];
     nifti_header h = {.path = request->path, .request = request};
     mapping other = {0};
     const mapping *header = file, *image = file;
     const char *image_path = request->path;
-    int status = 0, by_image = find_partner(request->path, ".img", header_endings, partner, sizeof partner);
+    int status = dataset_image_begin(out),
+        by_image = !status && find_partner(request->path, ".img", header_endings, partner, sizeof partner);
     if (by_image) {
         if ((status = mapping_open(partner, &other))) goto cleanup;
         h.path = partner;
         header = &other;
     }
-    if ((status = read_header(h.path, header, &h))) goto cleanup;
+    if (status || (status = read_header(h.path, header, &h))) goto cleanup;
     int has_data = is_gzip(header) ? h.is_single : !h.is_analyze && header->size > single_bytes(&h);
     if (by_image && h.is_single && has_data) {
         status = fail(STATUS_INPUT, "%s: holds header and data in one; name it instead of %s", partner, request->path);

@@ -283,17 +283,18 @@ static int check_header(nrrd_header *h) {
     return 0;
 }
 
-int nrrd_read(const read_request *request, const mapping *file, volume *out) {
+int nrrd_read(const read_request *request, const mapping *file, dataset *out) {
     size_t limit = file->size < HEADER_BYTES ? file->size : HEADER_BYTES;
     header_text text = {.path = request->path, .bytes = file->bytes, .size = limit};
     nrrd_header h = {.path = request->path, .request = request, .element = -1, .from = {.header_path = request->path}};
     axes stored;
     layout l;
     int status;
-    if ((status = parse_header(&h, &text)) || (status = check_header(&h))) goto cleanup;
+    if ((status = dataset_image_begin(out)) || (status = parse_header(&h, &text)) || (status = check_header(&h)))
+        goto cleanup;
     if (*h.repeated)
-        volume_notice(out, "its header has '%s' twice: the %s is taken", h.repeated,
-                      field_of(h.repeated) == FIELD_DIMENSION ? "first" : "last");
+        dataset_notice(out, "its header has '%s' twice: the %s is taken", h.repeated,
+                       field_of(h.repeated) == FIELD_DIMENSION ? "first" : "last");
     nrrd_settle_directions(&h, out);
     nrrd_axes(&h, &stored);
     h.from.axes = &stored;

@@ -43,6 +43,6 @@ void nrrd_axes(const nrrd_header *h, axes *out);
 
 /* Fills the matrix, index space to world, in the space that the header names; what is not known is taken for 1 or 0,
  * with a notice. */
-int nrrd_matrix(const nrrd_header *h, const axes *a, volume *out);
+int nrrd_matrix(const nrrd_header *h, const axes *a, dataset *out);
 
 #endif

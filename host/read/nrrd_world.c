@@ -131,30 +131,30 @@ static void complete_matrix(double matrix[3][4], int column) {
 }
 
 /* The column of the space's axis, which is the file's axis a; without a direction it is the space's own. */
-static void place_axis(const nrrd_header *h, int a, int space, volume *out) {
+static void place_axis(const nrrd_header *h, int a, int space, dataset *out) {
     if (h->has_directions && !isnan(h->directions[a][0])) {
-        for (int r = 0; r < 3; r++) out->matrix[r][space] = h->directions[a][r];
+        for (int r = 0; r < 3; r++) out->blocks->matrix[r][space] = h->directions[a][r];
         return;
     }
     double step = h->has_directions ? NAN : axis_step(h, a), least = h->has_mins ? h->mins[a] : 0;
     if (isnan(step) && !h->request->has_spacing)
-        volume_notice(out, "the spacing along axis %d is not known (NaN), it is taken for 1", a + 1);
+        dataset_notice(out, "the spacing along axis %d is not known (NaN), it is taken for 1", a + 1);
     if (isnan(least) && !h->request->has_origin)
-        volume_notice(out, "the minimum of axis %d is not known (NaN), its origin is taken for 0", a + 1);
+        dataset_notice(out, "the minimum of axis %d is not known (NaN), its origin is taken for 0", a + 1);
     if (isnan(step)) step = 1;
-    out->matrix[space][space] = step;
+    out->blocks->matrix[space][space] = step;
     if (h->has_mins && !h->has_directions && !isnan(least))
-        out->matrix[space][3] = least + (h->centers[a] == CENTER_NODE ? 0 : step / 2);
+        out->blocks->matrix[space][3] = least + (h->centers[a] == CENTER_NODE ? 0 : step / 2);
 }
 
-int nrrd_matrix(const nrrd_header *h, const axes *a, volume *out) {
+int nrrd_matrix(const nrrd_header *h, const axes *a, dataset *out) {
     int space = 0;
     for (int i = 0; i < a->count; i++)
         if (a->role[i] == AXIS_SPACE) place_axis(h, i, space++, out);
     int is_known = h->has_origin && !isnan(h->origin[0]);
-    for (int r = 0; r < 3 && is_known; r++) out->matrix[r][3] = h->origin[r];
+    for (int r = 0; r < 3 && is_known; r++) out->blocks->matrix[r][3] = h->origin[r];
     if (h->has_origin && !is_known && !h->request->has_origin)
-        volume_notice(out, "the space origin is not known (NaN), it is taken for 0");
-    for (; space < 3; space++) complete_matrix(out->matrix, space);
-    return world_place(h->request, h->path, out->matrix);
+        dataset_notice(out, "the space origin is not known (NaN), it is taken for 0");
+    for (; space < 3; space++) complete_matrix(out->blocks->matrix, space);
+    return world_place(h->request, h->path, out->blocks->matrix);
 }

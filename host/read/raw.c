@@ -36,9 +36,9 @@ static int check_options(const read_request *request) {
     return 0;
 }
 
-int raw_read(const read_request *request, const mapping *file, volume *out) {
+int raw_read(const read_request *request, const mapping *file, dataset *out) {
     int status = check_options(request);
-    if (status) return status;
+    if (status || (status = dataset_image_begin(out))) return status;
 
     axes stored = {.count = 3};
     for (int i = 0; i < 3; i++) stored.size[i] = request->dims[i];
@@ -56,8 +56,8 @@ int raw_read(const read_request *request, const mapping *file, volume *out) {
     source from = {.header_path = request->path, .start = request->skip, .axes = &stored, .axes_per_file = 3};
     snprintf(out->format, sizeof out->format, "raw");
     for (int i = 0; i < 3; i++) {
-        out->matrix[i][i] = request->spacing[i];
-        out->matrix[i][3] = request->origin[i];
+        out->blocks->matrix[i][i] = request->spacing[i];
+        out->blocks->matrix[i][3] = request->origin[i];
     }
     return source_load(&from, &l, out);
 }

@@ -1,22 +1,15 @@
 /*
- * read.c - finds the format of a file, by its content first, then by its ending, and reads it; see dataset.h, volume.h
+ * read.c - finds the format of a file, by its content first, then by its ending, and reads it; see read.h
  */
-#include "dataset.h"
+#include "read.h"
 
 #include "exit_status.h"
 #include "failure.h"
 #include "mapping.h"
 #include "readers.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-void read_request_init(read_request *request, const char *path) {
-    *request = (read_request){.path = path, .type = -1, .spacing = {1, 1, 1}, .component = -1, .frame = -1};
-}
 
 const char *volume_formats(void) {
     return "raw, NRRD"
@@ -85,7 +78,7 @@ static int ends_as_half_of_a_pair(const char *path) {
 }
 
 #ifndef HAVE_NIFTI
-int nifti_read(const read_request *request, const mapping *file, volume *out) {
+int nifti_read(const read_request *request, const mapping *file, dataset *out) {
     (void)file;
     (void)out;
     return fail(STATUS_INPUT, "%s: is NIfTI, which this program was built without (TETRACUBES_NIFTI); it reads %s",
@@ -95,7 +88,7 @@ int nifti_read(const read_request *request, const mapping *file, volume *out) {
 
 /* What takes the file: a reader of images or one of datasets; neither where the format is not known. */
 typedef struct readers {
-    int (*image)(const read_request *request, const mapping *file, volume *out);
+    int (*image)(const read_request *request, const mapping *file, dataset *out);
     int (*grid)(const read_request *request, const mapping *file, dataset *out);
 } readers;
 
@@ -192,47 +185,6 @@ static int refuse_unknown(const char *path, const mapping *file) {
                 path, volume_formats());
 }
 
-int volume_read(const read_request *request, volume *out) {
-    *out = (volume){0};
-    mapping file;
-    int status = mapping_open(request->path, &file);
-    if (status) return status;
-    readers read = find_readers(request, &file);
-    if ((status = refuse_encoding(request, &file))) {
-    } else if (read.image) {
-        status = read.image(request, &file, out);
-    } else if (read.grid) {
-        status = fail(STATUS_INPUT, "%s: is no image; of images this program reads raw, NRRD, MetaImage and NIfTI",
-                      request->path);
-    } else {
-        status = refuse_unknown(request->path, &file);
-    }
-    mapping_close(&file);
-    if (status) volume_release(out);
-    return status;
-}
-
-/* The image as a dataset's one block with one field without a name. */
-static int wrap_image(dataset *d) {
-    const volume *v = &d->image;
-    dataset_block *b;
-    dataset_field *f;
-    int status = dataset_block_add(d, &b);
-    if (!status) status = dataset_field_add(b, &f);
-    if (status) return status;
-    b->kind = GRID_UNIFORM;
-    b->point_count = v->dims[0] * v->dims[1] * v->dims[2];
-    b->cell_count = (v->dims[0] - 1) * (v->dims[1] - 1) * (v->dims[2] - 1);
-    memcpy(b->dims, v->dims, sizeof b->dims);
-    memcpy(b->first, v->first, sizeof b->first);
-    memcpy(b->matrix, v->matrix, sizeof b->matrix);
-    *f = (dataset_field){.name = "", .components = v->components, .type = v->type, .values = v->samples};
-    memcpy(d->format, v->format, sizeof d->format);
-    memcpy(d->space, v->space, sizeof d->space);
-    if (v->notice[0]) dataset_notice(d, "%s", v->notice);
-    return 0;
-}
-
 /* Points of other grids lie where their coordinates say. */
 static int check_placement(const read_request *request, const dataset *d) {
     const char *option = request->has_spacing ? "--spacing" : request->has_origin ? "--origin" : NULL;
@@ -306,8 +258,7 @@ int dataset_read(const read_request *request, dataset *out) {
     } else if (request->path2) {
         status = may_be_plot3d(read) ? read_grid(plot3d_read, request, &file, out) : refuse_pair(request);
     } else if (read.image) {
-        status = read.image(request, &file, &out->image);
-        if (!status) status = wrap_image(out);
+        status = read.image(request, &file, out);
     } else if (read.grid) {
         status = read_grid(read.grid, request, &file, out);
     } else {
@@ -318,21 +269,4 @@ int dataset_read(const read_request *request, dataset *out) {
         status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
     if (status) dataset_release(out);
     return status;
-}
-
-void volume_notice(volume *v, const char *format, ...) {
-    char text[sizeof v->notice];
-    size_t used = strlen(v->notice);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (used + strlen(text) + 3 > sizeof v->notice) return;
-    stpcpy(stpcpy(v->notice + used, used ? "; " : ""), text);
-}
-
-void volume_release(volume *v) {
-    mapping_close(&(mapping){v->mapping, v->mapping_bytes});
-    free(v->allocation);
-    *v = (volume){0};
 }

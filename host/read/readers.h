@@ -1,18 +1,19 @@
 /*
  * readers.h - one function per format, given the mapped file
  *
- * Readers of images fill a zeroed volume, all others a zeroed dataset; on failure the caller releases it.
+ * They fill a zeroed dataset; on failure the caller releases it.
  */
 #ifndef READERS_H
 #define READERS_H
 
 #include "dataset.h"
 #include "mapping.h"
+#include "request.h"
 
-int raw_read(const read_request *request, const mapping *file, volume *out);
-int nrrd_read(const read_request *request, const mapping *file, volume *out);
-int metaimage_read(const read_request *request, const mapping *file, volume *out);
-int nifti_read(const read_request *request, const mapping *file, volume *out);
+int raw_read(const read_request *request, const mapping *file, dataset *out);
+int nrrd_read(const read_request *request, const mapping *file, dataset *out);
+int metaimage_read(const read_request *request, const mapping *file, dataset *out);
+int nifti_read(const read_request *request, const mapping *file, dataset *out);
 
 int vtk_legacy_read(const read_request *request, const mapping *file, dataset *out); /* "# vtk DataFile Version" */
 int vtk_xml_read(const read_request *request, const mapping *file, dataset *out);    /* .vti .vtr .vts .vtu */

@@ -5,6 +5,7 @@
 #include "failure.h"
 #include "magnitude.h"
 #include "nodata.h"
+#include "request.h"
 #include "sample_types.h"
 
 #include <math.h>
@@ -150,7 +151,7 @@ static int check_component(const dataset *d, const char *path, const dataset_fie
     if (component == COMPONENT_MAGNITUDE && f->components == 1)
         return fail(STATUS_USAGE, "%s: field '%s' has 1 component, no vectors: leave out --component magnitude", path,
                     f->name);
-    if (component >= f->components && !d->image.samples) /* the readers of images have looked at it themselves */
+    if (component >= f->components && !d->frames) /* the readers of images have looked at it themselves */
         return fail(STATUS_USAGE, "%s: field '%s' has %d component%s, counted from 0: there is no --component %d", path,
                     f->name, f->components, f->components > 1 ? "s" : "", component);
     return 0;

@@ -1,6 +1,7 @@
 /* source.c - brings the samples that a header describes; see source.h */
 #include "source.h"
 
+#include "array_memory.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "mapping.h"
@@ -177,10 +178,12 @@ static int read_hex(const char *path, const unsigned char *text, size_t size, un
 }
 
 /* Notes, once, that a file holds more than was used. */
-static void notice_rest(const source *from, const char *path, uint64_t rest, volume *out) {
-    if (!rest || strstr(out->notice, "more data than its header")) return;
-    volume_notice(out, "%.160s holds more data than its header asks for; the rest is not used",
-                  from->files.count ? path : "it");
+static void notice_rest(const source *from, const char *path, uint64_t rest, dataset *out) {
+    if (!rest) return;
+    for (int n = 0; n < out->notice_count; n++)
+        if (strstr(out->notices[n], "more data than its header")) return;
+    dataset_notice(out, "%.160s holds more data than its header asks for; the rest is not used",
+                   from->files.count ? path : "it");
 }
 
 static int open_part(const source *from, const char *path, mapping *m) {
@@ -215,7 +218,7 @@ static int is_packed(const source *from) {
 
 /* Checks one file or, where `to` is given, brings its part of the stored array. */
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
-                     volume *out) {
+                     dataset *out) {
     mapping m;
     uint64_t start = 0;
     int more = 0, status = open_part(from, path, &m);
@@ -239,7 +242,7 @@ static int no_memory(const char *path, uint64_t bytes) {
 }
 
 /* Gathers the volume from the stored array into memory of its own. */
-static int gather(const source *from, const layout *l, const unsigned char *stored, volume *out) {
+static int gather(const source *from, const layout *l, const unsigned char *stored, dataset *out) {
     uint64_t bytes = 0, count = (uint64_t)l->dims[0] * (uint64_t)l->dims[1] * (uint64_t)l->dims[2];
     count *= (uint64_t)l->components; /* all of them elements stored */
     if (__builtin_mul_overflow(count, sample_bytes(layout_type(l)), &bytes)) bytes = UINT64_MAX;
@@ -250,12 +253,12 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
         free(samples);
         return status;
     }
-    out->samples = out->allocation = samples;
-    return 0;
+    out->blocks->fields->values = samples;
+    return dataset_keep(out, samples);
 }
 
 /* One raw file: nothing is copied where the samples can be used as they lie. */
-static int load_raw(const source *from, const char *path, const layout *l, volume *out) {
+static int load_raw(const source *from, const char *path, const layout *l, dataset *out) {
     mapping m;
     uint64_t start = 0;
     int status = open_part(from, path, &m);
@@ -265,7 +268,7 @@ static int load_raw(const source *from, const char *path, const layout *l, volum
         goto cleanup;
     if (from->byte_skip >= 0) notice_rest(from, path, m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
-        out->samples = m.bytes + start + l->offset * element_bytes(l->element);
+        out->blocks->fields->values = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;
         out->mapping_bytes = m.size;
         return 0;
@@ -296,15 +299,27 @@ static int check_file_count(const source *from) {
                 files, expected);
 }
 
-int source_load(const source *from, const layout *l, volume *out) {
+/* All of the image but where it lies, and its samples. */
+static void describe(const source *from, const layout *l, dataset *out) {
+    dataset_block *block = out->blocks;
+    dataset_field *field = block->fields;
+    block->point_count = block->cell_count = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        block->dims[axis] = l->dims[axis];
+        block->point_count *= l->dims[axis];
+        block->cell_count *= l->dims[axis] - 1;
+    }
+    field->type = layout_type(l);
+    field->components = l->components;
+    field->meaning = from->axes->meaning;
+    out->frames = l->frames;
+}
+
+int source_load(const source *from, const layout *l, dataset *out) {
     int64_t parts = from->files.count ? from->files.count : 1;
     int status = check_file_count(from);
     if (status) return status;
-    for (int i = 0; i < 3; i++) out->dims[i] = l->dims[i];
-    out->type = layout_type(l);
-    out->components = l->components;
-    out->frames = l->frames;
-    snprintf(out->meaning, sizeof out->meaning, "%s", from->axes->meaning ? from->axes->meaning : "");
+    describe(from, l, out);
     if (parts == 1 && from->encoding == ENCODING_RAW)
         return load_raw(from, from->files.count ? from->files.paths[0] : from->header_path, l, out);
 
@@ -319,9 +334,8 @@ int source_load(const source *from, const layout *l, volume *out) {
         if (!stored && !(stored = samples_allocate(l->bytes))) return no_memory(from->header_path, l->bytes);
     }
     if (layout_is_plain(l, stored)) {
-        out->samples = stored + l->offset * element_bytes(l->element);
-        out->allocation = stored;
-        return 0;
+        out->blocks->fields->values = stored + l->offset * element_bytes(l->element);
+        return dataset_keep(out, stored);
     }
     status = gather(from, l, stored, out);
 cleanup:

@@ -8,6 +8,7 @@
 #define SOURCE_H
 
 #include "data_names.h"
+#include "dataset.h"
 #include "layout.h"
 #include "unpack.h"
 
@@ -25,7 +26,8 @@ typedef struct source {
     int64_t axes_per_file;
 } source;
 
-/* Fills samples, type, dims and their owner in *out, and a notice where files hold more than is used. */
-int source_load(const source *from, const layout *l, volume *out);
+/* Fills an image that has begun, but for where it lies: samples and their owner, type, sizes, frames; with a notice
+ * where files hold more than is used. */
+int source_load(const source *from, const layout *l, dataset *out);
 
 #endif

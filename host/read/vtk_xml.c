@@ -11,6 +11,7 @@
 #include "cell_faces.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "array_memory.h"
 #include "layout.h"
 #include "readers.h"
 #include "world.h"

@@ -1,6 +1,7 @@
 /* vtk_xml_absent.c - in place of the reader of VTK XML files, where this program is built without expat */
 #include "exit_status.h"
 #include "failure.h"
+#include "read.h"
 #include "readers.h"
 
 int vtk_xml_read(const read_request *request, const mapping *file, dataset *out) {

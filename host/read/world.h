@@ -2,7 +2,7 @@
 #ifndef WORLD_H
 #define WORLD_H
 
-#include "volume.h"
+#include "request.h"
 
 /* To be called with the matrix that a header makes, whatever is wrong with it. Spacing of the request becomes the
  * length of the columns, whose directions stay; a column without a direction gets its axis's. Origin becomes the last

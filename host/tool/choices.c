@@ -3,6 +3,7 @@
 
 #include "exit_status.h"
 #include "report.h"
+#include "request.h"
 #include "select.h"
 
 #include <inttypes.h>
@@ -11,9 +12,9 @@
 int choices_find(const options *o, const dataset *d, choices *c) {
     const field_request request = {.name = o->field, .component = o->component};
     int components = 0, status = scalar_components(d, o->operands[0], &request, &components);
-    *c = (choices){.meaning = d->image.meaning};
+    *c = (choices){.meaning = d->frames && d->blocks->fields->meaning ? d->blocks->fields->meaning : ""};
     if (status) return status;
-    if (d->image.frames > 1) c->frames = d->image.frames;
+    if (d->frames > 1) c->frames = d->frames;
     if (components > 1 && o->component == COMPONENT_OPEN) c->components = components;
     c->can_select = components && !c->components;
     if (components) return 0;

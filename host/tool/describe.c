@@ -170,11 +170,11 @@ void describe_place_text(const dataset *d, const dataset_block *b) {
                shortest_number(b->matrix[r][2]).text, shortest_number(b->matrix[r][3]).text);
 }
 
-void describe_values_text(const dataset *d, const dataset_block *b) {
+void describe_values_text(const dataset_block *b) {
     const dataset_field *f = b->fields;
     if (f->components == 1) return;
-    printf("values        %d per sample%s%s%s\n", f->components, *d->image.meaning ? " (" : "", d->image.meaning,
-           *d->image.meaning ? ")" : "");
+    printf("values        %d per sample%s%s%s\n", f->components, f->meaning ? " (" : "", f->meaning ? f->meaning : "",
+           f->meaning ? ")" : "");
     for (int c = 0; c < f->components && c < RANGES_SHOWN; c++) {
         double range[2];
         if (range_of(b, f, c, range))

@@ -19,6 +19,6 @@ double describe_spacing(const dataset_block *b, int axis);
 void describe_place_text(const dataset *d, const dataset_block *b);
 
 /* Of an image with several values per sample: how many, what they are, the range of each, as lines. */
-void describe_values_text(const dataset *d, const dataset_block *b);
+void describe_values_text(const dataset_block *b);
 
 #endif

@@ -9,6 +9,7 @@
 #include "notice.h"
 #include "obstacle.h"
 #include "progress.h"
+#include "read.h"
 #include "report.h"
 #include "statistics.h"
 
@@ -127,7 +128,7 @@ static void print_image(const facts *f) {
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     describe_place_text(f->d, b);
-    describe_values_text(f->d, b);
+    describe_values_text(b);
 }
 
 static void print_field(const facts *f) {
@@ -151,7 +152,7 @@ static void print_field(const facts *f) {
 static void print_text(const facts *f) {
     printf("%s\n", f->path);
     printf("format        %s\n", f->d->format);
-    if (f->d->image.samples)
+    if (f->d->frames)
         print_image(f);
     else
         describe_blocks_text(f->d);

@@ -6,6 +6,7 @@
 #include "mapping.h"
 #include "notice.h"
 #include "output.h"
+#include "read.h"
 #include "report.h"
 #include "statistics.h"
 

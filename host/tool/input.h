@@ -4,6 +4,7 @@
 
 #include "dataset.h"
 #include "options.h"
+#include "request.h"
 #include "select.h"
 
 /* The options of the inputs as their reader wants them; refuses none or too many, and --dims without --type. */

@@ -13,12 +13,12 @@
 #include "notice.h"
 #include "output.h"
 #include "progress.h"
+#include "read.h"
 #include "report.h"
 #include "selftest.h"
 #include "streams.h"
 #include "trial.h"
 #include "truncation.h"
-#include "volume.h"
 
 #include <errno.h>
 #include <signal.h>

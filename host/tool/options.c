@@ -10,7 +10,7 @@
 #include "failure.h"
 #include "nearest.h"
 #include "sample_types.h"
-#include "volume.h"
+#include "request.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -241,7 +241,7 @@ MUTANTS = [
     *point("info of what needs a choice",
            ("host/tool/info.c", "test_cli_images", "request.describe = 1;", "request.describe = 0;",
             "info refuses vectors and frames"),
-           ("host/tool/choices.c", "test_cli_images", "if (d->image.frames > 1) c->frames = d->image.frames;", "",
+           ("host/tool/choices.c", "test_cli_images", "if (d->frames > 1) c->frames = d->frames;", "",
             "info does not tell of frames")),
 
     # ------------------------------------------------------------------------------------- callers and environments

@@ -14,6 +14,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
+#include "read.h"
 #include "readers.h"
 #include "select.h"
 
@@ -27,18 +28,17 @@ enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D };
 
 typedef struct format {
     const char *paths[4];
-    int (*image)(const read_request *request, const mapping *file, volume *out);
-    int (*grid)(const read_request *request, const mapping *file, dataset *out);
+    int (*read)(const read_request *request, const mapping *file, dataset *out);
 } format;
 
 static const format formats[] = {
     [RAW] = {.paths = {"in/a.raw", "in/a.bin", "in/a.xyz", "in/a.img"}}, /* what begins as another format is that */
-    [NRRD] = {{"in/a.nrrd", "in/a.nhdr", "in/a.nrrd", "in/a.nhdr"}, .image = nrrd_read},
-    [METAIMAGE] = {{"in/a.mha", "in/a.mhd", "in/a.mha", "in/a.mhd"}, .image = metaimage_read},
-    [NIFTI] = {{"in/a.nii", "in/a.nii.gz", "in/a.hdr", "in/a.img"}, .image = nifti_read},
-    [VTK_LEGACY] = {{"in/a.vtk", "in/a.vtk", "in/a.vtk", "in/a.vtk"}, .grid = vtk_legacy_read},
-    [VTK_XML] = {{"in/a.vtu", "in/a.vti", "in/a.vts", "in/a.vtr"}, .grid = vtk_xml_read},
-    [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .grid = plot3d_read},
+    [NRRD] = {{"in/a.nrrd", "in/a.nhdr", "in/a.nrrd", "in/a.nhdr"}, .read = nrrd_read},
+    [METAIMAGE] = {{"in/a.mha", "in/a.mhd", "in/a.mha", "in/a.mhd"}, .read = metaimage_read},
+    [NIFTI] = {{"in/a.nii", "in/a.nii.gz", "in/a.hdr", "in/a.img"}, .read = nifti_read},
+    [VTK_LEGACY] = {{"in/a.vtk", "in/a.vtk", "in/a.vtk", "in/a.vtk"}, .read = vtk_legacy_read},
+    [VTK_XML] = {{"in/a.vtu", "in/a.vti", "in/a.vts", "in/a.vtr"}, .read = vtk_xml_read},
+    [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading
@@ -154,16 +154,12 @@ static void select_fields(dataset *d, const char *path, uint8_t choice, int comp
 /* ------------------------------------------------------------------------------------------------------------ reading
  */
 
-static void check_image(const volume *v) {
-    uint64_t count = 1;
-    for (int a = 0; a < 3; a++) {
-        CHECK(v->dims[a] >= 1);
-        CHECK(!__builtin_mul_overflow(count, (uint64_t)v->dims[a], &count));
-    }
-    CHECK(v->components >= 1 && v->frames >= 1);
-    check_type(v->type, v->samples);
-    touch(v->samples, count * (uint64_t)v->components * tc_type_bytes(v->type));
-    for (int n = 0; n < 12; n++) CHECK(isfinite(v->matrix[n / 4][n % 4]));
+static void check_image(const dataset *d) {
+    const dataset_block *b = d->blocks;
+    CHECK(d->frames >= 0);
+    if (!d->frames) return;
+    CHECK(d->block_count == 1 && b->kind == GRID_UNIFORM && b->field_count == 1 && b->fields->components >= 1);
+    for (int n = 0; n < 12; n++) CHECK(isfinite(b->matrix[n / 4][n % 4]));
 }
 
 /* The reader of the format, whatever the file's beginning says; what it fails with is released as dataset_read does. */
@@ -171,10 +167,9 @@ static int read_by(const format *f, const read_request *request, dataset *out) {
     mapping file;
     *out = (dataset){0};
     int status = mapping_open(request->path, &file);
-    if (!status) status = f->image ? f->image(request, &file, &out->image) : f->grid(request, &file, out);
+    if (!status) status = f->read(request, &file, out);
     mapping_close(&file);
     if (status) dataset_release(out);
-    if (!status && f->image) check_image(&out->image);
     return status;
 }
 
@@ -224,6 +219,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int status = FORMAT == RAW ? dataset_read(&request, &d) : read_by(&formats[FORMAT], &request, &d);
     if (!status) {
         check_dataset(&d);
+        check_image(&d);
         select_fields(&d, request.path, choice, request.component);
         dataset_release(&d);
     } else {

@@ -1,0 +1,16 @@
+/* read.h - reads a file of any format */
+#ifndef READ_H
+#define READ_H
+
+#include "dataset.h"
+#include "request.h"
+
+/* Reads the file, or the two files, of the request in the format that its content, else its ending, tells; raw where
+ * request->dims are given. Returns 0 and a dataset to be released, or an exit status (exit_status.h) with its text
+ * (failure.h), *out zeroed. */
+int dataset_read(const read_request *request, dataset *out);
+
+/* The formats this program was built with, one line, e.g. "raw, NRRD (gzip, bzip2), MetaImage, NIfTI". */
+const char *volume_formats(void);
+
+#endif

@@ -1,0 +1,32 @@
+/* request.h - what the command line says about the input */
+#ifndef REQUEST_H
+#define REQUEST_H
+
+#include <stdint.h>
+
+/* In place of the number of a component. */
+enum { COMPONENT_OPEN = -1, COMPONENT_MAGNITUDE = -2 };
+
+typedef struct read_request {
+    const char *path;
+    const char *path2; /* the second input of formats in two files (Plot3D: grid, then solution); NULL: not given */
+    int64_t dims[3];   /* raw: required; all 0 where not given */
+    int type;          /* raw: a tc_type; -1 where not given */
+    int big_endian;    /* raw: 1 big, 0 little */
+    uint64_t skip;     /* raw: bytes before the samples */
+    double spacing[3]; /* raw, others where has_spacing; 1, 1, 1 by default */
+    double origin[3];  /* raw, others where has_origin: position of the sample of index 0, 0, 0; 0, 0, 0 by default */
+    int has_spacing;   /* stands for what the header says, if it does */
+    int has_origin;    /* likewise */
+    int component;     /* of data with several values per sample, or one of the above: of images, COMPONENT_OPEN is an
+                          error where there is a choice, and COMPONENT_MAGNITUDE leaves all in the field */
+    int frame;         /* of data with a fourth axis; -1 where not given */
+    int describe;      /* of images: choices that are left open are no error: all components, the first frame */
+} read_request;
+
+/* Defaults: as the comments above say. */
+static inline void read_request_init(read_request *request, const char *path) {
+    *request = (read_request){.path = path, .type = -1, .spacing = {1, 1, 1}, .component = COMPONENT_OPEN, .frame = -1};
+}
+
+#endif
