@@ -1,5 +1,6 @@
 /* test_read.c - every kind of volume file, made at run time, reads back with the same values, type and world space */
 #include "read_files.h"
+#include "read_formats.h"
 
 static const int64_t dims[3] = {5, 4, 3};
 enum { COUNT = 60 };
@@ -459,8 +460,9 @@ static void test_detection(void) {
     r = write_nifti("c.dat", &f, TC_U8, COUNT, 0);
     e.format = "NIfTI-1";
     expect_volume("NIfTI named .dat", &r, &e);
-    EXPECT(strstr(volume_formats(), "raw, NRRD (gzip, bzip2), MetaImage (zlib), NIfTI"), "formats: %s",
-           volume_formats());
+    char formats[FORMATS_TEXT];
+    EXPECT(strstr(read_formats_text(formats), "raw, NRRD (gzip, bzip2), MetaImage (zlib), NIfTI"), "formats: %s",
+           formats);
 }
 
 int main(void) {

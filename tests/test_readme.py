@@ -66,6 +66,22 @@ def test_links(source, pages):
         expect(name in linked or name.startswith(".github/CHANGELOG"), f"README.md does not lead to {name}")
 
 
+def test_formats(tool):
+    """Help names every format that is written; what is read is printed from the table (test_formats.c has the README)."""
+    version = run(tool, "--version").stdout
+    reads, writes = version.split("reads: ")[1].split("writes: ")
+    meshes, complexes = (re.findall("[A-Z]{3}", part) for part in writes.split(";"))
+    expect(len(meshes) >= 4 and complexes, f"--version: writes {meshes}, {complexes}")
+    text = " ".join(help_of(tool, "extract").split())
+    expect(" ".join(reads.split()) in text, "extract --help: not what --version says that is read")
+    output, form = (text[text.index(option):] for option in ("-o, --output", "--format F"))
+    for name in meshes:
+        expect("." + name.lower() in output[:200], f"extract --help: no .{name.lower()} of --output")
+        expect(name.lower() in form[:60], f"extract --help: no {name.lower()} of --format")
+    for name in complexes:
+        expect("." + name.lower() in help_of(tool, "tetrahedralize"), f"tetrahedralize --help: no {name}")
+
+
 # ------------------------------------------------------------------------------------------------------- README.md
 
 def test_readme(source, pages, tool):
@@ -269,6 +285,7 @@ def main():
     pages = {name: (source / name).read_text(encoding="utf-8") for name in PAGES}
     test_links(source, pages)
     test_readme(source, pages, tool)
+    test_formats(tool)
     test_options(pages["host/tool/README.md"], tool)
     test_fields(pages["host/tool/README.md"], tool)
     test_keys(pages["host/tool/README.md"], tool)

@@ -6,6 +6,7 @@
 #include "exit_status.h"
 #include "expect.h"
 #include "failure.h"
+#include "read_formats.h"
 #include "vtk_xml_files.h"
 
 /* ------------------------------------------------------------------------------------------------- published files */
@@ -230,11 +231,11 @@ static void test_foreign(const char *data) {
                                             {"hexahedron_lz4_inline_binary.vtu", "LZ4"},
                                             {"hexahedron_lzma_inline_binary.vtu", "LZMA"},
                                             {"lzma.vtu", "LZMA"}};
-    char path[4096];
+    char path[4096], formats[FORMATS_TEXT];
     dataset d;
     for (size_t i = 0; i < sizeof packed / sizeof *packed; i++) {
         snprintf(path, sizeof path, "%s/malformed/vtkio/%s", data, packed[i][0]);
-        const int status = read_path(path, &d), has_library = strstr(volume_formats(), packed[i][1]) != NULL;
+        const int status = read_path(path, &d), has_library = strstr(read_formats_text(formats), packed[i][1]) != NULL;
         EXPECT(has_library ? status == 0 && d.blocks->cell_count > 0
                            : status == STATUS_INPUT && strstr(failure_text(), packed[i][1]),
                "%s: status %d: %s", path, status, failure_text());

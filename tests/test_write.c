@@ -232,7 +232,7 @@ static void test_formats_named(const tc_mesh_data *mesh) {
     }
     mesh_write_options vtk = {.format = "vtk"}, stl = {.format = "STL"};
     expect_failure("format vtk", mesh_write_check("mesh.ply", &vtk), STATUS_USAGE, "\"vtk\"");
-    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE, "ply, stl, obj or vtp");
+    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE, "ply, vtp, stl or obj");
     EXPECT(mesh_write_check("a.b/mesh.Ply", NULL) == 0, "ending in mixed case");
     EXPECT(mesh_write_check("/dev/stdout", &stl) == 0, "named format without an ending");
 

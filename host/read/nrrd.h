@@ -36,7 +36,7 @@ typedef struct nrrd_header {
 int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, double (*vectors)[3], int count);
 
 /* Directions of which none is known are as none given, with a notice. */
-void nrrd_settle_directions(nrrd_header *h, volume *out);
+void nrrd_settle_directions(nrrd_header *h, dataset *out);
 
 /* Which axes are of space, components and frames. */
 void nrrd_axes(const nrrd_header *h, axes *out);

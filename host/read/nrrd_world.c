@@ -67,13 +67,13 @@ int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, doub
 }
 
 /* Where no axis has a direction the first ones are those of space, as in files without directions. ITK has it so. */
-void nrrd_settle_directions(nrrd_header *h, volume *out) {
+void nrrd_settle_directions(nrrd_header *h, dataset *out) {
     int known = 0;
     for (int a = 0; a < h->dimension && h->has_directions; a++) known += !isnan(h->directions[a][0]);
     if (!h->has_directions || known) return;
     h->has_directions = 0;
     if (!h->has_spacings && !h->request->has_spacing)
-        volume_notice(out, "none of its space directions is known, the spacing is taken for 1");
+        dataset_notice(out, "none of its space directions is known, the spacing is taken for 1");
 }
 
 /* Of more than three axes without kinds, those whose spacing makes no sense where that leaves three of space. */

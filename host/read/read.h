@@ -10,7 +10,4 @@
  * (failure.h), *out zeroed. */
 int dataset_read(const read_request *request, dataset *out);
 
-/* The formats this program was built with, one line, e.g. "raw, NRRD (gzip, bzip2), MetaImage, NIfTI". */
-const char *volume_formats(void);
-
 #endif

@@ -9,11 +9,12 @@
 #include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "mesh_write.h"
 #include "nearest.h"
 #include "notice.h"
 #include "output.h"
 #include "progress.h"
-#include "read.h"
+#include "read_formats.h"
 #include "report.h"
 #include "selftest.h"
 #include "streams.h"
@@ -123,7 +124,8 @@ static void print_overview(FILE *out) {
 /* The formats, in lines that fit a terminal. */
 static void print_formats(const char *before, FILE *out) {
     enum { COLUMNS = 92 };
-    const char *word = volume_formats();
+    char text[FORMATS_TEXT];
+    const char *word = read_formats_text(text);
     int column = fprintf(out, "%s", before);
     while (*word) {
         int length = (int)strcspn(word, " ");
@@ -144,7 +146,9 @@ static void print_command_help(const command *c, FILE *out) {
 static void print_version(FILE *out) {
     fprintf(out, "tetracubes %s\n", tc_version());
     print_formats("reads:", out);
-    fprintf(out, "writes: PLY, VTP, STL, OBJ; VTU (tetrahedra)\n");
+#define MESH_LABEL(name, label, ...) ", " label
+#define COMPLEX_LABEL(name, label)   ", " label
+    fprintf(out, "writes: %s; %s (tetrahedra)\n", &MESH_FORMATS(MESH_LABEL)[2], &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
 }
 
 void message(const char *format, ...) {

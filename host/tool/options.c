@@ -8,6 +8,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "mesh_write.h"
 #include "nearest.h"
 #include "sample_types.h"
 #include "request.h"
@@ -54,7 +55,8 @@ static const char *const type_choices[SAMPLE_TYPE_COUNT + 1] = {SAMPLE_TYPES(TYP
 static const char *const endian_choices[] = {"little", "big", NULL};
 static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
 static const char *const method_choices[] = {"tetra", "hybrid", NULL};
-static const char *const format_choices[] = {"ply", "stl", "obj", "vtp", NULL};
+#define FORMAT_CHOICE(name, ...) #name,
+static const char *const format_choices[] = {MESH_FORMATS(FORMAT_CHOICE) NULL};
 static const char *const blocks_choices[] = {"joined", "separate", NULL};
 
 #define READS   (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)

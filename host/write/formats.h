@@ -34,10 +34,9 @@ typedef struct shown_mesh {
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are written as numbers lie in memory");
 
-void ply_write(output *o, const shown_mesh *s);
-void obj_write(output *o, const shown_mesh *s);
-void stl_write(output *o, const shown_mesh *s);
-void vtp_write(output *o, const shown_mesh *s);
+#define WRITER(name, ...) void name##_write(output *o, const shown_mesh *s);
+MESH_FORMATS(WRITER)
+#undef WRITER
 
 /* The vertex of the mesh that vertex v of the file shows. */
 static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) { return s->soup ? s->mesh->triangles[v] : v; }

@@ -10,6 +10,26 @@
 
 #include "tetracubes.h"
 
+/*
+ * The table of formats that are written: a new one is a row here, and a file with its writer. ROW is applied to each:
+ *
+ *     ROW(name, label, has_fields, has_doubles, has_normals, counts)
+ *
+ *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
+ *     has_doubles  of coordinates; fields and normals are those of vertices
+ *     counts       what the format's 32 bits have to suffice for, vertices or triangles
+ */
+/* clang-format off */
+#define MESH_FORMATS(ROW)                                                                                              \
+    ROW(ply, "PLY", 1, 1, 1, vertices)                                                                                 \
+    ROW(vtp, "VTP", 1, 1, 1, vertices)                                                                                 \
+    ROW(stl, "STL", 0, 0, 0, triangles)                                                                                \
+    ROW(obj, "OBJ", 0, 1, 1, vertices)
+
+/* Of complexes: name and label. */
+#define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
+/* clang-format on */
+
 /* Values on the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...; there,
  * characters other than letters and digits become '_'. In both, names that are taken, by arrays that the writer makes
  * itself (x, nx, Points, Normals, ...) or by a field before, get '_' behind them. */
@@ -26,7 +46,7 @@ typedef struct mesh_part {
 } mesh_part;
 
 typedef struct mesh_write_options {
-    const char *format; /* "ply", "stl", "obj" or "vtp", in any case; NULL: the file's ending */
+    const char *format; /* a name of MESH_FORMATS, in any case; NULL: the file's ending */
     int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
     const mesh_field *fields;
     int field_count;

@@ -8,9 +8,12 @@
 #include "formats.h"
 #include "output.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+enum counted { COUNTS_vertices, COUNTS_triangles };
 
 typedef struct format {
     const char *name;
@@ -18,21 +21,44 @@ typedef struct format {
     int takes_fields;
     int has_doubles; /* for coordinates */
     int has_normals; /* of vertices */
+    enum counted counted;
 } format;
 
-static const format formats[] = {{"ply", ply_write, 1, 1, 1},
-                                 {"stl", stl_write, 0, 0, 0},
-                                 {"obj", obj_write, 0, 1, 1},
-                                 {"vtp", vtp_write, 1, 1, 1},
-                                 {NULL, NULL, 0, 0, 0}};
+#define FORMAT(name, label, has_fields, has_doubles, has_normals, counts)                                              \
+    {#name, name##_write, has_fields, has_doubles, has_normals, COUNTS_##counts},
+static const format formats[] = {MESH_FORMATS(FORMAT)};
+
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
 
 /* Values per vertex, of all fields together: a vertex must fit a block of the output many times. */
 enum { FIELD_VALUES_MOST = 4096 };
 
 static const format *find_format(const char *name) {
-    for (const format *f = formats; f->name; f++)
+    for (const format *f = formats; f < formats + FORMAT_COUNT; f++)
         if (strcasecmp(f->name, name) == 0) return f;
     return NULL;
+}
+
+static int is_any(const format *f) {
+    (void)f;
+    return 1;
+}
+
+static int takes_fields(const format *f) { return f->takes_fields; }
+
+/* "ply, vtp, stl or obj": those that are meant, with a text before each. */
+static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
+    size_t used = 0;
+    const format *last = formats;
+    for (const format *f = formats; f < formats + FORMAT_COUNT; f++) last = is_meant(f) ? f : last;
+    for (const format *f = formats; f <= last; f++)
+        if (is_meant(f))
+            used += (size_t)snprintf(list + used, LIST_BYTES - used, "%s%s%s",
+                                     !used       ? ""
+                                     : f == last ? " or "
+                                                 : ", ",
+                                     before, f->name);
+    return list;
 }
 
 /* What follows the last dot of the file's name; "" where there is none. */
@@ -43,9 +69,11 @@ static const char *ending_of(const char *path) {
 
 static int check_fields(const char *path, const mesh_write_options *options, const format *f) {
     int64_t values = 0;
+    char list[LIST_BYTES];
     if (!options || !options->field_count) return 0;
     if (!f->takes_fields)
-        return fail(STATUS_USAGE, "%s: %s holds no fields on vertices; write ply or vtp", path, f->name);
+        return fail(STATUS_USAGE, "%s: %s holds no fields on vertices; write %s", path, f->name,
+                    list_formats(takes_fields, "", list));
     for (int i = 0; i < options->field_count; i++) values += options->fields[i].components;
     if (values <= FIELD_VALUES_MOST) return 0;
     return fail(STATUS_USAGE, "%s: %lld values per vertex are more than the %d that are written; name fewer fields",
@@ -54,30 +82,29 @@ static int check_fields(const char *path, const mesh_write_options *options, con
 
 static int choose_format(const char *path, const mesh_write_options *options, const format **chosen) {
     int named = options && options->format;
+    char list[LIST_BYTES];
     *chosen = find_format(named ? options->format : ending_of(path));
     if (*chosen) return check_fields(path, options, *chosen);
     if (named)
-        return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as ply, stl, obj or vtp",
-                    options->format);
+        return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as %s", options->format,
+                    list_formats(is_any, "", list));
     if (output_is_dash(path)) return fail(STATUS_USAGE, "-o - has no ending: name the format by --format");
-    return fail(STATUS_USAGE,
-                "%s: its ending names no known format: let it end in .ply, .stl, .obj or .vtp, or name the format by "
-                "--format",
-                path);
+    return fail(STATUS_USAGE, "%s: its ending names no known format: let it end in %s, or name the format by --format",
+                path, list_formats(is_any, ".", list));
 }
 
 static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {
-    int is_stl = f->write == stl_write;
-    uint64_t count = is_stl ? mesh->triangle_count : mesh->vertex_count;
-    if (!is_stl && soup && mesh->triangle_count > FORMAT_LIMIT / 3)
+    int by_triangles = f->counted == COUNTS_triangles;
+    uint64_t count = by_triangles ? mesh->triangle_count : mesh->vertex_count;
+    if (!by_triangles && soup && mesh->triangle_count > FORMAT_LIMIT / 3)
         return fail(STATUS_FAILED,
                     "%s: %llu triangles with vertices of their own are more than the 2^32 - 1 vertices that %s holds; "
                     "write shared vertices instead",
                     path, (unsigned long long)mesh->triangle_count, f->name);
     if (count > FORMAT_LIMIT)
         return fail(STATUS_FAILED, "%s: %llu %s are more than the 2^32 - 1 that %s holds%s", path,
-                    (unsigned long long)count, is_stl ? "triangles" : "vertices", f->name,
-                    is_stl ? "; write ply or obj instead" : "; extract a part of the volume");
+                    (unsigned long long)count, by_triangles ? "triangles" : "vertices", f->name,
+                    by_triangles ? "; write ply or obj instead" : "; extract a part of the volume");
     return 0;
 }
 

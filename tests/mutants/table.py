@@ -136,6 +136,7 @@ FILES = {
     "host/read/number_text.c": ["test_vtk_xml_hostile", "test_vtk_legacy"],
     "host/read/cell_faces.c": ["test_vtk_xml_hostile", "test_vtk_legacy"],
     "host/read/unpack_block.c": ["test_vtk_xml_hostile", "test_vtk_xml"],
+    "host/read/unpack_lz": ["test_vtk_xml_hostile", "test_vtk_xml"],
     "host/read/vtk_xml": ["test_vtk_xml", "test_vtk_xml_hostile"],
     "host/read/vtk_legacy": ["test_vtk_legacy"],
     "host/read/plot3d": ["test_plot3d"],

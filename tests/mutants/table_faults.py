@@ -94,7 +94,7 @@ MUTANTS = [
             "points of samples that are missing move the origin"),
            ("host/write/write.c", "test_cli_far", "const double *zero = at ? at : f->has_doubles",
             "const double *zero = f->has_doubles", "--origin-at is not subtracted"),
-           ("host/write/write.c", "test_cli_far", '{"obj", obj_write, 0, 1, 1}', '{"obj", obj_write, 0, 0, 1}',
+           ("host/write/mesh_write.h", "test_cli_far", 'ROW(obj, "OBJ", 0, 1, 1,', 'ROW(obj, "OBJ", 0, 0, 1,',
             "OBJ is written relative to the origin"),
            ("host/write/vtp.c", "test_cli_far", "if (s->is_moved)", "if (0)", "VTP is written relative to the origin"),
            ("host/tool/surface_files.c", "test_cli_far", "if (mesh_write_is_relative(o->output, &shown->mesh, &how)) tell_relative",

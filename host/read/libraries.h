@@ -1,0 +1,24 @@
+/*
+ * libraries.h - the libraries that files need, and which of them this program was built with
+ *
+ * HAVE_ZLIB, HAVE_BZIP2 and so on are 1 or 0, from the build. What calls a library lies in a file of its own, which is
+ * built where the library is there; tables name its function by IF_BUILT, and say otherwise what is missing.
+ */
+#ifndef LIBRARIES_H
+#define LIBRARIES_H
+
+enum library { LIBRARY_NONE, LIBRARY_ZLIB, LIBRARY_BZIP2, LIBRARY_LZ4, LIBRARY_LZMA, LIBRARY_NIFTI, LIBRARY_EXPAT };
+
+/* The function, or NULL. */
+#define IF_BUILT(have, function)  IF_BUILT_(have, function)
+#define IF_BUILT_(have, function) IF_BUILT_##have(function)
+#define IF_BUILT_0(function)      NULL
+#define IF_BUILT_1(function)      function
+
+int library_is_built(enum library library);
+
+/* STATUS_INPUT: path `is` ("holds bzip2 data"), for which the library is missing; what helps `instead` of it, and how
+ * to build with it. */
+int library_missing(enum library library, const char *path, const char *is, const char *instead);
+
+#endif

@@ -1,0 +1,133 @@
+#include "read_formats.h"
+
+#include "readers.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+/* --------------------------------------------------------------------------------------------------- how they begin */
+
+int path_ends_with(const char *path, const char *ending) {
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+int file_starts_with(const mapping *file, const char *text) {
+    size_t length = strlen(text);
+    return file->size >= length && memcmp(file->bytes, text, length) == 0;
+}
+
+static int begins_as_nrrd(const char *path, const mapping *file) {
+    (void)path;
+    return file_starts_with(file, "NRRD0");
+}
+
+static int begins_as_metaimage(const char *path, const mapping *file) {
+    (void)path;
+    return file_starts_with(file, "ObjectType") || file_starts_with(file, "NDims");
+}
+
+/* By the size of the header, which begins every NIfTI header, in either byte order. What is packed on standard input,
+ * and has no ending, is taken for it. */
+static int begins_as_nifti(const char *path, const mapping *file) {
+    static const char sizes[4][4] = {{92, 1, 0, 0}, {0, 0, 1, 92}, {28, 2, 0, 0}, {0, 0, 2, 28}};
+    for (int i = 0; i < 4; i++)
+        if (file->size >= 348 && memcmp(file->bytes, sizes[i], 4) == 0) return 1;
+    return mapping_is_standard_input(path) && file_starts_with(file, "\x1f\x8b");
+}
+
+static int begins_as_vtk_legacy(const char *path, const mapping *file) {
+    (void)path;
+    return file_starts_with(file, "# vtk DataFile Version");
+}
+
+/* The element VTKFile, after a prolog and comments if there are any. */
+static int begins_as_vtk_xml(const char *path, const mapping *file) {
+    enum { PROLOG = 4096 };
+    size_t size = file->size < PROLOG ? file->size : PROLOG;
+    (void)path;
+    return size && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ table */
+
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+
+/* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
+const read_format read_formats[FORMAT_COUNT] = {
+    [RAW] = {.name = "raw", .endings = "|.raw|", .read = raw_read, .has_frames = 1},
+    [NRRD] = {.name = "NRRD",
+              .notes = {{"gzip", LIBRARY_ZLIB}, {"bzip2", LIBRARY_BZIP2}},
+              .endings = "|.nrrd|.nhdr|",
+              .begins = begins_as_nrrd,
+              .read = nrrd_read,
+              .has_frames = 1},
+    [METAIMAGE] = {.name = "MetaImage",
+                   .notes = {{"zlib", LIBRARY_ZLIB}},
+                   .endings = "|.mha|.mhd|",
+                   .begins = begins_as_metaimage,
+                   .read = metaimage_read,
+                   .has_frames = 1},
+    [NIFTI] = {.name = "NIfTI and Analyze 7.5",
+               .library = LIBRARY_NIFTI,
+               .notes = {{"gzip", LIBRARY_ZLIB}},
+               .endings = "|.nii|.nii.gz|.hdr|.img|.hdr.gz|.img.gz|",
+               .begins = begins_as_nifti,
+               .read = IF_BUILT(HAVE_NIFTI, nifti_read),
+               .instead = "convert it to NRRD",
+               .has_frames = 1,
+               .may_be_half = 1},
+    [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
+    [VTK_XML] = {.name = "VTK XML",
+                 .library = LIBRARY_EXPAT,
+                 .notes = {{".vti .vtr .vts .vtu", LIBRARY_NONE},
+                           {"zlib", LIBRARY_ZLIB},
+                           {"LZ4", LIBRARY_LZ4},
+                           {"LZMA", LIBRARY_LZMA}},
+                 .endings = "|.vti|.vtr|.vts|.vtu|",
+                 .begins = begins_as_vtk_xml,
+                 .read = IF_BUILT(HAVE_EXPAT, vtk_xml_read),
+                 .instead = "save the file as VTK legacy (.vtk)"},
+    [PLOT3D] = {.name = "Plot3D",
+                .notes = {{"grid and solution", LIBRARY_NONE}},
+                .endings = "|.xyz|.x|.g|.p3d|",
+                .read = plot3d_read,
+                .may_be_half = 1},
+};
+
+const int read_format_count = FORMAT_COUNT;
+const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D];
+
+const read_format *read_format_of_content(const char *path, const mapping *file) {
+    for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++)
+        if (f->begins && f->begins(path, file)) return f;
+    return NULL;
+}
+
+const read_format *read_format_of_ending(const char *path) {
+    for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++)
+        for (const char *at = f->endings + 1; *at; at += strcspn(at, "|") + 1) {
+            char ending[16];
+            snprintf(ending, sizeof ending, "%.*s", (int)strcspn(at, "|"), at);
+            if (path_ends_with(path, ending)) return f;
+        }
+    return NULL;
+}
+
+const char *read_formats_text(char text[FORMATS_TEXT]) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++) {
+        const char *before = " (";
+        if (!f->read) continue;
+        used += (size_t)snprintf(text + used, FORMATS_TEXT - used, "%s%s", used ? ", " : "", f->name);
+        for (int n = 0; f->notes[n].text; n++) {
+            if (!library_is_built(f->notes[n].library)) continue;
+            used += (size_t)snprintf(text + used, FORMATS_TEXT - used, "%s%s", before, f->notes[n].text);
+            before = ", ";
+        }
+        if (before[0] == ',') used += (size_t)snprintf(text + used, FORMATS_TEXT - used, ")");
+    }
+    return text;
+}

@@ -1,0 +1,49 @@
+/*
+ * read_formats.h - the table of formats that are read: a new one is a row in read_formats.c, and a file with its reader
+ */
+#ifndef READ_FORMATS_H
+#define READ_FORMATS_H
+
+#include "dataset.h"
+#include "libraries.h"
+#include "mapping.h"
+#include "request.h"
+
+enum { FORMAT_NOTES = 5, FORMATS_TEXT = 512 };
+
+typedef struct read_format {
+    const char *name;     /* as lists and messages have it */
+    enum library library; /* without which there is no reader */
+    struct {
+        const char *text;
+        enum library library;
+    } notes[FORMAT_NOTES]; /* in parentheses behind the name, where their library is there; up to one without text */
+    const char *endings;   /* of its files, a bar before, between and behind */
+
+    /* Whether the file begins as the format does; NULL: that cannot be told. path tells standard input apart. */
+    int (*begins)(const char *path, const mapping *file);
+
+    /* Given the mapped file, fills a zeroed dataset; on failure the caller releases it. NULL: without the library. */
+    int (*read)(const read_request *request, const mapping *file, dataset *out);
+    const char *instead; /* what helps where that is NULL */
+    int has_frames;      /* request->frame is the reader's; grids have one frame */
+    int may_be_half;     /* of two inputs, Plot3D's grid and solution, the first may look like this */
+} read_format;
+
+extern const read_format read_formats[];
+extern const int read_format_count;
+
+/* The rows that two parts of the program choose by themselves. */
+extern const read_format *const raw_format, *const plot3d_format;
+
+/* By the first bytes, else by the ending; NULL: neither tells. */
+const read_format *read_format_of_content(const char *path, const mapping *file);
+const read_format *read_format_of_ending(const char *path);
+
+/* The formats this program was built with, one line: "raw, NRRD (gzip, bzip2), MetaImage, NIfTI". Returns text. */
+const char *read_formats_text(char text[FORMATS_TEXT]);
+
+int path_ends_with(const char *path, const char *ending);
+int file_starts_with(const mapping *file, const char *text);
+
+#endif

@@ -1,0 +1,34 @@
+/* unpack_stream.h - what unpackers of streams share: where bytes go, and how a stream ends */
+#ifndef UNPACK_STREAM_H
+#define UNPACK_STREAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { UNPACK_CHUNK = 1 << 30 };
+
+/* Where the next unpacked bytes go: first into a scratch buffer, then into the result, then one more byte of scratch,
+ * so that the end of the stream, with its check sum, is seen. */
+typedef struct target {
+    unsigned char scratch[65536];
+    unsigned char *out;
+    uint64_t skip, bytes; /* still wanted */
+    int more;             /* whether more came than was wanted */
+    int is_counted;       /* the stream may end before what is wanted */
+} target;
+
+/* Room for the next bytes. */
+unsigned char *target_room(target *t, uint64_t *room);
+
+/* So many have come. Returns 1 where more came than was wanted. */
+int target_took(target *t, uint64_t count);
+
+/* The stream has ended where it should; before all that was wanted. */
+int stream_ended(const char *path, const target *t, uint64_t wanted);
+int stream_ends_early(const char *path, uint64_t got, uint64_t wanted);
+
+/* By zlib, of gzip and zlib streams; by libbz2. */
+int inflate_stream(const char *path, const unsigned char *in, size_t in_bytes, target *t, uint64_t wanted);
+int bunzip_stream(const char *path, const unsigned char *in, size_t in_bytes, target *t, uint64_t wanted);
+
+#endif
