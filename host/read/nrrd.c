@@ -5,7 +5,7 @@
  * so that sizes are checked against the file before memory is taken, and data files stay in the header's folder.
  * Encodings raw, ascii, hex, gzip and bzip2. Fields that do not bear on samples or space are ignored.
  */
-#include "nrrd.h"
+#include "nrrd_world.h"
 
 #include "exit_status.h"
 #include "failure.h"

@@ -6,7 +6,7 @@
  * "spacings", and "axis mins" says where the first sample (node) or its cell's lower border (cell, the default) lies.
  * NaN is the format's word for what is not known or makes no sense.
  */
-#include "nrrd.h"
+#include "nrrd_world.h"
 
 #include "exit_status.h"
 #include "failure.h"

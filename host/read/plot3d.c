@@ -8,7 +8,7 @@
  * Every block is a curvilinear grid. IBLANK 0 blanks a point; other values say what a point borders on and are present.
  * Pressure is derived as (gamma - 1) (energy - momentum^2 / (2 density)), gamma being 1.4 unless the file has its own.
  */
-#include "plot3d.h"
+#include "plot3d_form.h"
 #include "readers.h"
 
 #include "exit_status.h"

@@ -17,10 +17,11 @@
  * being doubles too. A walk goes from record to record and never beyond the file, so nothing that a header claims is
  * acted on before the file is known to hold it.
  */
-#include "plot3d.h"
+#include "plot3d_form.h"
 
 #include "exit_status.h"
 #include "failure.h"
+#include "plot3d_text.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -5,11 +5,11 @@
  * (number_text.h), in columns of fixed width too. A first pass counts, so that memory is taken once and never more than
  * the text can account for.
  */
-#include "number_text.h"
-#include "plot3d.h"
+#include "plot3d_text.h"
 
 #include "exit_status.h"
 #include "failure.h"
+#include "number_text.h"
 
 #include <ctype.h>
 #include <inttypes.h>

@@ -4,7 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "libraries.h"
-#include "unpack_stream.h"
+#include "unpackers.h"
 
 #include <inttypes.h>
 
@@ -33,10 +33,6 @@ int unpack_ratio_check(const char *path, uint64_t packed_bytes, uint64_t unpacke
                 "%s: declares %" PRIu64 " bytes, but its %" PRIu64 " compressed bytes cannot hold more than %" PRIu64
                 " times as many; the header is wrong or the file is cut (or store it uncompressed)",
                 path, unpacked_bytes, packed_bytes, most);
-}
-
-int unpack_damaged(const char *path, const char *detail) {
-    return fail(STATUS_INPUT, "%s: its compressed data is damaged (%s); get the file again", path, detail);
 }
 
 int unpack(const char *path, encoding packed, const unsigned char *in, size_t in_bytes, uint64_t skip, void *out,

@@ -20,9 +20,6 @@ int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_
 /* STATUS_INPUT where that is more than `most` unpacked bytes to a packed one. */
 int unpack_ratio_check(const char *path, uint64_t packed_bytes, uint64_t unpacked_bytes, uint64_t most);
 
-/* STATUS_INPUT, with the text for packed data that a library finds damaged. */
-int unpack_damaged(const char *path, const char *detail);
-
 /* Unpacks, drops the first skip bytes and writes the next `bytes` to out; *more, where given, tells whether the stream
  * holds more than that. Several members one after another count as one stream. STATUS_INPUT where the stream is damaged
  * or ends early. */

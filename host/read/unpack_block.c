@@ -3,6 +3,7 @@
 
 #include "libraries.h"
 #include "unpack.h"
+#include "unpackers.h"
 
 #include <string.h>
 

@@ -23,8 +23,4 @@ int unpack_block_check(const char *path, packing packed, uint64_t packed_bytes, 
 int unpack_block(const char *path, packing packed, const unsigned char *in, uint64_t in_bytes, unsigned char *out,
                  uint64_t bytes);
 
-/* By liblz4 and liblzma, where they are there. */
-int unpack_lz4(const char *path, const unsigned char *in, uint64_t in_bytes, unsigned char *out, uint64_t bytes);
-int unpack_lzma(const char *path, const unsigned char *in, uint64_t in_bytes, unsigned char *out, uint64_t bytes);
-
 #endif

@@ -1,9 +1,8 @@
 /* unpack_bzip2.c - bzip2 streams, through libbz2 */
-#include "unpack_stream.h"
+#include "unpackers.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "unpack.h"
 
 #include <bzlib.h>
 

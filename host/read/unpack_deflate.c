@@ -1,9 +1,8 @@
 /* unpack_deflate.c - gzip and zlib streams, through zlib */
-#include "unpack_stream.h"
+#include "unpackers.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "unpack.h"
 
 #include <zlib.h>
 

@@ -1,9 +1,8 @@
 /* unpack_lz4.c - raw LZ4 blocks, through liblz4 */
-#include "unpack_block.h"
+#include "unpackers.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "unpack.h"
 
 #include <lz4.h>
 

@@ -1,9 +1,8 @@
 /* unpack_lzma.c - xz streams of LZMA2, through liblzma */
-#include "unpack_block.h"
+#include "unpackers.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "unpack.h"
 
 #include <lzma.h>
 

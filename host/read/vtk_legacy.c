@@ -7,11 +7,15 @@
  * with a cell per square. First comes the geometry, then attributes of points and cells; once these begin the geometry
  * is fixed, and each of its sections may appear once.
  */
-#include "vtk_legacy.h"
+#include "vtk_legacy_text.h"
 
 #include "exit_status.h"
 #include "failure.h"
 #include "world.h"
+#include "readers.h"
+#include "vtk_legacy_array.h"
+#include "vtk_legacy_attributes.h"
+#include "vtk_legacy_cells.h"
 
 #include <inttypes.h>
 #include <stdio.h>

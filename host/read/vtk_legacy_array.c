@@ -1,13 +1,15 @@
 /*
- * vtk_legacy_array.c - arrays of VTK legacy files: read, converted or passed over; see vtk_legacy.h
+ * vtk_legacy_array.c - arrays of VTK legacy files: read, converted or passed over; see vtk_legacy_array.h
  *
  * Types and their sizes as VTK's own reader has them: long is 8 bytes, vtkIdType 4, bits are packed, the first in the
  * highest bit. As there, what follows the name of a type is no matter: "int1" and "int32" are int, "float32" is float.
  * Of names that tell 8 bytes that is taken as said, and those of unsigned types that VTK does not know.
  */
-#include "vtk_legacy.h"
+#include "vtk_legacy_array.h"
 
 #include "exit_status.h"
+#include "mapping.h"
+#include "vtk_legacy_values.h"
 
 #include <inttypes.h>
 #include <string.h>

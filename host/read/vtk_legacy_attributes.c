@@ -1,12 +1,13 @@
 /*
- * vtk_legacy_attributes.c - fields at the points and cells of VTK legacy files; see vtk_legacy.h
+ * vtk_legacy_attributes.c - fields at the points and cells of VTK legacy files; see vtk_legacy_attributes.h
  *
  * Texts and variants are left out, colour tables passed over. VTK's ghost flags do not become fields: hidden points,
  * and cells that are hidden or that another piece owns, are missing data.
  */
-#include "vtk_legacy.h"
+#include "vtk_legacy_attributes.h"
 
 #include "exit_status.h"
+#include "vtk_legacy_array.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,14 +1,15 @@
 /*
- * vtk_legacy_cells.c - the cells of unstructured grids in VTK legacy files; see vtk_legacy.h
+ * vtk_legacy_cells.c - the cells of unstructured grids in VTK legacy files; see vtk_legacy_cells.h
  *
  * Two layouts: a count before the points of each cell (to version 4.2), or OFFSETS, one more than cells, and
  * CONNECTIVITY. The word behind the counts tells which. Polyhedra have a stream of their faces in place of points
  * (cell_faces.h). Nothing is trusted before legacy_check_cells.
  */
-#include "vtk_legacy.h"
+#include "vtk_legacy_cells.h"
 
 #include "cell_faces.h"
 #include "exit_status.h"
+#include "vtk_legacy_array.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

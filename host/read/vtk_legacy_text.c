@@ -1,5 +1,5 @@
-/* vtk_legacy_text.c - words, numbers and lines of VTK legacy files; see vtk_legacy.h */
-#include "vtk_legacy.h"
+/* vtk_legacy_text.c - words, numbers and lines of VTK legacy files; see vtk_legacy_text.h */
+#include "vtk_legacy_text.h"
 
 #include "control.h"
 #include "exit_status.h"

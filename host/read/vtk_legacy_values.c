@@ -1,7 +1,8 @@
 /* vtk_legacy_values.c - values of VTK legacy files, from words or big-endian bytes, and their conversion; see
- * vtk_legacy.h */
+ * vtk_legacy_values.h */
+#include "vtk_legacy_values.h"
+
 #include "number_text.h"
-#include "vtk_legacy.h"
 
 #include <math.h>
 #include <stdlib.h>

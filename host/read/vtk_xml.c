@@ -1,12 +1,12 @@
 /*
  * vtk_xml.c - serial VTK XML files: ImageData (.vti), RectilinearGrid (.vtr), StructuredGrid (.vts) and
- * UnstructuredGrid (.vtu); see vtk_xml.h
+ * UnstructuredGrid (.vtu); see vtk_xml_header.h
  *
  * Every piece that holds points becomes a block. Values that lie in the file as this machine wants them, which is so
  * for aligned raw appended data, are used in the mapped file; all others are copied. Arrays of no use here (FieldData,
  * strings) are left where they are.
  */
-#include "vtk_xml.h"
+#include "vtk_xml_data.h"
 
 #include "cell_faces.h"
 #include "exit_status.h"

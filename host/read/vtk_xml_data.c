@@ -1,5 +1,5 @@
 /*
- * vtk_xml_data.c - the values of one array of a VTK XML file; see vtk_xml.h
+ * vtk_xml_data.c - the values of one array of a VTK XML file; see vtk_xml_data.h
  *
  * Binary data begins with numbers of 4 or 8 bytes:
  *
@@ -10,12 +10,13 @@
  * In base64, header and data are encoded together where not compressed, else each on its own, padding between them.
  * Every group of four characters is decoded by itself here, so that both read alike, however writers join them.
  */
-#include "vtk_xml.h"
+#include "vtk_xml_data.h"
 
 #include "exit_status.h"
 #include "failure.h"
 #include "layout.h"
 #include "parallel.h"
+#include "vtk_xml_text.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -316,7 +317,7 @@ int vtk_xml_take(xml_values *v, void *to) {
     size_t element = element_bytes(v->array->element);
     int status = 0;
     if (!v->count) return 0;
-    if (v->array->format == FORMAT_TEXT) return vtk_xml_take_text(v, to);
+    if (v->array->format == FORMAT_TEXT) return vtk_xml_take_text(v->array, v->count, v->label, to, &v->more);
     if (v->is_compressed)
         status = take_blocks(v, to);
     else if (!source_take(&v->data, to, v->bytes))

@@ -1,17 +1,17 @@
 /*
- * vtk_xml_header.c - the XML of a VTK file, through expat: pieces and the place of every array; see vtk_xml.h
+ * vtk_xml_header.c - the XML of a VTK file, through expat: pieces and the place of every array; see vtk_xml_header.h
  *
  * Expat sees the file up to the start tag of its appended data, which need not be XML, and never a document type:
  * without one there are no entities of the file's own. Text of arrays is not copied: the places of the tags around it
  * tell where in the file it lies.
  */
-#include "vtk_xml.h"
+#include "vtk_xml_header.h"
 
 #include "control.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "header_text.h"
-#include "layout.h"
+#include "stored_types.h"
 
 #include <expat.h>
 #include <inttypes.h>

@@ -1,15 +1,15 @@
 /*
- * vtk_xml_text.c - numbers that a VTK XML file holds as text; see vtk_xml.h
+ * vtk_xml_text.c - numbers that a VTK XML file holds as text; see vtk_xml_text.h
  *
  * Decimals of up to 15 digits with a power of ten of up to 22 are exact in double after one multiplication or division
  * (Clinger 1990); strtod takes the others.
  */
-#include "vtk_xml.h"
+#include "vtk_xml_text.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "layout.h"
 #include "number_text.h"
+#include "stored_types.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -89,12 +89,12 @@ static int take_word(const char *word, size_t length, int is_cut, int element, u
     return 1;
 }
 
-int vtk_xml_take_text(xml_values *v, void *to) {
-    const unsigned char *at = v->array->text, *end = v->array->text_end;
-    size_t bytes = element_bytes(v->array->element);
+int vtk_xml_take_text(const xml_array *array, uint64_t count, const char *label, void *to, int *more) {
+    const unsigned char *at = array->text, *end = array->text_end;
+    size_t bytes = element_bytes(array->element);
     unsigned char *value = to;
     char word[WORD_BYTES];
-    for (uint64_t i = 0; i < v->count; i++, value += bytes) {
+    for (uint64_t i = 0; i < count; i++, value += bytes) {
         size_t length = 0;
         while (at < end && *at <= ' ') at++;
         while (end > at && *at > ' ' && length < WORD_BYTES - 1) word[length++] = (char)*at++;
@@ -102,11 +102,11 @@ int vtk_xml_take_text(xml_values *v, void *to) {
         if (!length)
             return fail(STATUS_INPUT,
                         "%s has %" PRIu64 " numbers of text, but %" PRIu64 " are needed; the file is damaged or cut",
-                        v->label, i, v->count);
-        if (!take_word(word, length, end > at && *at > ' ', v->array->element, value, &at))
-            return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", v->label, i + 1,
+                        label, i, count);
+        if (!take_word(word, length, end > at && *at > ' ', array->element, value, &at))
+            return fail(STATUS_INPUT, "%s: its number %" PRIu64 ", '%.40s', is no number of its type", label, i + 1,
                         word);
     }
-    v->more = at < end;
+    *more = at < end;
     return 0;
 }

@@ -151,7 +151,7 @@ MUTANTS = [
            ("BZIP2_LIMIT = 2000000", "BZIP2_LIMIT = 50000", "bzip2: masks that are nearly empty are refused"),
            ("gives == unpacked_bytes) return status;", "1) return status;", "what a stream does not hold is not missed",
             {"same": "unpacking finds it too, memory taken"})),
-    *group("host/read/unpack_stream.c",
+    *group("host/read/unpackers.c",
            ("t->skip -= count;", "t->skip = 0;", "compressed data: bytes to skip")),
     *group("host/read/nrrd.c",
            ("h.endian != __BYTE_ORDER__", "h.endian == __BYTE_ORDER__", "byte order: exchanged"),

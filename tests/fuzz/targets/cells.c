@@ -8,6 +8,8 @@
 #include "hang.h"
 #include "surface.h"
 
+#include <math.h>
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { LINKS_MOST = 1 << 12 };

@@ -1,6 +1,6 @@
-/* nrrd.h - what an NRRD header says; shared by the parser (nrrd.c) and the geometry (nrrd_world.c) */
-#ifndef NRRD_H
-#define NRRD_H
+/* nrrd_world.h - what an NRRD header says, as its parser (nrrd.c) leaves it; and its axes and world space */
+#ifndef NRRD_WORLD_H
+#define NRRD_WORLD_H
 
 #include "source.h"
 

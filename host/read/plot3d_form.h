@@ -1,12 +1,12 @@
 /*
- * plot3d.h - the ways in which the bytes of one Plot3D file can be understood
+ * plot3d_form.h - the ways in which the bytes of one Plot3D file can be understood
  *
  * Plot3D files do not say how they were written. A file is therefore tried in every way there is: as text, Fortran
  * records or C binary, in either byte order and precision, as one block or several, as grid, solution or function. Its
  * header then tells its size, and what is left is a form: mostly one, as sizes and record marks must agree exactly.
  */
-#ifndef PLOT3D_H
-#define PLOT3D_H
+#ifndef PLOT3D_FORM_H
+#define PLOT3D_FORM_H
 
 #include "mapping.h"
 
@@ -72,12 +72,5 @@ void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t 
 
 /* Whether the IBLANK value at that index is 0. */
 int plot3d_is_blanked(const plot3d_file *file, const plot3d_form *form, const plot3d_block *block, uint64_t index);
-
-/* Whether the file begins as text; binary ones begin with integers, which hold zero bytes. */
-int plot3d_is_text(const mapping *mapped);
-
-/* All numbers of a text, "3*0.5" being three; freed by the caller. STATUS_INPUT where a word is no number, or repeats
- * make more numbers than such a text may have. */
-int plot3d_numbers(const char *path, const mapping *mapped, double **numbers, uint64_t *count);
 
 #endif

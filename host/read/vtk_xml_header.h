@@ -1,5 +1,7 @@
 /*
- * vtk_xml.h - what the parts of the VTK XML reader share: the description of a file's arrays, and their values
+ * vtk_xml_header.h - what a VTK XML file says of its pieces and arrays
+ *
+ * The parts of the reader:
  *
  *     vtk_xml_header.c   the XML, through expat: pieces and the place of every array in the file
  *     vtk_xml_data.c     the values of one array: base64, blocks, compression, byte order
@@ -8,8 +10,8 @@
  *
  * Source: "VTK XML Formats" in VTK's file format documentation (docs.vtk.org), and what VTK 9 writes and reads.
  */
-#ifndef VTK_XML_H
-#define VTK_XML_H
+#ifndef VTK_XML_HEADER_H
+#define VTK_XML_HEADER_H
 
 #include "dataset.h"
 #include "mapping.h"
@@ -25,7 +27,7 @@ enum xml_format { FORMAT_TEXT, FORMAT_BINARY, FORMAT_APPENDED };
 typedef struct xml_array {
     enum xml_section section;
     size_t name;        /* where in the document's names */
-    int element;        /* stored type as layout.h counts them; -1: strings and others that are no numbers */
+    int element;        /* stored type (stored_types.h); -1: strings and others that are no numbers */
     int is_bits;        /* TC_U8 as text; else eight values to a byte, the first in the highest bit */
     char type[24];      /* as the file names it */
     int64_t components; /* at least 1 */
@@ -66,42 +68,5 @@ int vtk_xml_parse(const char *path, const mapping *file, xml_document *doc);
 
 /* Frees and zeroes. */
 void vtk_xml_release(xml_document *doc);
-
-/* Bytes of the file, or what base64 in it stands for, taken in order. Copies go on from the same place. */
-typedef struct xml_source {
-    const unsigned char *at, *end;
-    int is_base64;
-    unsigned char kept[3]; /* decoded, not yet taken */
-    size_t kept_count;
-} xml_source;
-
-/* An array whose sizes have been compared with what the file holds. */
-typedef struct xml_values {
-    const xml_document *doc;
-    const xml_array *array;
-    uint64_t count, bytes;         /* of the values that are wanted */
-    const unsigned char *in_place; /* where they lie in the file as this machine wants them; NULL: vtk_xml_take */
-    int more;                      /* whether the array holds more than that; of text only known when it is taken */
-    char label[512];               /* file and array, for messages */
-    size_t label_array;            /* where in it the array begins */
-
-    xml_source data, sizes; /* sizes: of compressed blocks */
-    uint64_t block_bytes, largest_block;
-    int is_compressed;
-} xml_values;
-
-/* Finds the first `count` values, and checks that the file can hold them: to be called before memory is taken for
- * them. STATUS_INPUT where it cannot. */
-int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_values *out);
-
-/* To be called before so many bytes that lie in the file as they are wanted are copied nevertheless. STATUS_INPUT where
- * arrays have asked for the same bytes of the file too often. */
-int vtk_xml_note_taken(xml_document *doc, const xml_values *values, uint64_t bytes);
-
-/* Writes values->bytes bytes: values of the stored type in this machine's byte order. */
-int vtk_xml_take(xml_values *values, void *to);
-
-/* The part of vtk_xml_take that reads numbers as text. */
-int vtk_xml_take_text(xml_values *values, void *to);
 
 #endif

@@ -1,6 +1,6 @@
-/* unpack_stream.h - what unpackers of streams share: where bytes go, and how a stream ends */
-#ifndef UNPACK_STREAM_H
-#define UNPACK_STREAM_H
+/* unpackers.h - one function per library that unpacks, each in a file of its own; and what these share */
+#ifndef UNPACKERS_H
+#define UNPACKERS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,6 +17,9 @@ typedef struct target {
     int is_counted;       /* the stream may end before what is wanted */
 } target;
 
+/* STATUS_INPUT, with the text for packed data that a library finds damaged. */
+int unpack_damaged(const char *path, const char *detail);
+
 /* Room for the next bytes. */
 unsigned char *target_room(target *t, uint64_t *room);
 
@@ -30,5 +33,9 @@ int stream_ends_early(const char *path, uint64_t got, uint64_t wanted);
 /* By zlib, of gzip and zlib streams; by libbz2. */
 int inflate_stream(const char *path, const unsigned char *in, size_t in_bytes, target *t, uint64_t wanted);
 int bunzip_stream(const char *path, const unsigned char *in, size_t in_bytes, target *t, uint64_t wanted);
+
+/* By liblz4, of a block; by liblzma, of an xz stream of LZMA2: the first `bytes` of what they hold. */
+int unpack_lz4(const char *path, const unsigned char *in, uint64_t in_bytes, unsigned char *out, uint64_t bytes);
+int unpack_lzma(const char *path, const unsigned char *in, uint64_t in_bytes, unsigned char *out, uint64_t bytes);
 
 #endif

@@ -1,10 +1,13 @@
-#include "unpack_stream.h"
+#include "unpackers.h"
 
 #include "exit_status.h"
 #include "failure.h"
-#include "unpack.h"
 
 #include <inttypes.h>
+
+int unpack_damaged(const char *path, const char *detail) {
+    return fail(STATUS_INPUT, "%s: its compressed data is damaged (%s); get the file again", path, detail);
+}
 
 int stream_ends_early(const char *path, uint64_t got, uint64_t wanted) {
     if (got == wanted) return unpack_damaged(path, "it is cut before its check sum");
