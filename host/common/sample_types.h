@@ -19,7 +19,6 @@
 #include "tetracubes.h"
 
 #include <float.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -57,24 +56,24 @@ static inline size_t sample_bytes(tc_type type) {
     return 0;
 }
 
-/* Whether it is of floating point: samples may be NaN or infinite. */
-static inline int type_is_real(tc_type type) {
-    switch ((int)type) {
-#define TYPE_CASE(type, ...) case type:
-        REAL_TYPES(TYPE_CASE)
-#undef TYPE_CASE
-        return 1;
-    default:
-        return 0;
-    }
-}
+/* Sets of types, a bit for each by its number: of those of floating point, whose samples may be NaN or infinite; and of
+ * those that float32 does not hold every value of, which are interpolated in double. */
+#define TYPE_REAL(type, ...)                       | 1u << type
+#define TYPE_WIDE_INTEGER(type, name, c_type, ...) | (sizeof(c_type) > sizeof(uint16_t)) << type
+#define TYPE_WIDE_REAL(type, name, c_type, ...)    | (sizeof(c_type) > sizeof(float)) << type
+enum {
+    REAL_TYPE_SET = 0 REAL_TYPES(TYPE_REAL),
+    WIDE_TYPE_SET = 0 INTEGER_TYPES(TYPE_WIDE_INTEGER) REAL_TYPES(TYPE_WIDE_REAL)
+};
+#undef TYPE_REAL
+#undef TYPE_WIDE_INTEGER
+#undef TYPE_WIDE_REAL
 
-/* Whether float32 does not hold all its values: they are interpolated in double. */
-static inline int type_is_wide(tc_type type) {
-    return sample_bytes(type) > (type_is_real(type) ? sizeof(float) : sizeof(uint16_t));
-}
+static inline int type_is_real(tc_type type) { return REAL_TYPE_SET >> (unsigned)type & 1; }
 
-/* Value n of an array, exact. */
+static inline int type_is_wide(tc_type type) { return WIDE_TYPE_SET >> (unsigned)type & 1; }
+
+/* Value n of an array, exact; of a type that there is. */
 static inline double value_at(tc_type type, const void *values, uint64_t n) {
     switch (type) {
 #define TYPE_CASE(type, name, c_type, ...)                                                                             \
@@ -83,7 +82,7 @@ static inline double value_at(tc_type type, const void *values, uint64_t n) {
         SAMPLE_TYPES(TYPE_CASE)
 #undef TYPE_CASE
     }
-    return (double)NAN;
+    __builtin_unreachable();
 }
 
 #endif

@@ -69,7 +69,9 @@ static inline size_t element_bytes(int element) {
     }
 }
 
-static inline int element_is_real(int element) { return element < SAMPLE_TYPE_COUNT && type_is_real((tc_type)element); }
+static inline int element_is_real(int element) {
+    return (unsigned)element < SAMPLE_TYPE_COUNT && type_is_real((tc_type)element);
+}
 
 /* The type of a field of such elements: the sample type itself, f64 of 64-bit integers. */
 static inline tc_type element_sample_type(int element) {

@@ -180,7 +180,8 @@ static float edge_crossing(const reference *r, const int64_t a[3], const int64_t
                                        : crossing_f32(value_a, value_b, r->isovalue);
 }
 
-static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
+/* Few edges have a vertex: the loop over all of them keeps its registers. */
+__attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
     const float t = edge_crossing(r, a, b);
     float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
     if (r->grid->kind == GRID_UNIFORM)
