@@ -1,7 +1,7 @@
 /*
- * test_formats.c - the tables of formats: the README lists what they hold, and what is not built in is told
+ * test_formats.c - the tables of formats: the pages list what they hold, and what is not built in is told
  *
- *     test_formats README [absent]
+ *     test_formats PAGE_OF_READERS PAGE_OF_TOOL [absent]
  *
  * absent: the readers were built without the libraries that files need.
  */
@@ -18,12 +18,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char readme[1 << 17];
+static char page[1 << 17];
 
-static void read_readme(const char *path) {
+static void read_page(const char *path) {
     FILE *file = fopen(path, "r");
-    size_t length = file ? fread(readme, 1, sizeof readme - 1, file) : 0;
-    EXPECT(length > 1000 && length < sizeof readme - 1, "%s: %zu bytes", path, length);
+    size_t length = file ? fread(page, 1, sizeof page - 1, file) : 0;
+    EXPECT(length > 1000 && length < sizeof page - 1, "%s: %zu bytes", path, length);
     if (file) fclose(file);
 }
 
@@ -31,36 +31,35 @@ static void read_readme(const char *path) {
 static const char *line_of(const char *beginning, char line[1000]) {
     char wanted[100];
     snprintf(wanted, sizeof wanted, "\n%s", beginning);
-    const char *at = strstr(readme, wanted);
+    const char *at = strstr(page, wanted);
     snprintf(line, 1000, "%.*s", at ? (int)strcspn(at + 1, "\n") : 0, at ? at + 1 : "");
     return line;
 }
 
-static void test_readme_of_reading(void) {
+static void test_page_of_reading(void) {
     for (const read_format *f = read_formats; f < read_formats + read_format_count; f++) {
         char row[1000], word[40];
         snprintf(word, sizeof word, "| %.*s", (int)strcspn(f->name, " "), f->name);
         if (strncmp(f->name, "VTK", 3) == 0) snprintf(word, sizeof word, "| %s", f->name);
-        EXPECT(*line_of(word, row), "README.md: no row of %s", f->name);
+        EXPECT(*line_of(word, row), "the readers' page: no row of %s", f->name);
         for (const char *at = f->endings + 1; *at && f != raw_format && f != plot3d_format;
              at += strcspn(at, "|") + 1) {
             snprintf(word, sizeof word, "`%.*s", (int)strcspn(at + 1, "|.") + 1, at); /* .gz is told by itself */
-            EXPECT(strstr(row, word), "README.md: no %s in '%s'", word, row);
+            EXPECT(strstr(row, word), "the readers' page: no %s in '%s'", word, row);
         }
         for (int n = 0; f->notes[n].text; n++)
             if (f->notes[n].library)
-                EXPECT(strstr(row, f->notes[n].text), "README.md: no %s in '%s'", f->notes[n].text, row);
+                EXPECT(strstr(row, f->notes[n].text), "the readers' page: no %s in '%s'", f->notes[n].text, row);
     }
 }
 
-static void test_readme_of_writing(void) {
+static void test_page_of_writing(void) {
     char row[1000];
-    const char *output = line_of("Output:", row);
-#define FORMAT_IN_README(name, label, ...)                                                                             \
-    EXPECT(strstr(output, label), "README.md: no %s in '%s'", label, output);                                          \
-    EXPECT(strstr(line_of("| `--format F`", row), #name), "README.md: no %s in '%s'", #name, row);                     \
-    line_of("Output:", row);
-    MESH_FORMATS(FORMAT_IN_README)
+    line_of("| `--format F`", row);
+#define FORMAT_IN_PAGE(name, label, ...)                                                                               \
+    EXPECT(strstr(page, label), "the tool's page: no %s", label);                                                      \
+    EXPECT(strstr(row, #name), "the tool's page: no %s in '%s'", #name, row);
+    MESH_FORMATS(FORMAT_IN_PAGE)
 }
 
 /* Endings and beginnings lead to the row. */
@@ -111,12 +110,14 @@ static void test_absent(void) {
 }
 
 int main(int argc, char **argv) {
+    if (argc < 3) return 2;
     folder_make("formats");
-    read_readme(argc > 1 ? argv[1] : "README.md");
     test_rows();
-    test_readme_of_reading();
-    test_readme_of_writing();
-    if (argc > 2) test_absent();
+    read_page(argv[1]);
+    test_page_of_reading();
+    read_page(argv[2]);
+    test_page_of_writing();
+    if (argc > 3) test_absent();
     folder_remove();
     return EXPECT_DONE();
 }
