@@ -359,7 +359,9 @@ typedef struct tc_field {
  * values[vertex][component] = a + t (b - a), in double precision, then rounded. a and b are the field at the two points
  * between which the vertex lies, t is what placed the vertex; a or b itself where t is 0 or 1, whatever the other is.
  * value_count: the floats that values has room for, which has to be vertices times components (TC_ERROR_ARGUMENT
- * otherwise). Runs on the calling thread, whatever the engine. Not for grids with cl_samples. */
+ * otherwise). Shortest after tc_extract or tc_count of the same grid and
+ * surface, whose results it uses; else the surface is counted first. Runs on threads of the host; not for grids with
+ * cl_samples. */
 TC_API tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options, const tc_field *field,
                                       float *values, uint64_t value_count);
 

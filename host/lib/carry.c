@@ -1,13 +1,12 @@
 /*
- * The public call that carries a field: arguments checked, then the scalar loops of the reference.
+ * The public call that carries a field. Arguments are checked; a surface that is not the last that was counted or
+ * extracted is counted first; then its vertices are gone through.
  */
-#include "reference/carry_vertex.h"
-#include "grid/complex.h"
 #include "opencl/context.h"
 #include "failure.h"
 #include "base/float_environment.h"
-#include "reference/reference.h"
 #include "base/structs.h"
+#include "surface.h"
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))
@@ -22,6 +21,13 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
     return TC_OK;
 }
 
+/* Counts the surface where what fields are carried by is not there. */
+static tc_status surface_find(tc_grid *grid, const tc_extract_options *options) {
+    tc_counts counts;
+    surface_carries(grid);
+    return surface_is_classified(grid, options) ? TC_OK : surface_count_vetted(grid, options, 0.5, &counts);
+}
+
 tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options, const tc_field *field, float *out,
                                uint64_t value_count) {
     FLOAT_ENVIRONMENT_DEFAULT;
@@ -34,9 +40,9 @@ tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options,
     const uint64_t components = (uint64_t)f.components;
     const carry c = {&f, out, value_count / components};
     status = extract_options_take(&o, options);
-    if (!status)
-        status =
-            grid->complex ? complex_carry(grid, &o, &c, &vertex_count) : reference_carry(grid, &o, &c, &vertex_count);
+    if (!status) status = context_check(grid->context);
+    if (!status) status = surface_find(grid, &o);
+    if (!status) status = surface_carry(grid, &o, &c, &vertex_count);
     if (!status && (vertex_count != c.room || value_count % components))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "room for %llu values, but %llu vertices of %llu each",
                                  (unsigned long long)value_count, (unsigned long long)vertex_count,

@@ -37,6 +37,17 @@ static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool
     return status;
 }
 
+tc_status surface_count_vetted(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
+    tc_status status;
+    do { /* again where missing samples were met, and other kernels took over, or kernels were exchanged */
+        *counts = (tc_counts){.struct_size = sizeof *counts};
+        status = grid_vet(grid, options, false);
+        if (!status) status = trial_run(grid, options, false);
+        if (!status) status = surface_count(grid, options, share, counts);
+    } while (vetting_restarts(grid->context) || (!status && trial_pending(grid, options, false)));
+    return status;
+}
+
 tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
@@ -45,13 +56,7 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     if (!status && !grid) status = (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid");
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
-    if (status) return status;
-    do { /* again where missing samples were met, and other kernels took over, or kernels were exchanged */
-        found = (tc_counts){.struct_size = sizeof found};
-        status = grid_vet(grid, &o, false);
-        if (!status) status = trial_run(grid, &o, false);
-        if (!status) status = surface_count(grid, &o, &found);
-    } while (vetting_restarts(grid->context) || (!status && trial_pending(grid, &o, false)));
+    if (!status) status = surface_count_vetted(grid, &o, 1, &found);
     if (status) return status;
     found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                        found.triangle_count * MESH_BYTES_PER_TRIANGLE;

@@ -15,12 +15,28 @@ bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *option
     return !inside_range_of(grid->type, options->isovalue).uniform;
 }
 
-tc_status surface_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
-    if (grid->complex) return complex_count(grid, options, counts);
-    return grid->device ? structured_count(grid, options, counts) : reference_count(grid, options, counts);
+tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
+    if (grid->complex) return complex_count(grid, options, share, counts);
+    return grid->device ? structured_count(grid, options, share, counts) : reference_count(grid, options, counts);
 }
 
 tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     if (grid->complex) return complex_extract(grid, options, mesh);
     return grid->device ? structured_extract(grid, options, mesh) : reference_extract(grid, options, mesh);
+}
+
+bool surface_is_classified(const tc_grid *grid, const tc_extract_options *options) {
+    if (!surface_needs_kernels(grid, options)) return true;
+    return grid->complex ? complex_is_classified(grid, options->isovalue) : structured_is_classified(grid, options);
+}
+
+void surface_carries(tc_grid *grid) {
+    if (grid->complex) grid->complex->carries = true;
+    if (grid->device) structured_carries(grid);
+}
+
+tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
+    if (grid->complex) return complex_carry(grid, options, c, vertex_count);
+    return grid->device ? structured_carry(grid, options, c, vertex_count)
+                        : reference_carry(grid, options, c, vertex_count);
 }

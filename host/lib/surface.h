@@ -4,6 +4,7 @@
 #ifndef SURFACE_H
 #define SURFACE_H
 
+#include "grid/carry.h"
 #include "grid/grid.h"
 #include "opencl/kernel_kind.h"
 #include "grid/mesh.h"
@@ -14,7 +15,19 @@ kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options,
 /* False where the isovalue, or the grid, is such that nothing runs. */
 bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options);
 
-tc_status surface_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+/* share: of the whole call, for progress. */
+tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+/* Whether what surface_carry works on is there: of the surface that was counted or extracted last, of grids in slabs
+ * from surface_carries on. The reference engine needs nothing. */
+bool surface_is_classified(const tc_grid *grid, const tc_extract_options *options);
+void surface_carries(tc_grid *grid);
+
+/* Carries a field to the vertices; *vertex_count: how many there are. */
+tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
+
+/* As surface_count, by kernels that are vetted and tried first (extract.c). */
+tc_status surface_count_vetted(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 
 #endif

@@ -91,7 +91,7 @@ static tc_status reference_make(const trial_volume *v, const tc_extract_options 
 static tc_status count_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
                            const tc_mesh *expected) {
     tc_counts counts = {.struct_size = sizeof counts};
-    tc_status status = surface_count(grid, how, &counts);
+    tc_status status = surface_count(grid, how, 1, &counts);
     return status ? status : counts_compare(context, v, &counts, expected);
 }
 

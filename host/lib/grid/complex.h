@@ -4,8 +4,8 @@
 #ifndef COMPLEX_H
 #define COMPLEX_H
 
-#include "reference/carry_vertex.h"
 #include "opencl/context.h"
+#include "grid/carry.h"
 #include "grid/grid.h"
 #include "grid/inside.h"
 #include "grid/mesh.h"
@@ -19,6 +19,12 @@ typedef struct complex_part {
     bool ranges_known;
 } complex_part;
 
+/* Of a surface that is in the workspace. */
+typedef struct surface_size {
+    uint64_t vertex_count;
+    uint32_t active_count, tile_actives;
+} surface_size;
+
 /* Type and samples are those of the tc_grid. */
 typedef struct complex_grid {
     uint32_t point_count;
@@ -30,13 +36,16 @@ typedef struct complex_grid {
     /* Under an OpenCL engine: */
     complex_part part;
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
+    double classified_isovalue;  /* where context->classified is this grid */
+    surface_size size;           /* of the surface there */
+    bool carries;                /* a field was carried to a surface of the complex */
 } complex_grid;
 
 /* What its kernels are: one program, tried with emission or without. */
 kernel_kind complex_kind(const tc_grid *grid, bool emits);
 
-/* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. */
-tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+/* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. share: of the whole call, for progress. */
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
 
@@ -50,8 +59,13 @@ tc_status complex_point_fail(const complex_grid *c);
 /* The device path (complex_device.c); samples lie on both sides of the isovalue as far as their type goes. */
 tc_status complex_device_create(tc_grid *grid);
 void complex_device_destroy(tc_grid *grid);
-tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts);
+tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
 tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+
+/* True where this surface was the last to be counted or extracted; complex_device_carry needs that. It carries a field
+ * to as many vertices as *vertex_count says; to none where there is room for more or fewer (complex_carry.c). */
+bool complex_is_classified(const tc_grid *grid, double isovalue);
+tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
 /* The scalar reference (reference_complex.c), likewise. */
 tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);

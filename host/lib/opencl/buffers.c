@@ -75,7 +75,24 @@ tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags 
     return wrong ? (tc_status)fail(TC_ERROR_ARGUMENT, "%s %s", name, wrong) : TC_OK;
 }
 
+tc_status buffer_map(tc_context *context, const device_buffer *buffer, uint64_t bytes, const void **memory) {
+    cl_int error = CL_SUCCESS;
+    *memory = cl->EnqueueMapBuffer(context->queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, (size_t)bytes, 0, NULL,
+                                   NULL, &error);
+    if (!error) return TC_OK;
+    *memory = NULL;
+    return context_fail(context, "reading results back", error);
+}
+
+tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const void *memory) {
+    if (!memory) return TC_OK;
+    cl_int error = cl->EnqueueUnmapMemObject(context->queue, buffer->memory, (void *)(uintptr_t)memory, 0, NULL, NULL);
+    return error ? context_fail(context, "reading results back", error) : TC_OK;
+}
+
+/* What kernel 1 has left is lost with it. */
 void workspace_release(tc_context *context) {
+    context->counted = context->classified = NULL;
     device_buffer *buffers = (device_buffer *)&context->work;
     for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
 }

@@ -79,13 +79,14 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
-    bool is_trial;                 /* kernels are built without asking what is known of them */
-    bool tries;                    /* a trial is under way: progress is not told (trial.c) */
-    bool text_changed;             /* the other text was taken within a call, which starts again */
-    bool vetted[KERNEL_KINDS + 1]; /* kernels that may be built, and the device itself (vetting.c) */
-    const struct tc_grid *served;  /* the grid that the workspace was last used for */
-    bool passed[KERNEL_KINDS];     /* kernels that were tried (trial.c) */
-    const struct tc_grid *counted; /* whose counts the workspace holds since tc_count; NULL: none */
+    bool is_trial;                    /* kernels are built without asking what is known of them */
+    bool tries;                       /* a trial is under way: progress is not told (trial.c) */
+    bool text_changed;                /* the other text was taken within a call, which starts again */
+    bool vetted[KERNEL_KINDS + 1];    /* kernels that may be built, and the device itself (vetting.c) */
+    const struct tc_grid *served;     /* the grid that the workspace was last used for */
+    bool passed[KERNEL_KINDS];        /* kernels that were tried (trial.c) */
+    const struct tc_grid *counted;    /* whose counts the workspace holds since tc_count; NULL: none */
+    const struct tc_grid *classified; /* whose surface it knows, counted or extracted; NULL: no grid's */
     uint64_t device_bytes, device_bytes_peak;
 };
 
@@ -122,6 +123,10 @@ void buffer_release(tc_context *context, device_buffer *buffer);
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
+
+/* Has the host see `bytes` of what the device wrote, until it is unmapped; waits for commands before. */
+tc_status buffer_map(tc_context *context, const device_buffer *buffer, uint64_t bytes, const void **memory);
+tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const void *memory); /* NULL: nothing */
 
 /* Gives the buffers back that are kept between extractions. */
 void workspace_release(tc_context *context);

@@ -99,7 +99,6 @@ static void text_exchange(tc_context *context) {
     programs_release(context);
     context->launch.work_items = context->launch.other_items;
     context->launch.other_items = 0;
-    context->counted = NULL;
     memset(context->vetted, 0, sizeof context->vetted);
     memset(context->passed, 0, sizeof context->passed);
 }

@@ -3,6 +3,7 @@
  * met so far tells whose vertex is there already, so that vertices are numbered as they are met.
  */
 #include "grid/complex.h"
+#include "reference/carry_vertex.h"
 
 #include "failure.h"
 #include "grid/tables.h"

@@ -131,7 +131,6 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
                .normals = options->normals != 0};
     r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
-    r->classify_share = emits ? 0.5 : 1;
     tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
@@ -227,45 +226,56 @@ static tc_status slabs_classify(run *r) {
 
 /* Where kernel 1 meets a NaN or infinity in a grid not known to miss samples, the grid is classified again, with
  * missing cells, and remembered as such. */
-static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
-    grid->context->counted = NULL; /* from here on the workspace is not what was counted */
+static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits,
+                          double share) {
+    grid->context->counted = grid->context->classified = NULL; /* from here on the workspace is another */
+    slab_store_release(&grid->device->store);
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
+    r->classify_share = share;
     bool missing = grid->device->missing;
     status = slabs_classify(r);
     if (status || grid->device->missing == missing) return status;
     double start = r->start_ms;
     run_end(r, status);
     status = run_begin(r, grid, options, inside, emits);
+    r->classify_share = share;
     r->start_ms = start;
     return status ? status : slabs_classify(r);
 }
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
-/* For tc_emit; heads NULL: there is no surface. */
-static void counted_keep(tc_grid *grid, const tc_extract_options *options, uint32_t *heads) {
-    free(grid->device->heads);
-    grid->device->heads = heads;
-    grid->device->counted_options = *options;
-    grid->context->counted = grid;
+/* For tc_emit and tc_carry. r NULL: there is no surface. */
+static void results_keep(tc_grid *grid, const tc_extract_options *options, run *r) {
+    struct device_grid *device = grid->device;
+    free(device->heads);
+    device->heads = r ? r->heads : NULL;
+    device->classified_options = *options;
+    grid->context->classified = grid;
+    if (!r) return;
+    r->heads = NULL;
+    if (!device->carries) return;
+    device->store = r->store;
+    r->store = (slab_store){0};
 }
 
-tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
     run r;
     if (inside.uniform) {
-        counted_keep(grid, options, NULL);
+        results_keep(grid, options, NULL);
+        grid->context->counted = grid;
         return TC_OK;
     }
-    tc_status status = classify(&r, grid, options, inside, false);
+    tc_status status = classify(&r, grid, options, inside, false, share);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
     counts->classify_ms = clock_ms() - r.start_ms;
     if (!status) {
-        counted_keep(grid, options, r.heads);
-        r.heads = NULL;
+        results_keep(grid, options, &r);
+        grid->context->counted = grid;
     }
     run_end(&r, status);
     return status;
@@ -276,7 +286,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     double classified;
     run r;
     if (inside.uniform) return TC_OK;
-    tc_status status = classify(&r, grid, options, inside, true);
+    tc_status status = classify(&r, grid, options, inside, true, 0.5);
     classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
     if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
@@ -286,6 +296,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    if (!status) results_keep(grid, options, &r);
     run_end(&r, status);
     return status;
 }

@@ -4,6 +4,7 @@
 #ifndef STRUCTURED_H
 #define STRUCTURED_H
 
+#include "grid/carry.h"
 #include "grid/grid.h"
 #include "opencl/kernel_kind.h"
 #include "grid/mesh.h"
@@ -18,10 +19,21 @@ void structured_reshape(tc_grid *grid);
 /* What its kernels are; emits: kernel 2 too. */
 kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
-/* As tc_count and tc_extract, with arguments already checked. */
-tc_status structured_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+/* As tc_count, tc_emit and tc_extract, with arguments already checked. share: of the whole call, for progress. */
+tc_status structured_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
                           struct _cl_event **done);
 tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+
+/* Results of kernel 1 are kept from now on. */
+void structured_carries(tc_grid *grid);
+
+/* True where what kernel 1 has left of this surface is still there; structured_carry needs that. */
+bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options);
+
+/* Carries a field to as many vertices as *vertex_count says; to none where there is room for more or fewer
+ * (structured_carry.c). */
+tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                           uint64_t *vertex_count);
 
 #endif

@@ -12,7 +12,7 @@
 
 static tc_status counted_check(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
-    const tc_extract_options *counted = &device->counted_options;
+    const tc_extract_options *counted = &device->classified_options;
     if (grid->context->counted != grid || counted->isovalue != options->isovalue ||
         counted->method != options->method || !counted->normals != !options->normals)
         return (tc_status)fail(TC_ERROR_ARGUMENT,

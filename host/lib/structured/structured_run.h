@@ -12,6 +12,11 @@
 #include "slab.h"
 #include "structured/slab_plan.h"
 
+/* Kernel 1's results kept on the host while the device holds only a window of them. */
+typedef struct slab_store {
+    uint8_t *words, *offsets, *triangle_offsets, *bricks, *active;
+} slab_store;
+
 /* What an OpenCL context adds to a grid. */
 struct device_grid {
     slab_plan plan;
@@ -19,15 +24,12 @@ struct device_grid {
     device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
     device_buffer ranges;              /* of all bricks, made at the first visit */
     bool ranges_known;
-    tc_extract_options counted_options; /* what tc_count left for tc_emit, where context->counted is this grid: */
-    uint32_t *heads;                    /* of all slabs */
+    tc_extract_options classified_options; /* of what kernel 1 left, where context->classified is this grid: */
+    uint32_t *heads;                       /* of all slabs; NULL: there is no surface */
+    slab_store store;                      /* where the workspace holds a window, and fields are carried */
+    bool carries;                          /* a field was carried to a surface of the grid */
     bool missing; /* some sample is missing: known from the start with nodata or blanks, else found by kernel 1 */
 };
-
-/* Kernel 1's results kept on the host while the device holds only a window of them. */
-typedef struct slab_store {
-    uint8_t *words, *offsets, *triangle_offsets, *bricks, *active;
-} slab_store;
 
 typedef struct run {
     tc_grid *grid;

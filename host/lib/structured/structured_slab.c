@@ -121,6 +121,8 @@ void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
     context_finish(grid->context); /* an emission that is under way reads arrays of the grid and of the caller's */
     if (grid->context->counted == grid) grid->context->counted = NULL;
+    if (grid->context->classified == grid) grid->context->classified = NULL;
+    slab_store_release(&grid->device->store);
     if (grid->context->served == grid) grid->context->served = NULL;
     free(grid->device->heads);
     for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &grid->device->arrays[array]);

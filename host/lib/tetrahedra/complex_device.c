@@ -26,7 +26,9 @@ void complex_device_destroy(tc_grid *grid) {
     if (grid->context->served == grid) grid->context->served = NULL;
     part_tetrahedra_release(grid);
     part_points_release(grid);
+    if (grid->context->classified == grid) grid->context->classified = NULL;
     if (slabs) free(slabs->ranges);
+    if (slabs) edge_numbers_release(&slabs->edges);
     free(slabs);
 }
 
@@ -50,19 +52,25 @@ static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, dou
     return status ? status : context_progress(r->context, "classify", share);
 }
 
-tc_status complex_device_count(tc_grid *grid, double isovalue, tc_counts *counts) {
+static void whole_note(const complex_run *r, double isovalue) {
+    complex_classified_note(r->grid, isovalue,
+                            (surface_size){r->head[HEAD_VERTICES], r->job.active_count, r->job.tile_actives});
+}
+
+tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts) {
     complex_run r;
-    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, 0, counts);
-    tc_status status = whole_count(&r, grid, isovalue, 1);
+    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, 0, share, counts);
+    tc_status status = whole_count(&r, grid, isovalue, share);
     if (r.too_large) {
         status = cut_later(&r);
-        return status ? status : complex_slabs_count(grid, isovalue, 0.6, counts);
+        return status ? status : complex_slabs_count(grid, isovalue, 0.6 * share, share, counts);
     }
     counts->vertex_count = r.head[HEAD_VERTICES];
     counts->triangle_count = r.head[HEAD_TRIANGLES];
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
     cl->Finish(r.context->queue);
+    if (!status) whole_note(&r, isovalue);
     return status;
 }
 
@@ -123,5 +131,6 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
     cl->Finish(r.context->queue);
+    if (!status) whole_note(&r, isovalue);
     return status;
 }

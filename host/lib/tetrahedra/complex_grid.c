@@ -27,12 +27,12 @@ static tc_status device_end(tc_context *context, tc_status status) {
     return status;
 }
 
-tc_status complex_count(tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
+tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
     tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_count(grid, options->isovalue, counts);
-    return device_end(grid->context, complex_device_count(grid, options->isovalue, counts));
+    return device_end(grid->context, complex_device_count(grid, options->isovalue, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
@@ -46,5 +46,7 @@ tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_m
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
     tc_status status = complex_request_check(options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
-    return reference_complex_carry(grid, options->isovalue, c, vertex_count);
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
+        return reference_complex_carry(grid, options->isovalue, c, vertex_count);
+    return complex_device_carry(grid, options->isovalue, c, vertex_count);
 }

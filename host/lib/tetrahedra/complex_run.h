@@ -13,6 +13,7 @@
 
 #include "grid/complex.h"
 #include "opencl/kernels.h"
+#include "tetrahedra/edge_numbers.h"
 
 /* How a complex is cut, and what is known of its clusters; the host has the ranges that the device has of a slab. */
 struct complex_slabs {
@@ -20,6 +21,7 @@ struct complex_slabs {
     bool points_whole;   /* all points are on the device */
     brick_range *ranges; /* of all clusters, made at the first visit */
     bool ranges_known;
+    edge_numbers edges; /* of the vertices of the last surface, where fields are carried */
 };
 
 /* ------------------------------------------------------------------------------------- memory (complex_plan.c) */
@@ -93,6 +95,9 @@ tc_status surface_number(complex_run *r);
 /* Emits what has been numbered, triangles among it. */
 tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
 
+/* Notes that the workspace, or the slabs, know this surface. */
+void complex_classified_note(tc_grid *grid, double isovalue, surface_size size);
+
 /* A buffer for what is as large as the surface. TC_ERROR_MEMORY and too_large where that is not cut and too large. */
 tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes, const char *name);
 bool surface_fits(complex_run *r, uint64_t bytes);
@@ -102,8 +107,8 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]);
 
 /* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
 
-/* before: how much of the whole call is over, for progress. */
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts);
+/* before: how much of the whole call is over, for progress; share: how much is when the surface is counted. */
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
 tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
 
 #endif

@@ -9,7 +9,6 @@
  */
 #include "tetrahedra/complex_run.h"
 
-#include "tetrahedra/edge_numbers.h"
 #include "failure.h"
 
 #include <stdlib.h>
@@ -186,14 +185,23 @@ static tc_status slabs_classify(slabs_run *t, double before, double after) {
     return status;
 }
 
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, tc_counts *counts) {
+/* What carries fields needs of a surface that is joined. */
+static void edges_keep(slabs_run *t, double isovalue, uint64_t vertex_count) {
+    complex_classified_note(t->r.grid, isovalue, (surface_size){.vertex_count = vertex_count});
+    if (!t->r.complex->carries) return;
+    t->slabs->edges = t->edges;
+    t->edges = (edge_numbers){0};
+}
+
+tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts) {
     slabs_run t;
     tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = slabs_classify(&t, before, 1);
+    if (!status) status = slabs_classify(&t, before, share);
     counts->vertex_count = t.edges.count;
     counts->triangle_count = t.triangle_count;
     counts->active_cell_count = t.active_count;
     counts->classify_ms = clock_ms() - t.r.start_ms;
+    if (!status) edges_keep(&t, isovalue, t.edges.count);
     slabs_end(&t);
     return status;
 }
@@ -266,7 +274,7 @@ static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
     const uint32_t count = t->slabs->slab_count;
     emission e = {.mesh = mesh, .numbers = t->numbers};
     tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, false);
-    edge_numbers_release(&t->edges);
+    if (!t->r.complex->carries) edge_numbers_release(&t->edges);
     if (!status) status = positions_allocate(t, &e);
     for (uint32_t n = 0; n < count && !status; n++) {
         status = slab_emit(t, n, &e);
@@ -289,6 +297,7 @@ tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, t
     mesh->timings.classify_ms = classified - t.r.start_ms;
     mesh->timings.total_ms = clock_ms() - t.r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
+    if (!status) edges_keep(&t, isovalue, mesh->vertex_count);
     slabs_end(&t);
     return status;
 }

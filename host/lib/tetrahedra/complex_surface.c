@@ -110,7 +110,8 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
     r->work = &context->work.complex;
     isovalue_describe(r, isovalue);
-    context->counted = NULL;
+    context->counted = context->classified = NULL;
+    if (grid->complex->slabs) edge_numbers_release(&grid->complex->slabs->edges);
     tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
@@ -120,6 +121,12 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     }
     context->served = grid;
     return cases_provide(context, &r->work->cases);
+}
+
+void complex_classified_note(tc_grid *grid, double isovalue, surface_size size) {
+    grid->context->classified = grid;
+    grid->complex->classified_isovalue = isovalue;
+    grid->complex->size = size;
 }
 
 static tc_status clusters_reserve(complex_run *r) {

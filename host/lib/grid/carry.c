@@ -1,0 +1,109 @@
+/*
+ * A batch in three steps: samples at the ends of all edges, where the isovalue lies between them, the field there. Each
+ * is a loop over arrays of one type, which compilers turn into vector code.
+ *
+ * The arithmetic is that of kernels/crossing.cl and of the reference (reference_crossing.inc, carry_vertex.c): the same
+ * operations in the same order.
+ */
+#include "grid/carry.h"
+
+#include "opencl/context.h"
+
+/* Component n, of `stride`, of the values at places. */
+#define GATHER(TYPE)                                                                                                   \
+    for (uint32_t m = 0; m < count; m++) out[m] = (REAL)((const TYPE *)values)[places[m] * stride + n]
+
+#define GATHER_ANY                                                                                                     \
+    switch (type) {                                                                                                    \
+    case TC_U8:                                                                                                        \
+        GATHER(uint8_t);                                                                                               \
+        break;                                                                                                         \
+    case TC_I8:                                                                                                        \
+        GATHER(int8_t);                                                                                                \
+        break;                                                                                                         \
+    case TC_U16:                                                                                                       \
+        GATHER(uint16_t);                                                                                              \
+        break;                                                                                                         \
+    case TC_I16:                                                                                                       \
+        GATHER(int16_t);                                                                                               \
+        break;                                                                                                         \
+    case TC_U32:                                                                                                       \
+        GATHER(uint32_t);                                                                                              \
+        break;                                                                                                         \
+    case TC_I32:                                                                                                       \
+        GATHER(int32_t);                                                                                               \
+        break;                                                                                                         \
+    case TC_F32:                                                                                                       \
+        GATHER(float);                                                                                                 \
+        break;                                                                                                         \
+    default:                                                                                                           \
+        GATHER(double);                                                                                                \
+        break;                                                                                                         \
+    }
+
+#define REAL float
+static void gather_f32(tc_type type, const void *values, int stride, int n, const int64_t *places, uint32_t count,
+                       float *out) {
+    GATHER_ANY
+}
+#undef REAL
+#define REAL double
+static void gather_f64(tc_type type, const void *values, int stride, int n, const int64_t *places, uint32_t count,
+                       double *out) {
+    GATHER_ANY
+}
+#undef REAL
+
+/* All numbers are halved first where the difference of two samples overflows. */
+static void crossings_f32(const float *a, const float *b, float iso, uint32_t count, float *t) {
+    for (uint32_t n = 0; n < count; n++) {
+        const float scale = isinf(b[n] - a[n]) ? 0.5f : 1, low = scale * a[n], high = scale * b[n];
+        t[n] = (scale * iso - low) / (high - low);
+    }
+}
+
+static void crossings_f64(const double *a, const double *b, double iso, uint32_t count, float *t) {
+    for (uint32_t n = 0; n < count; n++) {
+        const double scale = isinf(b[n] - a[n]) ? 0.5 : 1, low = scale * a[n], high = scale * b[n];
+        t[n] = (float)((scale * iso - low) / (high - low));
+    }
+}
+
+/* The value of an end where t is 0 or 1, whatever the other is. */
+static void interpolate(const double *from, const double *to, const float *t, uint32_t count, float *values) {
+    for (uint32_t n = 0; n < count; n++) {
+        const double between = from[n] + (double)t[n] * (to[n] - from[n]);
+        values[n] = (float)(t[n] == 0 ? from[n] : t[n] == 1 ? to[n] : between);
+    }
+}
+
+void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batch *batch) {
+    const tc_field *f = c->field;
+    if (!batch->count) return;
+    const int components = f->components;
+    const uint64_t room = batch->vertex < c->room ? c->room - batch->vertex : 0;
+    const uint32_t count = batch->count < room ? batch->count : (uint32_t)room;
+    float *out = c->out + batch->vertex * (uint64_t)components, t[BATCH_EDGES], a32[BATCH_EDGES], b32[BATCH_EDGES];
+    double a[BATCH_EDGES], b[BATCH_EDGES];
+    if (type_is_wide(grid->type)) {
+        gather_f64(grid->type, grid->samples, 1, 0, batch->low, count, a);
+        gather_f64(grid->type, grid->samples, 1, 0, batch->high, count, b);
+        crossings_f64(a, b, isovalue, count, t);
+    } else {
+        gather_f32(grid->type, grid->samples, 1, 0, batch->low, count, a32);
+        gather_f32(grid->type, grid->samples, 1, 0, batch->high, count, b32);
+        crossings_f32(a32, b32, (float)isovalue, count, t);
+    }
+    for (int n = 0; n < components; n++) {
+        gather_f64(f->type, f->values, components, n, batch->low, count, a);
+        gather_f64(f->type, f->values, components, n, batch->high, count, b);
+        if (components == 1) {
+            interpolate(a, b, t, count, out);
+            continue;
+        }
+        interpolate(a, b, t, count, a32);
+        for (uint32_t m = 0; m < count; m++) out[m * (uint64_t)components + (uint64_t)n] = a32[m];
+    }
+    batch->vertex += batch->count;
+    batch->count = 0;
+}

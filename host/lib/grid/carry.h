@@ -1,0 +1,33 @@
+/*
+ * carry.h - another field of the grid on the vertices of a surface
+ *
+ * A vertex lies on the edge between two samples, at t. So a field is carried by reading it at both and interpolating:
+ * on the host, as that is where the field is. What is needed of a surface is its crossed edges in the order of their
+ * vertices. Those who know them (structured_carry.c, complex_carry.c) hand them over in batches, from several threads.
+ */
+#ifndef CARRY_H
+#define CARRY_H
+
+#include "grid/grid.h"
+
+/* Where the values go. */
+typedef struct carry {
+    const tc_field *field;
+    float *out;
+    uint64_t room; /* vertices */
+} carry;
+
+enum { BATCH_EDGES = 1024 };
+
+/* Crossed edges whose vertices follow each other, from number `vertex` on. */
+typedef struct edge_batch {
+    uint64_t vertex;
+    uint32_t count;
+    int64_t low[BATCH_EDGES], high[BATCH_EDGES]; /* the samples at the ends, the lower number first */
+} edge_batch;
+
+/* Carries the field to the vertices of the batch that there is room for; it is then empty, and what comes next follows
+ * it. */
+void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batch *batch);
+
+#endif

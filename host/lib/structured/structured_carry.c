@@ -1,0 +1,383 @@
+/*
+ * Fields carried to the vertices of a surface that kernel 1 has classified: the sign words that it left give the
+ * crossed edges again, and with every row of 64 samples it left where its vertices begin. So threads of the host take
+ * runs of bricks, and no kernel runs.
+ *
+ * Where the workspace holds these results no longer, the surface is counted again first. Of grids in slabs they are
+ * kept on the host from the first field that is carried on (device_grid: carries).
+ */
+#include "structured/structured.h"
+
+#include "failure.h"
+#include "grid/carry.h"
+#include "grid/tables.h"
+#include "parallel.h"
+#include "structured/structured_run.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+enum { SHARE_BRICKS = 32, STEP_BRICKS = 1 << 16 };
+
+/* Of all slabs, in the host's memory. */
+typedef struct results {
+    const uint64_t *words, *offsets;
+    const brick_state *bricks;
+    const uint32_t *active;
+} results;
+
+/* A slab's active bricks, [next, end) of the list. */
+typedef struct carry_job {
+    const tc_grid *grid;
+    const slab_plan *plan;
+    const carry *carry;
+    double isovalue;
+    results k1;
+    int edge_types;
+    int64_t from[EDGES_PER_SAMPLE][2],
+        to[EDGES_PER_SAMPLE][2]; /* samples from an edge's owner to its ends, by parity */
+    uint64_t slab_brick;         /* the slab's first, and those before its end */
+    uint64_t brick_end;
+    uint64_t slab_vertex;
+    _Atomic uint64_t next;
+    uint64_t end;
+    _Atomic uint64_t vertices; /* met so far, in all slabs */
+    atomic_bool wrong;         /* the results contradict each other */
+} carry_job;
+
+/* -------------------------------------------------------------------------------------------------------- sign words
+ */
+
+/* The words of a brick's rows (0) and of those in the brick at higher x (1): of its planes and the next one, of its
+ * rows and the next one. */
+typedef struct brick_words {
+    uint64_t word[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
+} brick_words;
+
+static const uint64_t *words_of(const carry_job *j, uint64_t brick) {
+    static const uint64_t outside[BRICK_WORDS];
+    static const uint64_t inside[BRICK_WORDS] = {
+        [0 ... BRICK_WORDS - 1] = UINT64_MAX,
+    };
+    const uint32_t sign = j->k1.bricks[brick].sign;
+    return sign == SIGN_MIXED ? j->k1.words + BRICK_WORDS * brick : sign == SIGN_INSIDE ? inside : outside;
+}
+
+/* Words of rows and planes that the grid has not may be anything. */
+static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t at[3], brick_words *w) {
+    const uint64_t beside[3] = {1, j->plan->words_x, plan_bricks_per_layer(j->plan)};
+    const uint32_t count[3] = {j->plan->words_x, j->plan->bricks_y, j->plan->layer_count};
+    for (int n = 0; n < 8; n++) {
+        const int side[3] = {n & 1, n >> 1 & 1, n >> 2};
+        const int rows = side[1] ? 1 : BRICK_ROWS, planes = side[2] ? 1 : BRICK_PLANES;
+        static const uint64_t none[BRICK_WORDS];
+        const uint64_t *words = none;
+        uint64_t other = brick;
+        bool exists = true;
+        for (int axis = 0; axis < 3; axis++) {
+            exists = exists && at[axis] + (uint32_t)side[axis] < count[axis];
+            other += side[axis] ? beside[axis] : 0;
+        }
+        if (exists) words = words_of(j, other);
+        for (int z = 0; z < planes; z++)
+            memcpy(&w->word[side[0]][side[2] ? BRICK_PLANES : z][side[1] ? BRICK_ROWS : 0], words + BRICK_ROWS * z,
+                   (size_t)rows * sizeof *words);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- edges
+ */
+
+/* Rows of samples of a cube, and the same shifted to x + 1. */
+typedef struct row_pair {
+    uint64_t at, next;
+} row_pair;
+
+static row_pair row_of(const brick_words *w, int y, int z, uint64_t valid) {
+    const uint64_t at = w->word[0][z][y] & valid;
+    return (row_pair){at, at >> 1 | w->word[1][z][y] << 63};
+}
+
+/* What kernels/tetrahedra.cl has: edges that the samples of a row own whose ends differ. */
+static void crossings_of(const carry_job *j, const brick_words *w, int row, int plane, const uint32_t first[3],
+                         uint64_t crossed[EDGES_PER_SAMPLE]) {
+    const int64_t *dims = j->grid->dims;
+    const uint32_t left = (uint32_t)dims[0] - first[0], y = first[1] + (uint32_t)row, z = first[2] + (uint32_t)plane;
+    const uint64_t valid = left >= 64 ? UINT64_MAX : (UINT64_C(1) << left) - 1, has_x = left > 64 ? valid : valid >> 1;
+    const uint64_t has_y = y + 1 < dims[1] ? UINT64_MAX : 0, has_z = z + 1 < dims[2] ? UINT64_MAX : 0;
+    const uint64_t even =
+        (grid_parity(j->grid) + y + z) & 1 ? UINT64_C(0xaaaaaaaaaaaaaaaa) : UINT64_C(0x5555555555555555);
+    const row_pair a = row_of(w, row, plane, valid), b = row_of(w, row + 1, plane, valid);
+    const row_pair c = row_of(w, row, plane + 1, valid), d = row_of(w, row + 1, plane + 1, valid);
+    crossed[EDGE_X] = (a.at ^ a.next) & has_x;
+    crossed[EDGE_Y] = (a.at ^ b.at) & valid & has_y;
+    crossed[EDGE_Z] = (a.at ^ c.at) & valid & has_z;
+    crossed[EDGE_XY] = ((even & (a.at ^ b.next)) | (~even & (a.next ^ b.at))) & has_x & has_y;
+    crossed[EDGE_XZ] = ((even & (a.at ^ c.next)) | (~even & (a.next ^ c.at))) & has_x & has_z;
+    crossed[EDGE_YZ] = ((even & (a.at ^ d.at)) | (~even & (b.at ^ c.at))) & valid & has_y & has_z;
+}
+
+static bool cube_present(const tc_grid *grid, const int64_t p[3]) {
+    const int64_t *dims = grid->dims;
+    for (int axis = 0; axis < 3; axis++)
+        if (p[axis] < 0 || p[axis] + 1 >= dims[axis]) return false;
+    if (grid->blanked_cells && grid->blanked_cells[(p[2] * (dims[1] - 1) + p[1]) * (dims[0] - 1) + p[0]]) return false;
+    for (int c = 0; c < 8; c++)
+        if (grid_sample_missing(grid, ((p[2] + (c >> 2)) * dims[1] + p[1] + (c >> 1 & 1)) * dims[0] + p[0] + (c & 1)))
+            return false;
+    return true;
+}
+
+static const uint8_t edge_axes[EDGES_PER_SAMPLE] = {1, 2, 4, 3, 5, 6}; /* bit n: the edge spans axis n */
+
+/* Those of the crossed edges of a type that a present cube contains. */
+static uint64_t present_only(const carry_job *j, uint64_t crossed, int type, const int64_t first[3]) {
+    uint64_t kept = 0;
+    for (uint64_t rest = crossed; rest; rest &= rest - 1) {
+        bool present = false;
+        for (int back = 0; back < 8 && !present; back++) {
+            const int64_t cube[3] = {first[0] + __builtin_ctzll(rest) - (back & 1), first[1] - (back >> 1 & 1),
+                                     first[2] - (back >> 2)};
+            present = !(back & edge_axes[type]) && cube_present(j->grid, cube);
+        }
+        if (present) kept |= rest & -rest;
+    }
+    return kept;
+}
+
+/* Where a row's vertices of a type end, counted from its first, as kernel 1 has packed it (kernels/tetrahedra.cl:
+ * offsets_pack). That of the last type is not there. */
+static uint32_t type_end(uint64_t packed, int type) {
+    static const uint8_t shift[] = {14, 21, 29, 37, 46}, width[] = {7, 8, 8, 9, 9};
+    return (uint32_t)(packed >> shift[type]) & ((1u << width[type]) - 1);
+}
+
+/* Cells are looked at only where kernel 1 has counted fewer vertices than edges are crossed, and for the last type. */
+static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t first[3],
+                           uint64_t crossed[EDGES_PER_SAMPLE]) {
+    uint32_t begin = 0;
+    for (int type = 0; type < j->edge_types; type++) {
+        const uint32_t end = type == EDGE_YZ ? begin : type_end(packed, type);
+        if (begin + (uint32_t)__builtin_popcountll(crossed[type]) != end)
+            crossed[type] = present_only(j, crossed[type], type, first);
+        begin = end;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ batches
+ */
+
+/* An edge of a row without one is no branch: it is overwritten by what comes next. Two are what most rows have. */
+static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t owner, unsigned odd, uint32_t at,
+                            edge_batch *batch) {
+    const unsigned bit = (unsigned)__builtin_ctzll(bits | UINT64_C(1) << 63), parity = (odd ^ bit) & 1;
+    batch->low[at] = owner + bit + j->from[type][parity];
+    batch->high[at] = owner + bit + j->to[type][parity];
+}
+
+/* Adds the crossed edges of a row in the order of their vertices. */
+static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE], int64_t owner, unsigned odd,
+                    edge_batch *batch) {
+    if (batch->count + EDGES_PER_SAMPLE * 64 > BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
+    uint32_t count = batch->count;
+    for (int type = 0; type < j->edge_types; type++) {
+        uint64_t rest = crossed[type];
+        edge_put(j, rest, type, owner, odd, count, batch);
+        count += rest != 0, rest &= rest - 1;
+        edge_put(j, rest, type, owner, odd, count, batch);
+        count += rest != 0, rest &= rest - 1;
+        for (; rest; rest &= rest - 1) edge_put(j, rest, type, owner, odd, count++, batch);
+    }
+    batch->count = count;
+}
+
+/* Asks for a row of `count` items, each of `bytes`. */
+static void row_prefetch(const void *values, size_t bytes, int64_t first, int64_t count) {
+    const char *at = (const char *)values + bytes * (size_t)first, *end = at + bytes * (size_t)count;
+    for (; at < end; at += 64) __builtin_prefetch(at);
+}
+
+/* Asks for what a brick's edges lead to, as hardware prefetch stops at page ends. */
+static void brick_prefetch(const carry_job *j, uint64_t brick) {
+    const tc_grid *grid = j->grid;
+    const tc_field *f = j->carry->field;
+    const slab_plan *plan = j->plan;
+    const int64_t *dims = grid->dims, x = 64 * (int64_t)(brick % plan->words_x);
+    const int64_t y = BRICK_ROWS * (int64_t)(brick / plan->words_x % plan->bricks_y);
+    const int64_t z = BRICK_PLANES * (int64_t)(brick / plan->words_x / plan->bricks_y);
+    const int64_t count = dims[0] - x < 64 ? dims[0] - x : 64;
+    const size_t sample_bytes = tc_type_bytes(grid->type), field_bytes = tc_type_bytes(f->type) * (size_t)f->components;
+    uint32_t before = 0, rest = j->k1.bricks[brick].rows;
+    for (int plane = 0; plane <= BRICK_PLANES && z + plane < dims[2]; plane++, rest >>= BRICK_ROWS) {
+        const uint32_t here = rest & ((1u << BRICK_ROWS) - 1), both = here | before;
+        before = here;
+        for (uint32_t rows = both | both << 1; rows; rows &= rows - 1) {
+            const int64_t row = y + __builtin_ctz(rows);
+            if (row >= dims[1]) break;
+            row_prefetch(grid->samples, sample_bytes, ((z + plane) * dims[1] + row) * dims[0] + x, count);
+            row_prefetch(f->values, field_bytes, ((z + plane) * dims[1] + row) * dims[0] + x, count);
+        }
+    }
+}
+
+static void brick_carry(carry_job *j, uint64_t brick, edge_batch *batch) {
+    const slab_plan *plan = j->plan;
+    const int64_t *dims = j->grid->dims;
+    const brick_state *state = &j->k1.bricks[brick];
+    const uint32_t at[3] = {(uint32_t)(brick % plan->words_x), (uint32_t)(brick / plan->words_x % plan->bricks_y),
+                            (uint32_t)(brick / plan->words_x / plan->bricks_y)};
+    const uint32_t first[3] = {64 * at[0], BRICK_ROWS * at[1], BRICK_PLANES * at[2]};
+    const uint64_t vertex = j->slab_vertex + state->vertices;
+    brick_words words;
+    if (batch->vertex + batch->count != vertex) {
+        carry_batch(j->carry, j->grid, j->isovalue, batch);
+        batch->vertex = vertex;
+    }
+    brick_words_load(j, brick, at, &words);
+    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+        const int place = __builtin_ctz(rows), row = place % BRICK_ROWS, plane = place / BRICK_ROWS;
+        const int64_t p[3] = {first[0], first[1] + (uint32_t)row, first[2] + (uint32_t)plane};
+        const uint64_t packed = j->k1.offsets[BRICK_WORDS * brick + (uint64_t)place];
+        uint64_t crossed[EDGES_PER_SAMPLE];
+        if (p[1] >= dims[1] || p[2] >= dims[2] || batch->vertex + batch->count != vertex + (packed & 0x3fff)) {
+            j->wrong = true;
+            return;
+        }
+        crossings_of(j, &words, row, plane, first, crossed);
+        if (j->grid->device->missing) crossings_keep(j, packed, p, crossed);
+        row_add(j, crossed, (p[2] * dims[1] + p[1]) * dims[0] + p[0],
+                (grid_parity(j->grid) + (unsigned)(p[1] + p[2])) & 1, batch);
+    }
+    j->vertices += batch->vertex + batch->count - vertex;
+}
+
+/* Place n of the list; UINT64_MAX where that is no brick of the slab. */
+static uint64_t active_brick(const carry_job *j, uint64_t n) {
+    const uint64_t brick = j->k1.active[n] + (j->plan->words_whole ? 0 : j->slab_brick);
+    return brick >= j->slab_brick && brick < j->brick_end ? brick : UINT64_MAX;
+}
+
+static void bricks_carry(void *shared) {
+    carry_job *j = shared;
+    edge_batch batch = {0};
+    uint64_t n;
+    while ((n = atomic_fetch_add(&j->next, SHARE_BRICKS)) < j->end && !j->wrong) {
+        const uint64_t end = n + SHARE_BRICKS < j->end ? n + SHARE_BRICKS : j->end;
+        for (uint64_t brick = active_brick(j, n), next; n < end; n++, brick = next) {
+            next = n + 1 < end ? active_brick(j, n + 1) : UINT64_MAX;
+            if (next != UINT64_MAX) brick_prefetch(j, next);
+            if (brick != UINT64_MAX)
+                brick_carry(j, brick, &batch);
+            else
+                j->wrong = true;
+        }
+    }
+    carry_batch(j->carry, j->grid, j->isovalue, &batch);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- slabs
+ */
+
+static tc_status slab_carry(carry_job *j, uint32_t slab_index, uint32_t brick_count) {
+    const slab_plan *plan = j->plan;
+    const uint64_t layer = plan_bricks_per_layer(plan);
+    j->slab_brick = slab_begin(plan, slab_index) / BRICK_PLANES * layer;
+    j->brick_end = (slab_end(plan, j->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES * layer;
+    const uint64_t end = j->slab_brick + brick_count; /* of its part of the list */
+    tc_status status = TC_OK;
+    if (end > j->brick_end) j->wrong = true;
+    for (uint64_t n = j->slab_brick; n < end && !j->wrong && !status; n += STEP_BRICKS) {
+        j->next = n;
+        j->end = end - n < STEP_BRICKS ? end : n + STEP_BRICKS;
+        parallel_run((j->end - n + SHARE_BRICKS - 1) / SHARE_BRICKS, bricks_carry, j);
+        status =
+            context_progress(j->grid->context, "carry", 0.5 + 0.5 * (double)j->vertices / (double)(j->carry->room + 1));
+    }
+    return status;
+}
+
+static tc_status slabs_carry(carry_job *j) {
+    const uint32_t *heads = j->grid->device->heads;
+    tc_status status = TC_OK;
+    for (uint32_t n = 0; n < j->plan->slab_count && !status; n++, heads += STATE_WORDS) {
+        status = slab_carry(j, n, heads[STATE_ACTIVE_BRICKS]);
+        j->slab_vertex += heads[STATE_VERTICES];
+    }
+    if (!status && (j->wrong || j->vertices != j->slab_vertex))
+        status = (tc_status)fail(TC_ERROR_DATA, "samples, or what is blanked, have changed while a field was carried, "
+                                                "or the device computes wrongly");
+    return status;
+}
+
+/* How far the ends of an edge are from the sample that owns it. Diagonals differ with the parity of the cube. */
+static void ends_fill(carry_job *j) {
+    const int64_t strides[3] = {1, j->grid->dims[0], j->grid->dims[0] * j->grid->dims[1]};
+    for (int type = 0; type < EDGES_PER_SAMPLE; type++)
+        for (int parity = 0; parity < 2; parity++) {
+            const int64_t turned = parity && type >= EDGE_XY ? strides[type == EDGE_YZ] : 0;
+            int64_t across = 0;
+            for (int axis = 0; axis < 3; axis++) across += edge_axes[type] >> axis & 1 ? strides[axis] : 0;
+            j->from[type][parity] = turned;
+            j->to[type][parity] = across - turned;
+        }
+}
+
+/* Buffers of the workspace, mapped while threads read them. */
+typedef struct mapping {
+    const device_buffer *buffers[4];
+    const void *memory[4];
+} mapping;
+
+/* Of several failures the last is told. */
+static tc_status mapping_close(tc_context *context, mapping *m, tc_status status) {
+    for (int n = 0; n < 4; n++) {
+        tc_status ended = buffer_unmap(context, m->buffers[n], m->memory[n]);
+        if (ended) status = ended;
+    }
+    return status;
+}
+
+static tc_status mapping_open(tc_context *context, const slab_plan *plan, mapping *m) {
+    const word_buffers *w = &context->work.words[0];
+    const uint64_t bricks = plan->layer_count * plan_bricks_per_layer(plan), words = BRICK_WORDS * bricks;
+    const uint64_t bytes[4] = {8 * (UNIFORM_BRICKS * BRICK_WORDS + words), 8 * words, sizeof(brick_state) * bricks,
+                               4 * bricks};
+    *m = (mapping){.buffers = {&w->words, &w->offsets, &w->bricks, &w->active}};
+    tc_status status = TC_OK;
+    for (int n = 0; n < 4 && !status; n++) status = buffer_map(context, m->buffers[n], bytes[n], &m->memory[n]);
+    return status ? mapping_close(context, m, status) : TC_OK;
+}
+
+void structured_carries(tc_grid *grid) { grid->device->carries = true; }
+
+bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
+    const struct device_grid *device = grid->device;
+    if (inside_range_of(grid->type, options->isovalue).uniform) return true;
+    return grid->context->classified == grid && device->classified_options.isovalue == options->isovalue &&
+           device->classified_options.method == options->method &&
+           (device->plan.words_whole || device->store.words != NULL);
+}
+
+tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                           uint64_t *vertex_count) {
+    const struct device_grid *device = grid->device;
+    carry_job j = {.grid = grid, .plan = &device->plan, .carry = c, .isovalue = options->isovalue};
+    mapping m;
+    *vertex_count = 0;
+    if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
+    for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
+    if (*vertex_count != c->room) return TC_OK; /* the caller is told */
+    j.edge_types = options->method == TC_METHOD_HYBRID ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    ends_fill(&j);
+    if (!j.plan->words_whole) {
+        const slab_store *s = &device->store;
+        j.k1 = (results){(const uint64_t *)s->words, (const uint64_t *)s->offsets, (const brick_state *)s->bricks,
+                         (const uint32_t *)s->active};
+        return slabs_carry(&j);
+    }
+    tc_status status = mapping_open(grid->context, j.plan, &m);
+    if (status) return status;
+    j.k1 =
+        (results){(const uint64_t *)m.memory[0] + UNIFORM_BRICKS * BRICK_WORDS, m.memory[1], m.memory[2], m.memory[3]};
+    return mapping_close(grid->context, &m, slabs_carry(&j));
+}

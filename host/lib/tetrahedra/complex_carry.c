@@ -1,0 +1,123 @@
+/*
+ * Fields carried to the vertices of a complex: the active tetrahedra that the numbering has left in the workspace name
+ * the crossed edges that they own, in the order of their vertices. Of a complex in slabs the host has joined the edges,
+ * and keeps them from the first field that is carried on. Threads of the host take runs of either.
+ */
+#include "tetrahedra/complex_run.h"
+
+#include "failure.h"
+#include "grid/carry.h"
+#include "parallel.h"
+
+#include <stdatomic.h>
+
+enum { SHARE_EDGES = 1 << 14, STEPS = 8, SCAN_VALUE = 0x3fffffff /* of a word of the scan (scan.cl) */ };
+
+typedef struct carry_job {
+    const tc_grid *grid;
+    const carry *carry;
+    double isovalue;
+    const uint64_t *edges; /* of all vertices, where slabs have been joined; else: */
+    const active_tetrahedron *active;
+    const uint32_t *tiles;
+    surface_size size;
+    uint8_t cases[16][CASE_BYTES];
+    _Atomic uint64_t next; /* tile, or run of edges */
+    uint64_t end;
+    _Atomic uint64_t vertices; /* met so far */
+    atomic_bool wrong;         /* there are points that the complex has not */
+} carry_job;
+
+static void edge_add(carry_job *j, uint32_t low, uint32_t high, edge_batch *batch) {
+    if (low >= j->grid->complex->point_count || high >= j->grid->complex->point_count) {
+        j->wrong = true;
+        return;
+    }
+    if (batch->count == BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
+    batch->low[batch->count] = low;
+    batch->high[batch->count++] = high;
+}
+
+static void tile_carry(carry_job *j, uint64_t tile, edge_batch *batch) {
+    const uint64_t first = tile * j->size.tile_actives, end = first + j->size.tile_actives;
+    const uint64_t vertex = tile ? j->tiles[TILE_WORDS * (tile - 1) + TILE_VERTICES] & SCAN_VALUE : 0;
+    batch->vertex = vertex;
+    for (uint64_t n = first; n < end && n < j->size.active_count; n++) {
+        const active_tetrahedron *a = &j->active[n];
+        for (uint32_t rest = a->owned & 15; rest; rest &= rest - 1) {
+            const uint8_t *ends = j->cases[a->pattern & 15] + CASE_ENDS + 2 * __builtin_ctz(rest);
+            const uint32_t p = a->points[ends[0]], q = a->points[ends[1]];
+            edge_add(j, p < q ? p : q, p < q ? q : p, batch);
+        }
+    }
+    j->vertices += batch->vertex + batch->count - vertex;
+    carry_batch(j->carry, j->grid, j->isovalue, batch);
+}
+
+static void run_carry(carry_job *j, uint64_t run, edge_batch *batch) {
+    const uint64_t first = run * SHARE_EDGES, end = first + SHARE_EDGES;
+    batch->vertex = first;
+    for (uint64_t n = first; n < end && n < j->size.vertex_count; n++)
+        edge_add(j, (uint32_t)(j->edges[n] >> 32), (uint32_t)j->edges[n], batch);
+    j->vertices += batch->vertex + batch->count - first;
+    carry_batch(j->carry, j->grid, j->isovalue, batch);
+}
+
+static void shares_carry(void *shared) {
+    carry_job *j = shared;
+    edge_batch batch = {0};
+    uint64_t n;
+    while ((n = atomic_fetch_add(&j->next, 1)) < j->end && !j->wrong)
+        if (j->edges)
+            run_carry(j, n, &batch);
+        else
+            tile_carry(j, n, &batch);
+}
+
+static tc_status job_run(carry_job *j, uint64_t share_count) {
+    tc_status status = TC_OK;
+    for (uint64_t step = 0; step < STEPS && !status; step++) {
+        j->next = share_count * step / STEPS;
+        j->end = share_count * (step + 1) / STEPS;
+        if (j->next < j->end) parallel_run(j->end - j->next, shares_carry, j);
+        status = context_progress(j->grid->context, "carry", 0.5 + 0.5 * (double)(step + 1) / STEPS);
+    }
+    if (!status && (j->wrong || j->vertices != j->size.vertex_count))
+        status = (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a field was carried, or the "
+                                                "device computes wrongly");
+    return status;
+}
+
+/* The results of a complex that the device has whole, while they are mapped. */
+static tc_status workspace_carry(carry_job *j) {
+    tc_context *context = j->grid->context;
+    const complex_buffers *w = &context->work.complex;
+    const uint64_t tile_count = (j->size.active_count + j->size.tile_actives - 1ull) / j->size.tile_actives;
+    const void *active = NULL, *tiles = NULL;
+    tc_status status = buffer_map(context, &w->active, sizeof *j->active * j->size.active_count, &active);
+    if (!status) status = buffer_map(context, &w->tiles, 4ull * TILE_WORDS * tile_count, &tiles);
+    j->active = active;
+    j->tiles = tiles;
+    if (!status) status = job_run(j, tile_count);
+    tc_status ended = buffer_unmap(context, &w->active, active);
+    if (!status) status = ended;
+    ended = buffer_unmap(context, &w->tiles, tiles);
+    return status ? status : ended;
+}
+
+bool complex_is_classified(const tc_grid *grid, double isovalue) {
+    const complex_grid *c = grid->complex;
+    return grid->context->classified == grid && c->classified_isovalue == isovalue &&
+           (!c->slabs || c->slabs->edges.edges || !c->size.vertex_count);
+}
+
+tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+    const struct complex_slabs *slabs = grid->complex->slabs;
+    carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
+    *vertex_count = j.size.vertex_count;
+    if (c->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller is told */
+    complex_cases(j.cases);
+    if (!slabs) return workspace_carry(&j);
+    j.edges = slabs->edges.edges;
+    return job_run(&j, (*vertex_count + SHARE_EDGES - 1) / SHARE_EDGES);
+}
