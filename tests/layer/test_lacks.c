@@ -1,7 +1,7 @@
 /*
  * test_lacks.c - a device without double precision: 32-bit integers and doubles have their vertices made on the host,
- * of triangles that the device has numbered; what cannot be so is refused. And kernels that a device runs with fewer
- * work-items than were asked for: they are built again for as many as it allows
+ * of triangles that the device has numbered; fields are carried all the same; what cannot be so is refused. And kernels
+ * that a device runs with fewer work-items than were asked for: they are built again for as many as it allows
  */
 #define CL_TARGET_OPENCL_VERSION 120
 
@@ -31,6 +31,23 @@ static void grid_describe(tc_grid_options *grid, tc_type type) {
     if (type == TC_F64) samples.f64[SAMPLES / 2] = NAN;
 }
 
+/* The values of a field on the surface, by both engines. */
+static void test_carry(tc_context *context, const tc_grid_options *grid, const tc_extract_options *options,
+                       uint64_t vertex_count) {
+    static float field[SAMPLES], values[2][6 * SAMPLES];
+    const tc_field carried = {sizeof carried, TC_F32, 1, field};
+    tc_context *contexts[2] = {reference, context};
+    for (int n = 0; n < SAMPLES; n++) field[n] = (float)random_between(0, 1);
+    for (int n = 0; n < 2; n++) {
+        tc_grid *g = NULL;
+        EXPECT(!tc_grid_create(contexts[n], grid, &g) && !tc_carry(g, options, &carried, values[n], vertex_count), "%s",
+               tc_message());
+        tc_grid_destroy(g);
+    }
+    EXPECT(memcmp(values[0], values[1], sizeof *field * (size_t)vertex_count) == 0, "%s samples: carried values differ",
+           tc_type_name(grid->type));
+}
+
 static void test_extract(tc_context *context, uint32_t work_items, tc_type type, tc_method method, bool normals) {
     tc_grid_options grid;
     tc_extract_options options;
@@ -46,6 +63,7 @@ static void test_extract(tc_context *context, uint32_t work_items, tc_type type,
         const char *differs = mesh_difference(&data[0], &data[1]);
         EXPECT(!differs, "%s, %u work-items: %s", tc_type_name(type), work_items, differs);
         EXPECT(data[0].triangle_count > 1000, "%llu triangles", (unsigned long long)data[0].triangle_count);
+        test_carry(context, &grid, &options, data[0].vertex_count);
     }
     tc_mesh_destroy(meshes[0]);
     tc_mesh_destroy(meshes[1]);
