@@ -18,7 +18,7 @@ static uint64_t fields[TYPES][COMPONENTS * COUNT];
 static float points[3 * COUNT], axes[3][NX];
 static uint8_t blanked[COUNT], blanked_cells[COUNT];
 static float found[COMPONENTS * 6 * COUNT], expected[COMPONENTS * 6 * COUNT];
-static tc_complex cut = {.struct_size = sizeof cut};
+static tc_tetrahedra cut = {.struct_size = sizeof cut};
 
 static void value_set(void *values, tc_type type, int n, double value) {
     switch (type) {
@@ -82,15 +82,15 @@ static tc_grid *open_grid(tc_context *context, kind k, tc_type type) {
     tc_grid_options o;
     tc_grid *grid = NULL;
     if (k == COMPLEX) {
-        tc_complex_options complex;
-        tc_complex_options_init(&complex);
+        tc_tetrahedra_grid_options complex;
+        tc_tetrahedra_grid_options_init(&complex);
         complex.point_count = COUNT;
         complex.points = points;
         complex.type = type;
         complex.samples = samples[type];
         complex.tetrahedron_count = cut.tetrahedron_count;
         complex.tetrahedra = cut.tetrahedra;
-        EXPECT(tc_complex_create(context, &complex, &grid) == TC_OK, "%s", tc_message());
+        EXPECT(tc_tetrahedra_grid_create(context, &complex, &grid) == TC_OK, "%s", tc_message());
         return grid;
     }
     tc_grid_options_init(&o);
@@ -250,11 +250,14 @@ int main(void) {
     EXPECT(tc_tetrahedralize_grid(&grid, &cut) == TC_OK, "%s", tc_message());
     test_mode(&options, reference, CASES, "whole");
     test_slabs(options, reference, "slabs");
-    options.own_buffers = 1;
-    options.work_items = 32;
-    test_mode(&options, reference, CASES_IN_GROUPS, "groups, own buffers");
-    test_slabs(options, reference, "groups, own buffers, slabs");
-    tc_complex_release(&cut);
+    tc_expert_options expert;
+    tc_expert_options_init(&expert);
+    options.expert = &expert;
+    expert.always_copy = 1;
+    expert.work_items = 32;
+    test_mode(&options, reference, CASES_IN_GROUPS, "groups, copied");
+    test_slabs(options, reference, "groups, copied, slabs");
+    tc_tetrahedra_release(&cut);
     tc_context_destroy(reference);
     return EXPECT_DONE();
 }

@@ -58,6 +58,7 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     if (!status) status = context_check(grid->context);
     if (!status) status = surface_count_vetted(grid, &o, 1, &found);
     if (status) return status;
+    if (grid->device) grid->context->counted = grid; /* for tc_emit */
     found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
                        found.triangle_count * MESH_BYTES_PER_TRIANGLE;
     result_give(counts, &found);

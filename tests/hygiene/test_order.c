@@ -136,6 +136,8 @@ static void carry_step(walk *w, int g, int isovalue) {
     kind_how(w->kinds[g], isovalue, &how);
     if (count > sizeof out / sizeof *out) exit(EXIT_FAILURE);
     EXPECT(tc_interpolate_field(w->grids[g], &how, &field, out, count) == TC_OK, "%s", tc_message());
+    const int home = w->homes[g]; /* another surface than the counted one is counted, and not for tc_emit */
+    if (w->counted[home] != g || w->counted_at[home] != isovalue) w->counted[home] = -1;
     uint64_t far = 0; /* the samples are the field, but for their rounding */
     for (uint64_t n = 0; n < count; n++) far += !(fabs((double)out[n] - how.isovalue) < 1);
     EXPECT(w->kinds[g] == KIND_U8 || w->kinds[g] == KIND_CURVILINEAR || far == 0,

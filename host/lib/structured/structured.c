@@ -246,7 +246,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
-/* For tc_emit and tc_carry. r NULL: there is no surface. */
+/* For tc_emit and tc_interpolate_field. r NULL: there is no surface. */
 static void results_keep(tc_grid *grid, const tc_extract_options *options, run *r) {
     struct device_grid *device = grid->device;
     free(device->heads);
@@ -265,7 +265,6 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, dou
     run r;
     if (inside.uniform) {
         results_keep(grid, options, NULL);
-        grid->context->counted = grid;
         return TC_OK;
     }
     tc_status status = classify(&r, grid, options, inside, false, share);
@@ -273,10 +272,7 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, dou
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
     counts->classify_ms = clock_ms() - r.start_ms;
-    if (!status) {
-        results_keep(grid, options, &r);
-        grid->context->counted = grid;
-    }
+    if (!status) results_keep(grid, options, &r);
     run_end(&r, status);
     return status;
 }
