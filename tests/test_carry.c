@@ -95,7 +95,7 @@ static tc_grid *open_grid(tc_context *context, kind k, tc_type type) {
     }
     tc_grid_options_init(&o);
     o.dims[0] = NX, o.dims[1] = NY, o.dims[2] = NZ;
-    o.first[0] = k == RECTILINEAR;
+    o.first_index[0] = k == RECTILINEAR;
     o.type = type;
     o.samples = samples[type];
     for (int axis = 0; axis < 3 && k == RECTILINEAR; axis++) o.axes[axis] = axes[axis];
