@@ -42,6 +42,19 @@ class ImageCase(GridCase):
         return self.write_bytes(name, NRRD.format(code, 4, "3 5 4 3", "kinds: vector domain domain domain\n"),
                                 struct.pack(f"<180{kind}", *flat))
 
+    def write_nifti(self, name, sizes, datatype, samples, intent=0, slope=0.0, intercept=0.0):
+        header = bytearray(352)
+        struct.pack_into("<i", header, 0, 348)
+        struct.pack_into("<8h", header, 40, len(sizes), *sizes, *[1] * (7 - len(sizes)))
+        struct.pack_into("<h", header, 68, intent)
+        struct.pack_into("<2h", header, 70, datatype, {2: 8, 4: 16, 8: 32, 16: 32, 64: 64}[datatype])
+        struct.pack_into("<8f", header, 76, *[1] * 8)
+        struct.pack_into("<3f", header, 108, 352, slope, intercept)
+        header[344:348] = b"n+1\0"
+        with open(self.path(name), "wb") as f:
+            f.write(bytes(header) + samples)
+        return self.path(name)
+
     def bounds(self, *arguments):
         report = self.report("extract", *arguments, "--engine", "reference", "--check")
         return report["surfaces"][0]["bounds"]
@@ -187,6 +200,47 @@ class Magnitude(ImageCase):
                                 struct.pack("<180f", *flat))
         self.assertEqual(self.report("info", path, "--component", "magnitude")["nonfinite"], 1)
 
+    def check_nodata(self, path, *more):
+        """Two vectors of the file have a component of -9999, one of them in all components."""
+        words = [path, "--component", "magnitude", *more]
+        info = self.report("info", *words, "--nodata=-9999")
+        self.assertEqual((info["missing"], info["notices"]), (2, [n for n in info["notices"] if "averaged" in n]), path)
+        self.assertAlmostEqual(info["range"][1] / max(LENGTHS), 1, places=6)
+        self.assertIn("nothing is left out", self.expect(0, "info", *words, "--nodata=9999").stderr)
+        return self.report("extract", *words, "--iso", "2.1", "--nodata=-9999", "--engine", "reference")["surfaces"][0]
+
+    def test_nodata_is_of_components(self):
+        vectors = list(VECTORS)
+        vectors[0] = (-9999.0,) * 3
+        vectors[27] = (1.0, -9999.0, 1.0)
+        lengths = [math.nan if -9999 in vector else length for vector, length in zip(vectors, LENGTHS)]
+        wanted = self.report("extract", self.write_bytes("l.nrrd", NRRD.format("float", 3, "5 4 3", ""),
+                                                         struct.pack("<60f", *lengths)),
+                             "--iso", "2.1", "--engine", "reference")["surfaces"][0]
+        self.assertGreater(wanted["triangles"], 0)
+        flat = [value for vector in vectors for value in vector]
+        samples = struct.pack("<180f", *flat)
+        files = [self.write_bytes("v.nrrd", NRRD.format("float", 4, "3 5 4 3", "kinds: vector domain domain domain\n"),
+                                  samples),
+                 self.write_bytes("v.mha", "NDims = 3\nDimSize = 5 4 3\nElementNumberOfChannels = 3\n"
+                                  "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n", samples)]
+        version = self.expect(0, "--version").stdout
+        if "NIfTI" in version:
+            planes = struct.pack("<180f", *(vector[c] for c in range(3) for vector in vectors))
+            files.append(self.write_nifti("v.nii", (5, 4, 3, 1, 3), 16, planes, intent=1007))
+        if "VTK XML" in version:
+            files.append(self.write("v.vti", vti_text(DIMS, [("v", "f32", flat, 3)])))
+            files.append(self.write("v.vts", vts_text(DIMS, lattice(DIMS), [("v", "f32", flat, 3)])))
+        for path in files:
+            self.assertEqual(self.check_nodata(path)["triangles"], wanted["triangles"], path)
+
+    def test_nodata_of_cells(self):
+        self.needs_xml()
+        flat = [3.0, 4.0, 12.0] * 3 + [3.0, -9999.0, 12.0]
+        path = self.write("c.vti", vti_text((3, 3, 2), (), [("v", "f64", flat, 3)]))
+        info = self.report("info", path, "--component", "magnitude", "--nodata=-9999")
+        self.assertEqual(info["range"], [13, 13])
+
     def test_refused(self):
         scalars = self.write_scalars()
         self.refuses(2, "extract", scalars, "--iso", "1", "--component", "magnitude", says="one value per sample")
@@ -194,6 +248,44 @@ class Magnitude(ImageCase):
         self.refuses(2, "extract", legacy, "--iso", "1", "--component", "magnitude", says="no vectors")
         for text in ("length", "magnitudes", "", "-2", "1.5"):
             self.refuses(2, "extract", self.write_vectors(), "--iso", "1", "--component", text, says="--component")
+
+
+class Scaled(ImageCase):
+    """Slope and intercept are floats: a missing value is typed as their decimals have it."""
+
+    def setUp(self):
+        super().setUp()
+        if "NIfTI" not in self.expect(0, "--version").stdout:
+            self.skipTest("no NIfTI")
+
+    def left_out(self, path, text):
+        info = self.report("info", path, "--nodata=" + text)
+        count = self.report("extract", path, "--iso", "1.05", "--nodata=" + text, "--engine", "reference", "--count")
+        return info["missing"], any("nothing is left out" in n for n in info["notices"]), info["range"], count["surfaces"]
+
+    def test_nodata(self):
+        stored = [10 * x for x, y, z in lattice(DIMS)]
+        stored[:7] = [-32768] * 7
+        samples = struct.pack("<60h", *stored)
+        whole = self.report("extract", self.write_nifti("a.nii", DIMS, 4, samples, slope=0.1), "--iso", "1.05",
+                            "--engine", "reference", "--count")["surfaces"][0]["triangles"]
+        for text in ("-3276.8", "-3276.800048828125", "-32768e-1"):
+            missing, is_vain, (low, _), [surface] = self.left_out(self.path("a.nii"), text)
+            self.assertEqual((missing, is_vain, low), (7, False, 0.0), text)
+            self.assertLess(surface["triangles"], whole)
+        for text in ("-32768", "-3276.9", "-3276.81", "1e300"):
+            missing, is_vain, (low, _), [surface] = self.left_out(self.path("a.nii"), text)
+            self.assertEqual((missing, is_vain, surface["triangles"]), (0, True, whole), text)
+        path = self.write_nifti("b.nii", DIMS, 4, samples, slope=0.1, intercept=-100.7)
+        self.assertEqual(self.left_out(path, "-3377.5")[0], 7)
+
+    def test_vectors(self):
+        stored = [10] * 180
+        stored[130] = -32768
+        path = self.write_nifti("v.nii", (5, 4, 3, 1, 3), 4, struct.pack("<180h", *stored), intent=1007, slope=0.1)
+        self.assertEqual(self.report("info", path, "--component", "magnitude", "--nodata=-3276.8")["missing"], 1)
+        self.assertEqual(self.report("info", path, "--component", "2", "--nodata=-3276.8")["missing"], 1)
+        self.assertEqual(self.report("info", path, "--component", "1", "--nodata=-3276.8")["missing"], 0)
 
 
 class Description(ImageCase):

@@ -16,6 +16,7 @@ typedef struct dataset_field {
     int components;   /* values per tuple: 1 for a scalar */
     tc_type type;     /* 64-bit integers have become f64, */
     int is_rounded;   /* some of them to the nearest, as no double holds them */
+    int is_scaled;    /* f64: stored values by a slope and an intercept that have the precision of f32 */
     const void *values;
     const char *meaning; /* of the components, "red, green, blue"; NULL where unknown */
 } dataset_field;

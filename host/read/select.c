@@ -179,24 +179,41 @@ static int take_component(dataset *d, const dataset_block *b, const dataset_fiel
     return 0;
 }
 
-/* What values of a field are compared with. */
+/* What values of a field, or all components of its vectors, are compared with. */
 typedef struct missing_value {
     int is_there;
     double value;
+    const dataset_field *of; /* the field as the file has it, where lengths are made of it; else the one at hand */
 } missing_value;
+
+static int equals(const dataset_field *f, uint64_t n, double value) {
+    const double own = value_at(f->type, f->values, n);
+    return f->is_scaled ? nodata_is_scaled(own, value) : own == value;
+}
+
+/* The first of so many values that is the missing one; count where none is. */
+static uint64_t find_equal(const dataset_field *f, uint64_t count, double value) {
+    uint64_t n = 0;
+    if (!f->is_scaled) return nodata_find(f->type, f->values, count, value);
+    while (n < count && !equals(f, n, value)) n++;
+    return n;
+}
 
 /* The request's nodata, where some value of the field equals it. */
 static missing_value find_nodata(const dataset_block *b, const dataset_field *f, const field_request *request) {
-    const uint64_t count = tuple_count(b, f);
-    missing_value m;
+    const uint64_t count = tuple_count(b, f) * (uint64_t)f->components;
+    missing_value m = {.of = f};
     m.is_there = nodata_of_type(f->type, request->nodata, &m.value) && request->has_nodata &&
-                 nodata_find(f->type, f->values, count, m.value) < count;
+                 find_equal(f, count, m.value) < count;
     return m;
 }
 
 static int is_missing(const dataset_field *f, uint64_t n, const missing_value *nodata) {
-    double value = value_at(f->type, f->values, n);
-    return !isfinite(value) || (nodata->is_there && value == nodata->value);
+    const uint64_t components = (uint64_t)nodata->of->components;
+    if (!isfinite(value_at(f->type, f->values, n))) return 1;
+    for (uint64_t c = 0; c < components && nodata->is_there; c++)
+        if (equals(nodata->of, n * components + c, nodata->value)) return 1;
+    return 0;
 }
 
 /* Adds to a mask of points or cells, which may be NULL, those whose value is missing; the old one where there is none.
@@ -220,14 +237,15 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
     *out = (scalar_block){.blanked_points = b->blanked_points, .blanked_cells = b->blanked_cells};
     int status = take_component(d, b, f, request->component, &one);
     if (status) return status;
-    const missing_value nodata = find_nodata(b, &one, request);
+    const missing_value nodata = find_nodata(b, request->component == COMPONENT_MAGNITUDE ? f : &one, request);
+    const int is_value = !nodata.of->is_scaled && nodata.of->components == 1; /* of the samples, as they are */
     *has_nodata |= nodata.is_there;
     if (f->on_cells) {
         status = mask_missing(d, b, &one, &nodata, &out->blanked_cells);
         if (!status) status = average_to_points(d, b, out->blanked_cells, &one, &at_points);
         if (status) return status;
         one = at_points;
-    } else if (b->kind == GRID_UNSTRUCTURED) {
+    } else if (b->kind == GRID_UNSTRUCTURED || (nodata.is_there && !is_value)) {
         if ((status = mask_missing(d, b, &one, &nodata, &out->blanked_points))) return status;
     } else {
         out->has_nodata = nodata.is_there;

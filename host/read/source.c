@@ -311,6 +311,7 @@ static void describe(const source *from, const layout *l, dataset *out) {
     }
     field->type = layout_type(l);
     field->components = l->components;
+    field->is_scaled = l->scaled;
     field->meaning = from->axes->meaning;
     out->frames = l->frames;
 }

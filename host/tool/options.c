@@ -122,7 +122,8 @@ static const option table[] = {
      "closed surfaces volume (boundary edges are reported, they are no fault)"},
     {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
-     "a missing corner is left out; of f32 samples the float nearest to V counts"},
+     "a missing corner is left out; of f32 samples and of scaled ones the float\n"
+     "nearest to V counts; of vectors one component equal to V is enough"},
     {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
      "leave out cells of types that are not cut, and polyhedra whose faces are\n"
      "not closed, with a notice, instead of refusing the input"},
