@@ -8,6 +8,7 @@ import gzip
 import json
 import os
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -332,6 +333,71 @@ class StandardInput(DataCase, GridCase):
         os.close(slave)
         self.assertEqual(run.returncode, 2, run)
         self.assertRegex(run.stderr, "standard input is a terminal")
+
+    def by_name(self, status, data, name, *words, says="^"):
+        """The words with a FIFO of that name, into which data is written."""
+        os.mkfifo(self.path(name))
+        with subprocess.Popen(["sh", "-c", f"cat > {name}"], cwd=self.folder.name, stdin=subprocess.PIPE) as writer, \
+                subprocess.Popen([test_cli.TOOL, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 cwd=self.folder.name) as run:
+            writer.stdin.write(data)
+            writer.stdin.close()
+            out, err = run.communicate(timeout=600)
+        os.remove(self.path(name))
+        self.assertEqual(run.returncode, status, err)
+        self.assertRegex(err.decode(), says)
+        return out
+
+    def test_pipes_by_name(self):
+        volume = self.generate("noise", "a.nrrd", "64,40,30", "f32")  # more than a pipe holds
+        with open(volume, "rb") as file:
+            data = file.read()
+        expected = self.extract([volume], "100")["surfaces"][0]["hash"]
+        words = ["--iso", "100", *REFERENCE, "--json"]
+        runs = [self.by_name(0, data, "pipe", "extract", "pipe", *words)]
+        for name in ("/dev/stdin", "/dev/fd/0"):
+            runs.append(self.pipe(0, data, "extract", name, *words))
+            with open(volume, "rb") as file:
+                runs.append(subprocess.run([test_cli.TOOL, "extract", name, *words], stdin=file, capture_output=True).stdout)
+        for text in runs:
+            self.assertEqual(json.loads(text)["surfaces"][0]["hash"], expected)
+
+    def test_process_substitution(self):
+        if not os.path.exists("/dev/fd/0") or not shutil.which("bash"):
+            self.skipTest("no bash with /dev/fd")
+        inputs = self.write_plot3d("p", [((4, 4, 4), lattice((4, 4, 4)), [float(n) for n in range(64)])])
+        self.generate("sphere", "a.nrrd", "8,8,8")
+        for text in ("<(cat a.nrrd)", "<(sleep 0.3; cat a.nrrd)", "<(cat a.nrrd) --iso 100 < /dev/null",
+                     "<(cat p.xyz) <(cat p.q) --field density"):
+            arguments = text if "--iso" in text else f"{text} --iso {30 if 'density' in text else 100}"
+            run = subprocess.run(["bash", "-c", f'"$0" extract {arguments} --engine reference --json', test_cli.TOOL],
+                                 capture_output=True, cwd=self.folder.name, timeout=600)
+            self.assertEqual(run.returncode, 0, run)
+            self.assertGreater(json.loads(run.stdout)["surfaces"][0]["triangles"], 0, inputs)
+        run = subprocess.run(["bash", "-c", '"$0" info <(true)', test_cli.TOOL], capture_output=True, timeout=600)
+        self.assertEqual(run.returncode, 4, run)
+        self.assertIn(b"the pipe is empty", run.stderr)
+
+    def test_refused_pipes(self):
+        head = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: x.raw\n\n"
+        self.by_name(4, head, "a.nhdr", "info", "a.nhdr", says="a.nhdr: names a data file, 'x.raw', and nothing lies beside a")
+        self.pipe(4, head, "info", "/dev/stdin", says="/dev/stdin: names .* nothing lies beside standard input")
+        self.by_name(4, b"", "b", "info", "b", says="b: the pipe is empty")
+        if "NIfTI" in self.expect(0, "--version").stdout:
+            facts = json.loads(self.by_name(0, gzip.compress(nifti()), "c", "info", "c", "--json"))
+            self.assertEqual(facts["dims"], [8, 8, 8])
+            pair = nifti()[:344] + b"ni1\0"
+            self.by_name(4, pair, "d", "info", "d", says="d: is the header of a pair .hdr/.img, and nothing lies beside a")
+        self.refuses(4, "info", "/dev/null", says="not a regular file")
+
+    def test_pipe_interrupted(self):
+        os.mkfifo(self.path("pipe"))
+        with subprocess.Popen([test_cli.TOOL, "info", self.path("pipe")], stderr=subprocess.PIPE) as run:
+            with self.assertRaises(subprocess.TimeoutExpired):
+                run.wait(timeout=1)
+            run.terminate()
+            self.assertEqual(run.wait(timeout=60), 1)
+            self.assertRegex(run.stderr.read().decode(), "cancelled|interrupted")
 
     def test_interrupted(self):
         with subprocess.Popen([test_cli.TOOL, "info", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE) as run:

@@ -21,10 +21,10 @@ static int has_parent(const char *name) {
 }
 
 int data_names_add(data_names *names, const char *header_path, const char *name) {
-    if (mapping_is_standard_input(header_path))
-        return fail(
-            STATUS_INPUT,
-            "-: names a data file, '%.200s', and nothing lies beside standard input: give the header's own name", name);
+    if (mapping_is_stream(header_path))
+        return fail(STATUS_INPUT,
+                    "%s: names a data file, '%.200s', and nothing lies beside %s: give the header's own name",
+                    header_path, name, mapping_is_standard_input(header_path) ? "standard input" : "a pipe");
     size_t length = strlen(name);
     if (!length || length >= NAME_BYTES)
         return fail(STATUS_INPUT, "%s: names a data file of %zu characters; 1 to %d are possible", header_path, length,
@@ -163,6 +163,8 @@ static int check_links(const char *header_path, const char *path) {
 int data_names_open(const char *header_path, const char *path, mapping *m) {
     *m = (mapping){0};
     int status = check_links(header_path, path);
+    if (!status && mapping_is_stream(path)) /* a pipe could be waited for without end */
+        status = fail(STATUS_INPUT, "%s: is not a regular file, as data files have to be", path);
     return status ? status : mapping_open(path, m);
 }
 

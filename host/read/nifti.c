@@ -305,7 +305,8 @@ static int find_partner(const char *path, const char *own, const char *const wan
     for (int n = 0; n < 6; n++) {
         const char *ending = wanted[(n / 3) ^ is_upper];
         int written = snprintf(partner, size, "%.*s%s%s", (int)length - 4, path, ending, packed[n % 3]);
-        if (written > 0 && (size_t)written < size && access(partner, F_OK) == 0) return 1;
+        if (written > 0 && (size_t)written < size && access(partner, F_OK) == 0 && !mapping_is_stream(partner))
+            return 1;
     }
     return 0;
 }
@@ -385,10 +386,10 @@ int nifti_read(const read_request *request, const mapping *file, dataset *out) {
         if ((status = mapping_open(partner, &other))) goto cleanup;
         image_path = partner;
         image = &other;
-    } else if (!h.is_single && !has_data && mapping_is_standard_input(request->path)) {
-        status =
-            fail(STATUS_INPUT, "-: is the header of a pair .hdr/.img, and nothing lies beside standard input: give "
-                               "the header's own name");
+    } else if (!h.is_single && !has_data && mapping_is_stream(request->path)) {
+        status = fail(STATUS_INPUT,
+                      "%s: is the header of a pair .hdr/.img, and nothing lies beside %s: give the header's own name",
+                      request->path, mapping_is_standard_input(request->path) ? "standard input" : "a pipe");
         goto cleanup;
     } else if (!by_image && !h.is_single && !has_data) {
         status =

@@ -75,8 +75,9 @@ static const char *name_of_unread(const char *path, const mapping *file) {
 static int refuse_unknown(const char *path, const mapping *file) {
     const char *name = name_of_unread(path, file);
     char formats[FORMATS_TEXT];
-    if (mapping_is_standard_input(path) && !file->size)
-        return fail(STATUS_INPUT, "-: standard input is empty: what should send to it may have failed");
+    if (mapping_is_stream(path) && !file->size)
+        return fail(STATUS_INPUT, "%s: %s is empty: what should send to it may have failed", path,
+                    mapping_is_standard_input(path) ? "standard input" : "the pipe");
     if (name)
         return fail(STATUS_INPUT, "%s: is %s, which this program does not read; it reads %s", path, name,
                     read_formats_text(formats));
@@ -158,8 +159,10 @@ int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
     mapping file;
     if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
-        return fail(STATUS_USAGE, "-: standard input is one file, and two inputs are a Plot3D grid and its solution: "
-                                  "give the names of both");
+        return fail(STATUS_USAGE,
+                    "%s: standard input is one file, and two inputs are a Plot3D grid and its solution: "
+                    "give the names of both",
+                    mapping_is_standard_input(request->path) ? request->path : request->path2);
     if (request->path2 && !may_be_plot3d(read_format_of_ending(request->path))) return refuse_pair(request);
     int status = mapping_open(request->path, &file);
     if (status) return status;

@@ -34,7 +34,7 @@ static int begins_as_nifti(const char *path, const mapping *file) {
     static const char sizes[4][4] = {{92, 1, 0, 0}, {0, 0, 1, 92}, {28, 2, 0, 0}, {0, 0, 2, 28}};
     for (int i = 0; i < 4; i++)
         if (file->size >= 348 && memcmp(file->bytes, sizes[i], 4) == 0) return 1;
-    return mapping_is_standard_input(path) && file_starts_with(file, "\x1f\x8b");
+    return mapping_is_stream(path) && file_starts_with(file, "\x1f\x8b");
 }
 
 static int begins_as_vtk_legacy(const char *path, const mapping *file) {

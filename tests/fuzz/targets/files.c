@@ -71,6 +71,11 @@ int mapping_is_standard_input(const char *path) {
     return 0;
 }
 
+int mapping_is_stream(const char *path) {
+    (void)path;
+    return 0;
+}
+
 void mapping_close(mapping *m) {
     if (m->bytes) munmap((void *)(uintptr_t)m->bytes, m->size);
     *m = (mapping){0};
