@@ -56,7 +56,7 @@ _Static_assert(ELEMENT_COUNT == 0 STORED_TYPES(ELEMENT_COUNTED), "a stored type 
 _Static_assert(ELEMENT_COUNT == 0 STORED_NAMES(ELEMENT_COUNTED), "a stored type has no names, or more than one row");
 #undef ELEMENT_COUNTED
 
-/* Bytes of one element. */
+/* Bytes of one element; 1 of what is none. */
 static inline size_t element_bytes(int element) {
     switch (element) {
 #define ELEMENT_CASE(element, name, c_type, ...)                                                                       \
@@ -64,8 +64,8 @@ static inline size_t element_bytes(int element) {
         return sizeof(c_type);
         STORED_TYPES(ELEMENT_CASE)
 #undef ELEMENT_CASE
-    default:
-        return 0;
+    default: /* nothing is divided by 0 */
+        return 1;
     }
 }
 
