@@ -943,6 +943,60 @@ class Info(GridCase):
         self.assertIn("triangle 1, hexahedron 1", text)
 
 
+class Used(GridCase):
+    """Range, histogram and isovalues are of the samples that a surface can depend on."""
+
+    def check(self, inputs, low, high, count, *more):
+        """And every isovalue that info advises gives a surface, while one above the range is told with that range."""
+        info = self.report("info", *inputs, *more)
+        self.assertEqual((info["range"], sum(info["histogram"]["counts"])), ([low, high], count))
+        self.assertEqual((info["missing"], info["nonfinite"]), (0, 0))
+        self.assertTrue(info["isovalues"])
+        extract = ["extract", *inputs, *more, "--engine", "reference", "--iso"]
+        for advice in info["isovalues"]:
+            self.assertGreater(self.report(*extract, repr(advice["iso"]))["surfaces"][0]["triangles"], 0, advice)
+        self.expect(0, *extract, "1e40", says=f"outside the range of the samples, {low} to {high}:")
+
+    def cells(self, extra_points, extra_values, extra_cells=(), extra_types=(), **more):
+        """2 x 2 x 2 points with a hexahedron and values 0 to 7, and others."""
+        return [self.write("a.vtu", vtu_text(lattice((2, 2, 2)) + extra_points, hexahedra((2, 2, 2)) + list(extra_cells),
+                                             [HEXAHEDRON, *extra_types],
+                                             [("f", "f64", [float(n) for n in range(8)] + extra_values)], **more))]
+
+    def test_points_of_no_cell(self):
+        self.needs_xml()
+        self.check(self.cells([(0, 0, 9), (0, 9, 0)], [1e30, float("nan")]), 0, 7, 8)
+
+    def test_points_of_flat_cells(self):
+        self.needs_xml()
+        self.check(self.cells([(0, 0, 9)], [-1e30], [[0, 1, 8]], [TRIANGLE]), 0, 7, 8)
+
+    def test_points_inside_edges(self):
+        self.needs_xml()
+        corners = [(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2)]
+        middles = [tuple((a + b) / 2 for a, b in zip(corners[i], corners[j]))
+                   for i, j in ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))]
+        grid = self.write("q.vtu", vtu_text(corners + middles, [list(range(10))], [24],
+                                            [("f", "f64", [0.0, 1.0, 2.0, 3.0] + [50.0] * 6)]))
+        self.check([grid], 0, 3, 4)
+
+    def test_flat_cells_alone(self):
+        self.needs_xml()
+        grid = self.write("t.vtu", vtu_text(lattice((2, 2, 1)), [[0, 1, 2]], [TRIANGLE], [("f", "f64", [1.0, 2.0, 3.0, 4.0])]))
+        self.assertEqual(self.report("info", grid)["range"], [1, 4])
+
+    def test_flat_blocks(self):
+        blocks = [((2, 2, 2), lattice((2, 2, 2)), [float(n) for n in range(8)]),
+                  ((3, 3, 1), lattice((3, 3, 1)), [1e30] * 9)]
+        self.check(self.write_plot3d("b", blocks), 0, 7, 8, "--field", "density")
+
+    def test_cells_that_are_hidden(self):
+        self.needs_xml()
+        values = [float(x) if x < 3 else 1e30 for x, y, z in lattice((4, 2, 2))]
+        grid = self.write("g.vti", vti_text((4, 2, 2), [("f", "f64", values)], [("vtkGhostType", "u8", [0, 0, 32])]))
+        self.check([grid], 0, 2, 12, "--field", "f")
+
+
 @unittest.skipUnless(DATA, "TETRACUBES_DATA is unset; it names the folder of published data")
 class Published(GridCase):
     REFUSED = {"unstructured/disk_out_ref.ex2": "Exodus"}

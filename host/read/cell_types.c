@@ -77,3 +77,23 @@ const char *cell_type_name(uint8_t type) { return types[type].name; }
 int cell_type_dimension(uint8_t type) { return types[type].dimension; }
 
 int cell_type_points(uint8_t type) { return types[type].points; }
+
+int cell_type_corners(uint8_t type) {
+    switch (type) {
+    case 24: /* quadratic: points on the edges and faces follow */
+        return 4;
+    case 25:
+    case 29:
+    case 33:
+        return 8;
+    case 26:
+    case 31:
+    case 32:
+        return 6;
+    case 27:
+    case 37:
+        return 5;
+    default:
+        return cell_type_points(type);
+    }
+}

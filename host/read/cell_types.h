@@ -14,4 +14,7 @@ int cell_type_dimension(uint8_t type);
  * dimensions here. */
 int cell_type_points(uint8_t type);
 
+/* Of cells of three dimensions the corners, which are their first points; 0: all of its points. */
+int cell_type_corners(uint8_t type);
+
 #endif

@@ -9,6 +9,7 @@
 #include "read.h"
 #include "report.h"
 #include "statistics.h"
+#include "used_points.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -75,14 +76,34 @@ int input_select(const options *o, dataset *d, scalar *out) {
     return status;
 }
 
-sample_array *input_samples(const dataset *d, const scalar *field) {
-    sample_array *arrays = calloc((size_t)d->block_count + 1, sizeof *arrays);
+/* Room for the arrays and behind them for a byte per point. */
+static sample_array *allocate_samples(const dataset *d, uint8_t **used) {
+    size_t points = 0, count = (size_t)d->block_count + 1;
+    for (int n = 0; n < d->block_count; n++) points += (size_t)d->blocks[n].point_count;
+    sample_array *arrays = calloc(count * sizeof *arrays + points, 1);
     if (!arrays) fail(STATUS_FAILED, "out of memory for %d blocks", d->block_count);
+    *used = (uint8_t *)(arrays ? arrays + count : NULL);
+    return arrays;
+}
+
+sample_array *input_samples(const dataset *d, const scalar *field) {
+    uint8_t *used;
+    sample_array *arrays = allocate_samples(d, &used);
+    int is_any_used = 0;
     for (int n = 0; arrays && n < d->block_count; n++) {
         const scalar_block *b = &field->blocks[n];
-        arrays[n] = (sample_array){b->type,           b->samples,    (uint64_t)d->blocks[n].point_count,
-                                   b->blanked_points, b->has_nodata, b->nodata};
+        arrays[n] = (sample_array){.type = b->type,
+                                   .samples = b->samples,
+                                   .count = (uint64_t)d->blocks[n].point_count,
+                                   .blanked = b->blanked_points,
+                                   .has_nodata = b->has_nodata,
+                                   .nodata = b->nodata};
+        const enum point_use use = used_points_mark(&d->blocks[n], b->blanked_cells, used);
+        if (use != POINTS_ALL_USED) arrays[n].used = used;
+        is_any_used |= use != POINTS_NONE_USED;
+        used += d->blocks[n].point_count;
     }
+    for (int n = 0; arrays && n < d->block_count && !is_any_used; n++) arrays[n].used = NULL;
     return arrays;
 }
 

@@ -17,7 +17,8 @@ int input_read(const options *o, dataset *d);
  * and where --nodata is nowhere in it. */
 int input_select(const options *o, dataset *d, scalar *out);
 
-/* The field's samples, an array per block, for statistics; from malloc, NULL with its failure's text without memory. */
+/* The field's samples, an array per block, for statistics: of points that some cell of three dimensions uses, or of all
+ * where no block has such a cell; from malloc, NULL with its failure's text without memory. */
 struct sample_array *input_samples(const dataset *d, const scalar *field);
 
 /* The notice that 64-bit integers of a field, one that is used, are no longer what the file says. */

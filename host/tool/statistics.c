@@ -20,7 +20,9 @@ typedef struct extent {
 
 static const extent nothing = {0, 0, 0, INFINITY, -INFINITY};
 
-static int may_be_missing(const sample_array *array) { return array->blanked || array->has_nodata; }
+static int may_be_missing(const sample_array *array) { return array->blanked || array->has_nodata || array->used; }
+
+static int is_used(const sample_array *array, uint64_t n) { return !array->used || array->used[n]; }
 
 static int is_missing(const sample_array *array, uint64_t n, double value) {
     return (array->blanked && array->blanked[n]) || (array->has_nodata && value == array->nodata);
@@ -31,6 +33,7 @@ static extent extent_of_present(const sample_array *array) {
     extent e = nothing;
     for (uint64_t n = 0; n < array->count; n++) {
         double value = value_at(array->type, array->samples, n);
+        if (!is_used(array, n)) continue;
         if (is_missing(array, n, value)) {
             e.missing_count++;
         } else if (isfinite(value)) {
@@ -114,7 +117,8 @@ uint64_t statistics_count_equal(const sample_array *arrays, int count, double va
     uint64_t equal = 0;
     for (int n = 0; n < count; n++)
         for (uint64_t m = 0; m < arrays[n].count; m++)
-            equal += value_at(arrays[n].type, arrays[n].samples, m) == value && !is_missing(&arrays[n], m, value);
+            equal += value_at(arrays[n].type, arrays[n].samples, m) == value && is_used(&arrays[n], m) &&
+                     !is_missing(&arrays[n], m, value);
     return equal;
 }
 
@@ -157,7 +161,7 @@ static void count_sample(statistics *s, double value) {
 static void fill_bins_of_present(const sample_array *array, statistics *s) {
     for (uint64_t n = 0; n < array->count; n++) {
         double value = value_at(array->type, array->samples, n);
-        if (isfinite(value) && !is_missing(array, n, value)) count_sample(s, value);
+        if (isfinite(value) && is_used(array, n) && !is_missing(array, n, value)) count_sample(s, value);
     }
 }
 

@@ -14,6 +14,7 @@ typedef struct sample_array {
     const uint8_t *blanked; /* one per sample, nonzero: missing; NULL: none */
     int has_nodata;         /* samples equal to nodata are missing */
     double nodata;
+    const uint8_t *used; /* one per sample, zero: of no cell, as if it were not there; NULL: all are */
 } sample_array;
 
 /*
