@@ -33,9 +33,12 @@ static tc_status platform_list_make(platform_list *list) {
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "OpenCL does not tell its platforms (%d); the reference engine needs none", (int)error);
     if (error || list->count == 0)
-        return (tc_status)fail(TC_ERROR_DEVICE, "no OpenCL platform is installed (for the CPU on Debian: apt install "
-                                                "pocl-opencl-icd; for a GPU: its driver's OpenCL package); the "
-                                                "reference engine needs none");
+        return (tc_status)fail(
+            TC_ERROR_DEVICE,
+            "no OpenCL platform was found: none is installed, or what is installed does not load, as where memory or "
+            "open "
+            "files are limited (ulimit -v, -n) (for the CPU on Debian: apt install pocl-opencl-icd; for a GPU: its "
+            "driver's OpenCL package); the reference engine needs none");
     if (list->count > PLATFORMS_MAX) list->count = PLATFORMS_MAX;
     opencl_awake();
     return TC_OK;
@@ -76,10 +79,12 @@ static tc_status no_device(const platform_list *platforms, const device_list *li
                                "cache folder %s: set POCL_CACHE_DIR to a folder that this user may write, or HOME; the "
                                "reference engine needs none",
                                folder);
-    return (tc_status)fail(TC_ERROR_DEVICE,
-                           "the %u OpenCL platform(s) installed have no device (for the CPU on "
-                           "Debian: apt install pocl-opencl-icd); the reference engine needs none",
-                           platforms->count);
+    return (tc_status)fail(
+        TC_ERROR_DEVICE,
+        "the %u OpenCL platform(s) installed have no device, or memory or open files are too limited for "
+        "one (ulimit -v, -n) (for the CPU on Debian: apt install pocl-opencl-icd); the reference "
+        "engine needs none",
+        platforms->count);
 }
 
 static tc_status device_list_make(device_list *list) {

@@ -7,11 +7,13 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <unistd.h>
 
 const struct opencl_functions *cl;
 
 static struct opencl_functions functions;
+static char load_error[200]; /* what the system says of a loader that does not load */
 static pthread_once_t load_once = PTHREAD_ONCE_INIT;
 
 static void load(void) {
@@ -24,7 +26,11 @@ static void load(void) {
 #undef X
     };
     void *library = dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (!library) return;
+    if (!library) {
+        const char *error = dlerror();
+        snprintf(load_error, sizeof load_error, "%s", error ? error : "");
+        return;
+    }
     for (size_t n = 0; n < sizeof entries / sizeof entries[0]; n++) {
         void *symbol = dlsym(library, entries[n].name);
         if (!symbol) return;
@@ -56,9 +62,11 @@ tc_status opencl_lock(void) {
     if (process && process != getpid()) return opencl_forked_fail("this process was forked from one that uses OpenCL");
     pthread_once(&load_once, load);
     if (!cl)
-        return (tc_status)fail(TC_ERROR_DEVICE,
-                               "no OpenCL: the loader libOpenCL.so.1 is not installed (Debian: apt install "
-                               "ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none");
+        return (tc_status)fail(
+            TC_ERROR_DEVICE,
+            "no OpenCL: the loader libOpenCL.so.1 is not installed or does not load%s%s (Debian: apt "
+            "install ocl-icd-libopencl1 pocl-opencl-icd); the reference engine needs none",
+            *load_error ? ": " : "", load_error);
     pthread_mutex_lock(&devices_lock);
     return TC_OK;
 }

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void find_folder(char *folder, size_t bytes) {
@@ -26,16 +27,25 @@ static void find_folder(char *folder, size_t bytes) {
         snprintf(folder, bytes, "/tmp/pocl/kcache");
 }
 
+/* Whether a folder can be made in that one: tried, as permissions do not tell of /proc, or of disks that are full. */
+static bool has_room(const char *folder) {
+    static const char probe[] = "/.tetracubes-XXXXXX";
+    char path[PATH_MAX + sizeof probe];
+    snprintf(path, sizeof path, "%s%s", folder, probe);
+    return mkdtemp(path) && rmdir(path) == 0;
+}
+
 bool pocl_cache_is_locked(char *folder, size_t bytes) {
     char path[PATH_MAX];
+    struct stat about;
     find_folder(path, sizeof path);
     snprintf(folder, bytes, "%s", path);
-    while (access(path, W_OK | X_OK) != 0) { /* the folder, or the first one above it that exists */
+    while (lstat(path, &about) != 0) { /* the folder, or the first one above it that exists */
         char *slash = strrchr(path, '/');
         if (errno != ENOENT) return true;
-        if (!slash) return access(".", W_OK | X_OK) != 0;
-        if (slash == path) return access("/", W_OK | X_OK) != 0;
+        if (!slash) return !has_room(".");
+        if (slash == path) return !has_room("");
         *slash = '\0';
     }
-    return false;
+    return !has_room(path);
 }
