@@ -139,7 +139,8 @@ class Usage(Case):
         self.refuses(2, "extract", "a.nrrd", "b.nrrd", "--iso", "1", says="b.nrrd")
         for bad in ("abc", "nan", "inf", "-inf", "1e999", "1,,2", "1,", "", "1x", "1 2", " ", "1, ,2"):
             self.refuses(2, "extract", "x.nrrd", "--iso", bad, says="finite number")
-        for bad in ("1,2", "1,2,3,4", "0,2,2", "-1,2,2", "2,2,x", "2;2;2", "2 2,2", "2,2 2", "99999999999999999999,2,2", ""):
+        for bad in ("1,2", "1,2,3,4", "0,2,2", "-1,2,2", "2,2,x", "2;2;2", "2 2,2", "2,2 2",
+                    "99999999999999999999,2,2", ""):
             self.refuses(2, "extract", "x.raw", "--iso", "1", "--type", "u8", "--dims", bad, says="--dims")
         for bad in ("1,2", "0,1,1", "1,-1,1", "1,1,nan", "1,1,1x"):
             self.refuses(2, "extract", "x.raw", "--iso", "1", "--spacing", bad, says="--spacing")
@@ -157,15 +158,13 @@ class Usage(Case):
 
     def test_blanks_in_lists(self):
         raw = self.generate("sphere", "a.raw", "8,9,10", "f32")
-        wanted = self.report("extract", raw, "--type", "f32", "--dims", "8,9,10", "--spacing", "1,2,3", "--iso", "100,150",
-                             "--engine", "reference")
-        spaced = self.report("extract", raw, "--type", "f32", "--dims", "8, 9 ,10 ", "--spacing", " 1,\t2, 3", "--iso",
-                             " 100, 150 ", "--engine", "reference")
+        words = ["extract", raw, "--type", "f32", "--engine", "reference"]
+        wanted = self.report(*words, "--dims", "8,9,10", "--spacing", "1,2,3", "--iso", "100,150")
+        spaced = self.report(*words, "--dims", "8, 9 ,10 ", "--spacing", " 1,\t2, 3", "--iso", " 100, 150 ")
         for report in (wanted, spaced):
             self.assertEqual([surface["iso"] for surface in report["surfaces"]], [100, 150])
         self.assertEqual(*([surface["hash"] for surface in report["surfaces"]] for report in (wanted, spaced)))
-        self.expect(0, "extract", raw, "--type", "f32", "--dims", "8,9,10", "--iso", "100, 150", "--engine", "reference",
-                    "-o", self.path("a%.ply"))
+        self.expect(0, *words, "--dims", "8,9,10", "--iso", "100, 150", "-o", self.path("a%.ply"))
         self.assertEqual(self.files(), ["a.raw", "a100.ply", "a150.ply"])
 
     def test_combinations(self):

@@ -957,11 +957,12 @@ class Used(GridCase):
             self.assertGreater(self.report(*extract, repr(advice["iso"]))["surfaces"][0]["triangles"], 0, advice)
         self.expect(0, *extract, "1e40", says=f"outside the range of the samples, {low} to {high}:")
 
-    def cells(self, extra_points, extra_values, extra_cells=(), extra_types=(), **more):
+    def cells(self, extra_points, extra_values, extra_cells=(), extra_types=()):
         """2 x 2 x 2 points with a hexahedron and values 0 to 7, and others."""
-        return [self.write("a.vtu", vtu_text(lattice((2, 2, 2)) + extra_points, hexahedra((2, 2, 2)) + list(extra_cells),
-                                             [HEXAHEDRON, *extra_types],
-                                             [("f", "f64", [float(n) for n in range(8)] + extra_values)], **more))]
+        values = [float(n) for n in range(8)] + extra_values
+        cells = hexahedra((2, 2, 2)) + list(extra_cells)
+        return [self.write("a.vtu", vtu_text(lattice((2, 2, 2)) + extra_points, cells, [HEXAHEDRON, *extra_types],
+                                             [("f", "f64", values)]))]
 
     def test_points_of_no_cell(self):
         self.needs_xml()
@@ -982,7 +983,8 @@ class Used(GridCase):
 
     def test_flat_cells_alone(self):
         self.needs_xml()
-        grid = self.write("t.vtu", vtu_text(lattice((2, 2, 1)), [[0, 1, 2]], [TRIANGLE], [("f", "f64", [1.0, 2.0, 3.0, 4.0])]))
+        fields = [("f", "f64", [1.0, 2.0, 3.0, 4.0])]
+        grid = self.write("t.vtu", vtu_text(lattice((2, 2, 1)), [[0, 1, 2]], [TRIANGLE], fields))
         self.assertEqual(self.report("info", grid)["range"], [1, 4])
 
     def test_flat_blocks(self):
