@@ -96,7 +96,7 @@ static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points
 /* Most clusters per slab that fit, by bisection; 0 where not even one does. */
 static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
     uint32_t low = 0, high = complex_cluster_count(grid->complex->tetrahedron_count);
-    if (high > slab_tetrahedra_most / CLUSTER_TETRAHEDRA) high = slab_tetrahedra_most / CLUSTER_TETRAHEDRA;
+    if (high > slab_tetrahedra_most / CLUSTER_TETRAHEDRA) high = (uint32_t)(slab_tetrahedra_most / CLUSTER_TETRAHEDRA);
     while (low < high) {
         const uint32_t middle = high - (high - low) / 2;
         if (need_fits(grid->context, slab_need(grid, middle, points_whole)))
