@@ -490,7 +490,7 @@ typedef struct tc_device_mesh {
 TC_API tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
                          struct _cl_event **done);
 
-/* ==================================================================================== expert and test settings ==== */
+/* ---------------------------------------------------------------------------------------- expert and test settings */
 
 /* Nothing from here on is needed to extract surfaces, and nothing changes a mesh: these settings change the time that
  * it takes, run paths that the device at hand would not take by itself, or guard against drivers that crash. */

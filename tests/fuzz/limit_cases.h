@@ -107,7 +107,7 @@ static const limit_case distance_cases[] = {
     {"a.vti", XML8("Spacing=\"1 inf 1\""), "finite"},
     {"a.vti", XML8("Origin=\"0 0 inf\""), "finite"},
     {"a.vti", XML8("Direction=\"1 0 0 0 nan 0 0 0 1\""), "finite"},
-    {"a.vti", XML8("Direction=\"1 0 0 0 0 0 0 0 1\""), "axis 2 is 0"},
+    {"a.vti", XML8("Direction=\"1 0 0 0 0 0 0 0 1\""), "only zeros for axis 2"},
 };
 
 #endif

@@ -108,7 +108,8 @@ static void uniform_extent(const double matrix[3][4], const tc_grid *grid, exten
 static void uniform_origin(const double matrix[3][4], const extent *e, double origin[3]) {
     origin_choose(e, origin);
     for (int r = 0; r < 3; r++)
-        if (e->cell[r] > 0 && e->cell[r] < fabs(matrix[r][3]) * 0x1p-48) origin[r] = matrix[r][3];
+        if (e->cell[r] > 0 && e->cell[r] < fabs(matrix[r][3]) * 0x1p-48 && fabs(matrix[r][3]) <= (double)FLT_MAX)
+            origin[r] = matrix[r][3];
 }
 
 /* Indices count from an even number near the grid's where these are large, as float32 holds i + t, too: cubes keep
