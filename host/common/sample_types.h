@@ -1,5 +1,5 @@
 /*
- * sample_types.h - the table of sample types: a new one is a row here, beside its number in tetracubes.h
+ * sample_types.h - the table of sample types (host/README.md says what else a new one needs)
  *
  * A list is a macro that applies ROW to every row, so that tables, and switches whose loops are of one C type each,
  * are made of it:

@@ -1,5 +1,5 @@
 /*
- * read_formats.h - the table of formats that are read: a new one is a row in read_formats.c, and a file with its reader
+ * read_formats.h - the table of formats that are read (host/README.md says what a new one needs)
  */
 #ifndef READ_FORMATS_H
 #define READ_FORMATS_H

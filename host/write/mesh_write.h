@@ -11,7 +11,7 @@
 #include "tetracubes.h"
 
 /*
- * The table of formats that are written: a new one is a row here, and a file with its writer. ROW is applied to each:
+ * The table of formats that are written (host/README.md says what a new one needs). ROW is applied to each:
  *
  *     ROW(name, label, has_fields, has_doubles, has_normals, counts)
  *

@@ -1,5 +1,9 @@
 #include "opencl/kernel_kind.h"
 
+#include "sample_types.h"
+
+_Static_assert(SAMPLE_TYPE_COUNT == 8, "kinds are numbered by eight types, here and in KERNEL_KINDS");
+
 unsigned kind_number(kernel_kind k) {
     return ((((k.grid * 8 + (unsigned)k.type) * 2 + k.hybrid) * 2 + k.missing) * 2 + k.normals) * 2 + k.emits;
 }
