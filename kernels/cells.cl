@@ -1,9 +1,9 @@
 /*
  * cells.cl - grids with missing samples: one bit per cube whose eight corners are present
  *
- * Made before kernel 1, only where a sample is missing (not finite, equal to the missing value, or blanked) or a cube
- * is blanked. The cells buffer holds the planes cell_z <= z of the slab, in the layout of sign words. A vertex exists
- * only on an edge of a present cube.
+ * The bits are made before kernel 1, only where a sample is missing (not finite, equal to the missing value, or
+ * blanked) or a cube is blanked. The cells buffer holds the planes cell_z <= z of the slab, in the layout of sign
+ * words. A vertex exists only on an edge of a present cube.
  */
 #ifndef CELLS_CL
 #define CELLS_CL
@@ -20,7 +20,7 @@ inline_always ulong word_present_pair(global const BITS *samples, global const u
     return word & word_shifted(word, next);
 }
 
-/* Blanked cubes of a row; what lies beyond its end is meaningless. */
+/* Blanked cubes of a row; bits past its end are meaningless. */
 inline_always ulong word_blanked(global const uchar *blanked, const slab *s, uint y, uint z, uint w) {
     ulong row = s->blanked_cell_offset + ((ulong)(z - s->sample_z) * (s->ny - 1) + y) * (s->nx - 1);
     return bytes_word(blanked, row + 64ul * w, s->blanked_cell_offset + s->blanked_cell_count);
@@ -63,7 +63,7 @@ inline_always lanes cells_rows(const slab *s, global const ulong *cells, uint y,
 #endif
 }
 
-/* Present cubes, or those at x - 1. */
+/* Bit n: cube n or the cube at x - 1 is present. */
 inline_always lanes cells_before(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
     lanes word = cells_rows(s, cells, y, z, w);
     return word | word << 1 | (w ? cells_rows(s, cells, y, z, w - 1) >> 63 : (lanes)0);

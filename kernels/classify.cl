@@ -1,17 +1,17 @@
 /*
- * classify.cl - kernel 1: sign words, what each row of 64 cubes will emit, and its prefix sums
+ * classify.cl - kernel 1: sign words, vertices and triangles of each row of 64 cubes, and their prefix sums
  *
- * Groups stay and take tiles (count.cl) by ticket. For each, a group
+ * Groups are persistent and take tiles (count.cl) by ticket. For each tile, a group
  *
- * 1. finds on which side the samples of its bricks are and makes the sign words of mixed ones (sign.cl), and those of
- *    the halo: the next row and the next plane of samples;
+ * 1. finds on which side of the isovalue its bricks are, makes the sign words of mixed bricks (sign.cl) and of the
+ * halo: the next row and the next plane of samples;
  * 2. counts the vertices and triangles of every brick that may emit some, row by row, and stores where in the brick
  *    each row's output begins (count.cl);
- * 3. posts the tile's sums and, now or after its other tiles, obtains what all tiles before it emit (scan.cl);
- * 4. adds that to what its bricks have before them, and appends those that emit something to the list for kernel 2.
+ * 3. posts the tile's sums and, now or after its other tiles, obtains the sums over all tiles before it (scan.cl);
+ * 4. adds these to the offsets of its bricks, and appends the bricks that emit something to the list for kernel 2.
  *
- * Loops over a group's items run equally often for all of them and test inside: PoCL 3.1 has been seen to run loops of
- * unequal length too often.
+ * A loop over items has the same number of iterations for all work-items of a group, with a test inside: PoCL 3.1 runs
+ * too many iterations where their numbers differ.
  */
 #ifndef CLASSIFY_CL
 #define CLASSIFY_CL
@@ -20,8 +20,8 @@
 #include "count.cl"
 #include "scan.cl"
 
-/* What all tiles before this one emit. Called by the whole group; shared: 4 words of local memory. With spin_limit 1
- * the tile before is always recomputed: that is how a test gets at the fallback. */
+/* The sums over all tiles before this one. Called by the whole group; shared: 4 words of local memory. With spin_limit
+ * 1 the tile before is always recounted: a test reaches the fallback so. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
@@ -59,8 +59,8 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
     return (uint2)(shared[0], shared[1]);
 }
 
-/* What comes before a brick within the tile becomes what comes before it in the slab: of bricks that emit something,
- * which the list gets, and of the first of a layer, which the host reads. */
+/* Adds the tile's prefix to the offsets of its bricks, which so far count from the start of the tile. Done for bricks
+ * that emit something, which are appended to the list, and for the first brick of a layer, which the host reads. */
 inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emitting, global brick_state *bricks,
                                global uint *active, global uint *head, local uint *shared) {
     uint first = brick_index(s, t.y0, t.z0, 0), layer = layer_bricks(s, t);
@@ -81,7 +81,7 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emittin
         }
 }
 
-/* Looks back for a tile whose sums are posted, posts its prefix and stores what follows from it. */
+/* For a tile whose sums are posted: looks back, posts its prefix and completes its bricks. */
 inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                global brick_state *bricks, global uint *active, global uint *head, global uint *tiles,
                                local uint *shared) {

@@ -3,9 +3,8 @@
  *
  * There are two texts of the kernels. One is for groups of work-items: plain OpenCL C 1.2, with vectors of 2, 3, 4, 8
  * and 16 elements, which every compiler takes and which can be translated to SPIR-V. The other is for a work-item alone
- * in its group, as processors want it: extensions.cl holds what it takes from compilers beyond OpenCL C. Files named
- * _groups or _alone, and those that say so, belong to one of them, the others to both. host/lib/opencl/text.c tells which
- * device gets which.
+ * in its group, for CPUs: extensions.cl holds what it needs beyond OpenCL C. Files named _groups or _alone, and others
+ * that say so, belong to one text, the rest to both. host/lib/opencl/text.c chooses the text for a device.
  *
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
  * WORK_ITEMS, of a group; MISSING; HYBRID.
@@ -20,8 +19,8 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
-/* Where the processor's registers are shorter than a vector, compilers warn that others, for longer ones, would pass it
- * to functions in another way: but all functions are inlined. A loop that is not unrolled as asked is no fault either. */
+/* Two warnings are off. Compilers warn that code for processors with longer registers passes vectors to functions in
+ * another way, but all functions are inlined. A loop that is not unrolled as asked is no fault. */
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
 #pragma clang diagnostic ignored "-Wpass-failed"

@@ -1,6 +1,6 @@
 /*
- * complex_classify.cl - kernel 1 of complexes: which tetrahedra the surface passes through (complex_count.cl), and
- * prefix sums of them and their triangles; then a list of them
+ * complex_classify.cl - kernel 1 of complexes: which tetrahedra are active (complex_count.cl), prefix sums of active
+ * tetrahedra and their triangles; then the list of active tetrahedra
  */
 #ifndef COMPLEX_CLASSIFY_CL
 #define COMPLEX_CLASSIFY_CL
@@ -67,21 +67,21 @@ inline_always void cluster_list(const complex_job *c, uint n, global const uint 
     }
 }
 
-/* Those of its tetrahedra that will be read, four to a cache line. */
+/* Prefetches the tetrahedra of cluster n that will be read; a cache line holds four. */
 inline_always void active_prefetch(global const cluster_state *clusters, uint n, global const uint *tetrahedra) {
     ulong patterns = clusters[n].patterns;
     for (uint m = 0; m < CLUSTER_POINTS; m += 16, patterns >>= 16)
         if (patterns & 0xffff) line_prefetch(tetrahedra + (ulong)CLUSTER_POINTS * n + m);
 }
 
-/* The group's part of an array of so many words. */
+/* Fills an array of `count` words; each group fills its part. */
 inline_always void words_fill(global uint *words, uint count, uint value) {
     uint part = count / (uint)get_num_groups(0) + 1, first = min(part * (uint)get_group_id(0), count);
     uint end = first + min(part, count - first);
     for (uint n = first + (uint)get_local_id(0); n < end; n += WORK_ITEMS) words[n] = value;
 }
 
-/* table and tiles are cleared for the kernels that follow. */
+/* Lists the active tetrahedra, and clears `table` and `tiles` for the kernels that follow. */
 kernel void complex_list(complex_job c, global const uint *tetrahedra, global const cluster_state *clusters,
                          global const uint *active, global uint *state, global const uchar *cases,
                          global active_tetrahedron *out, global uint *table, global uint *tiles) {

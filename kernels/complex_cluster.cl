@@ -1,7 +1,7 @@
 /*
  * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
  *
- * How its points are gone through: complex_cluster_alone.cl, complex_cluster_groups.cl.
+ * The loops over its points are in complex_cluster_alone.cl and complex_cluster_groups.cl.
  */
 #ifndef COMPLEX_CLUSTER_CL
 #define COMPLEX_CLUSTER_CL
@@ -27,10 +27,10 @@ inline_always uint cluster_size(const complex_job *c, uint n) {
     return min(c->tetrahedron_count - n * CLUSTER_TETRAHEDRA, (uint)CLUSTER_TETRAHEDRA);
 }
 
-/* Any bit of each nibble, in its lowest. */
+/* The lowest bit of each nibble: whether any bit of the nibble is set. */
 inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3) & 0x1111111111111111ul; }
 
-/* What the surface makes of a cluster: of the signs of its points, and which of them are missing, a bit each. */
+/* What the surface makes of a cluster. Each of its points has a bit in `inside` and one in `missing`. */
 inline_always cluster_report report_of(ulong inside, ulong missing) {
     ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
     odd = (odd ^ odd >> 2) & mixed;

@@ -17,8 +17,8 @@ inline_always bool cluster_valid(const complex_job *c, uint n, global const uint
     return largest < c->point_count;
 }
 
-/* Samples [16 part, 16 part + 16) of a cluster's; one that is not full repeats its first. One by one: vector gathers of
- * CPUs are no faster. */
+/* Samples 16 part to 16 part + 15 of a cluster; past the end of a cluster that is not full, its first sample. Loaded
+ * one by one: vector gathers of CPUs are no faster. */
 inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, complex_arrays in) {
     global const uint *p = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     global const BITS *s = in.samples;
@@ -33,7 +33,8 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     return vload16(0, samples);
 }
 
-/* The least key of all and the greatest; side by side, as the least of the complements. */
+/* The least and the greatest key. Both are reduced in one vector: the greatest is the complement of the complements'
+ * least. */
 inline_always brick_range keys_range(BITS16 low, BITS16 high) {
     PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);
     PASTE(BITS, 8) m8 = (PASTE(BITS, 8))(min(low8.lo, low8.hi), min(high8.lo, high8.hi));
@@ -43,7 +44,7 @@ inline_always brick_range keys_range(BITS16 low, BITS16 high) {
     return range;
 }
 
-/* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
+/* Checks the cluster's point numbers first. Where one is invalid, *invalid is set and the range is {0, 0}. */
 inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     brick_range range = {0, 0};
     if (!cluster_valid(c, n, in.tetrahedra + (ulong)CLUSTER_POINTS * n)) {
@@ -58,7 +59,7 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
     return keys_range(low, high);
 }
 
-/* Where the surface passes through, and what it makes there. Of points that are valid. */
+/* What the surface makes of a cluster, whose point numbers have to be valid. */
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
     ulong inside = 0, missing = 0;
     for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {

@@ -14,7 +14,7 @@ inline_always bool cluster_valid(const complex_job *c, uint n, global const uint
     return largest < c->point_count;
 }
 
-/* Nothing is known of the cluster's points yet; where one is not valid, its range is empty. */
+/* Checks the cluster's point numbers first. Where one is invalid, *invalid is set and the range is {0, 0}. */
 inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(c, n);
@@ -33,7 +33,7 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
     return range;
 }
 
-/* Where the surface passes through, and what it makes there. Of points that are valid. */
+/* What the surface makes of a cluster, whose point numbers have to be valid. */
 inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
     global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(c, n);

@@ -1,8 +1,8 @@
 /*
  * complex_count.cl - the first stage of kernel 1 of complexes: which tetrahedra the surface passes through
  *
- * A first visit reads every tetrahedron once and keeps the range of its cluster's samples; later ones read only the
- * clusters whose range holds the isovalue. How the clusters of a tile are gone through: complex_count_alone.cl,
+ * A first visit reads every tetrahedron once and keeps the range of its cluster's samples; later visits read only the
+ * clusters whose range holds the isovalue. The loops over the clusters of a tile are in complex_count_alone.cl and
  * complex_count_groups.cl.
  */
 #ifndef COMPLEX_COUNT_CL
@@ -18,10 +18,10 @@ typedef struct cluster_arrays {
     global uint *active, *head;
 } cluster_arrays;
 
-/* Active clusters that a work-item lists at once: work-items meet at the list's end. */
+/* Active clusters that a work-item appends to the list at once: each append is an atomic that all work-items share. */
 #define LIST_BATCH (WORK_ITEMS == 1 ? 64 : 1)
 
-/* What a work-item has seen of clusters: sums over them, and active ones that are not listed yet. */
+/* Of the clusters that a work-item has counted: sums, and the active clusters that are not in the list yet. */
 typedef struct cluster_sums {
     uint crossed, invalid, active_count, active[LIST_BATCH];
 } cluster_sums;
@@ -41,8 +41,8 @@ inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) 
     if (sums->active_count == LIST_BATCH) clusters_append(a, sums);
 }
 
-/* Whether the surface may pass through a cluster; the first visit keeps its range. A recount does not know whether that
- * is there yet. */
+/* Whether the surface may pass through a cluster. The first visit stores the cluster's range. A recount during that
+ * visit cannot use ranges, as another group may not have stored them yet: every valid cluster counts. */
 inline_always bool cluster_mixed(tile_tools k, uint n, cluster_arrays a, bool recount, cluster_sums *sums) {
     if (k.s->ranges_known) return range_sign(k.s, a.ranges[n]) == SIGN_MIXED;
     if (recount) return cluster_valid(k.c, n, a.in.tetrahedra + (ulong)CLUSTER_POINTS * n);
@@ -53,7 +53,7 @@ inline_always bool cluster_mixed(tile_tools k, uint n, cluster_arrays a, bool re
     return !invalid && range_sign(k.s, range) == SIGN_MIXED;
 }
 
-/* Counts a cluster for the whole group's sums *running; none: the work-item has no cluster. */
+/* Counts cluster n and adds it to the group's sums *running. none: this work-item has no cluster. */
 inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a, bool recount, uint2 *running,
                                cluster_sums *sums) {
     cluster_report report = {0, 0, 0, 0};

@@ -1,19 +1,20 @@
 /*
- * complex_count_alone.cl - clusters of a tile where a work-item has it to itself: what the next ones need is asked for
+ * complex_count_alone.cl - clusters of a tile where a work-item has it to itself: it prefetches for the next clusters
  */
 #ifndef COMPLEX_COUNT_ALONE_CL
 #define COMPLEX_COUNT_ALONE_CL
 
 #include "complex_count.cl"
 
-/* Asks for samples of a cluster whose tetrahedra are there: those of every fourth one, which others are next to. */
+/* Prefetches samples of a cluster whose tetrahedra are in the cache: those of every fourth tetrahedron, as the samples
+ * of the others lie close to them. */
 inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
     if (cluster_size(c, n) < CLUSTER_TETRAHEDRA) return;
     for (uint m = 0; m < CLUSTER_POINTS; m += m % 16 < 3 ? 1 : 13)
         line_prefetch(in.samples + in.tetrahedra[(ulong)CLUSTER_POINTS * n + m]);
 }
 
-/* As range_sign() of ranges[0] to [15] is SIGN_MIXED, a bit each. */
+/* Bit n: range_sign() of ranges[n] is SIGN_MIXED, n from 0 to 15. */
 inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges) {
     uint16 first = vload16(0, (global const uint *)ranges), second = vload16(1, (global const uint *)ranges);
     uint16 low = (uint16)(first.even, second.even), high = (uint16)(first.odd, second.odd);
@@ -24,7 +25,8 @@ inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges)
     return mask_pack(convert_char16(mixed));
 }
 
-/* Bit m: cluster first + m is below end and mixed by its range, which is known; its tetrahedra are asked for. */
+/* Bit m: cluster first + m is below `end`, and mixed by its known range. Prefetches the tetrahedra of these clusters.
+ */
 inline_always ulong mixed_prefetch(tile_tools k, uint first, uint end, cluster_arrays a) {
     ulong mixed = 0;
     if (first + 64 <= end)

@@ -7,7 +7,7 @@
 #include "complex_number.cl"
 #include "crossing.cl"
 
-/* The number of the vertex that belongs to place `owner`, of a tetrahedron that owns it. */
+/* The number of the vertex at place `owner`, whose tetrahedron owns it. */
 inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
                                  global const uint *tiles) {
     global const active_tetrahedron *t = active + owner / 4;
@@ -25,7 +25,8 @@ inline_always void edge_vertex(const slab *s, uint2 edge, global const BITS *sam
     out[2] = t == 1 ? p1.z : p0.z + t * (p1.z - p0.z);
 }
 
-/* What tetrahedron a will need of the table, and its neighbour a - FETCH_AHEAD / 2 of what that leads to. */
+/* Prefetches in two stages: the table entries of tetrahedron a; what the entries of a - FETCH_AHEAD / 2 name, and its
+ * samples and points. */
 inline_always void tetrahedron_prefetch(const complex_job *c, uint a, global const BITS *samples,
                                         global const float *points, global const active_tetrahedron *active,
                                         global const uint *table, global const uint *entries) {
@@ -40,7 +41,7 @@ inline_always void tetrahedron_prefetch(const complex_job *c, uint a, global con
     }
 }
 
-/* An index that varies would put the numbers into memory. */
+/* Element n, selected: with a variable index the compiler would put the numbers into memory. */
 inline_always uint number_at(uint4 numbers, uint n) {
     const uint2 pair = n & 2 ? numbers.hi : numbers.lo;
     return n & 1 ? pair.y : pair.x;

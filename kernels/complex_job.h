@@ -1,19 +1,19 @@
 /*
- * complex_job.h - what host and kernels share about a tetrahedral complex, beside slab.h, of which the isovalue's part
- * is used
+ * complex_job.h - what host and kernels share about a tetrahedral complex; of slab.h only isovalue, sample keys and the
+ * limit of the scan apply
  */
 #ifndef COMPLEX_JOB_H
 #define COMPLEX_JOB_H
 
 #include "slab.h"
 
-/* The unit that a range of samples is kept for: so many tetrahedra after each other, whose patterns fill 64 bits. */
+/* A cluster is 16 consecutive tetrahedra, whose patterns fill 64 bits. A range of samples is kept for each cluster. */
 enum { CLUSTER_TETRAHEDRA = 16 };
 
 /* What kernel 1 finds out about a cluster that the surface passes through. */
 typedef struct cluster_state {
-    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where it does not pass through n */
-    slab_u32 active_before; /* active tetrahedra before it in its tile */
+    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where n is not active */
+    slab_u32 active_before; /* active tetrahedra before the cluster in its tile */
     slab_u32 triangles_before;
 } cluster_state;
 
@@ -22,13 +22,13 @@ typedef struct cluster_state {
 typedef struct active_tetrahedron {
     slab_u32 points[4];
     slab_u32 pattern;  /* bit n: point n is inside */
-    slab_u32 triangle; /* number of its first one */
-    slab_u32 vertex;   /* of its first own one, counted from the first of its tile */
-    slab_u32 owned;    /* bit n: it is the first tetrahedron with the edge of place n, whose vertex it owns */
+    slab_u32 triangle; /* index of its first triangle */
+    slab_u32 vertex;   /* index of the first vertex it owns, from its tile's first */
+    slab_u32 owned;    /* bit n: it owns the vertex on edge n, as the first tetrahedron with that edge */
 } active_tetrahedron;
 
-/* Of each of the 16 cases: how many edges are crossed and triangles made; the two ends of each edge; the triangles'
- * corners, by place. Derived from the tables of host/lib/grid/tables.h. */
+/* The table of the 16 cases. For each: the number of crossed edges and of triangles; the two ends of each edge; the
+ * triangles' corners, as places of edges. Derived from the tables of host/lib/grid/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
 /* The head of the state buffer, before the tiles of kernel 1. */
@@ -36,7 +36,7 @@ enum {
     HEAD_TICKETS, /* one for each kernel */
     HEAD_ACTIVE_CLUSTERS = HEAD_TICKETS + 5,
     HEAD_CROSSED, /* edges of active tetrahedra, counted once for each */
-    HEAD_INVALID, /* not 0: a tetrahedron has a point that the complex has not */
+    HEAD_INVALID, /* not 0: a tetrahedron has a point number that is not below point_count */
     HEAD_FULL,    /* not 0: the table of edges is too small */
     HEAD_ACTIVE,  /* totals */
     HEAD_TRIANGLES,

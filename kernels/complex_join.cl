@@ -2,9 +2,10 @@
  * complex_join.cl - one vertex for each crossed edge: edges of active tetrahedra that have the same two points are
  * joined, and the first tetrahedron with an edge owns its vertex
  *
- * A table with open addressing, proportional to the crossed edges. An entry is the place of an edge in the list of
- * active tetrahedra, where its points are read, so that 32-bit atomics are enough: an entry once taken only changes
- * to an earlier place of the same edge. In the end it holds the first, whatever the order of the insertions.
+ * The edges go into a hash table with open addressing, whose size is proportional to their number. An entry is the
+ * place of an edge in the list of active tetrahedra, from which its points are read, so 32-bit atomics suffice. Once
+ * taken, an entry only changes to an earlier place of the same edge: in the end it holds the first place, whatever the
+ * order of insertions.
  */
 #ifndef COMPLEX_JOIN_CL
 #define COMPLEX_JOIN_CL
@@ -30,8 +31,8 @@ inline_always uint edges_of(uint a, global const active_tetrahedron *active, glo
     return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
 }
 
-/* Enters an edge, from the entry where it is looked for first; returns its entry, or 0 with *full set where none was
- * found. */
+/* Enters an edge; `entry` is where the search begins. Returns the edge's entry, or 0 with *full set where none was free
+ * within probe_limit. */
 inline_always uint edge_enter(const complex_job *c, uint place, uint entry, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
     uint2 edge = edge_points(active, place, cases);

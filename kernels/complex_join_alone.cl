@@ -6,11 +6,12 @@
 
 #include "complex_join.cl"
 
-/* Edges that a work-item has met lately: neighbours in the list share most. One more is never met. */
+/* A cache of the edges that a work-item has met lately: neighbours in the list share most edges. One more entry takes
+ * edges that do not exist and is never matched. */
 enum { RECENT_EDGES = 2048 };
 
-/* New ones wait between being hashed and entered: what is fetched first is asked for at once, what that leads to half
- * way. */
+/* A new edge is entered EDGE_WAIT new edges after it was hashed. Prefetch has two stages: its entry in the table at
+ * once, and the tetrahedron which that entry names EDGE_WAIT / 2 edges later. */
 enum { EDGE_WAIT = 16, EDGE_QUEUE = 32 };
 
 typedef struct edge_work {
@@ -20,11 +21,11 @@ typedef struct edge_work {
     uint hashed, asked, entered; /* new edges so far */
 } edge_work;
 
-/* An edge with this bit has been met before, at the place in the other bits. */
+/* This bit marks an edge that has been met before; the other bits are the place where. */
 #define EDGE_MET 0x80000000u
 
-/* Where in the table the edges of a tetrahedron are looked for first, which is asked for. Without branches, as nothing
- * foretells which are new. */
+/* Stores for each edge of tetrahedron a where the search in the table begins, and prefetches that entry; or, for an
+ * edge met lately, the place where it was met. Without branches: which edges are new is unpredictable. */
 inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, global uint *entries,
                               edge_work *work) {
@@ -46,7 +47,8 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
     work->hashed = hashed;
 }
 
-/* Asks for what the table leads to, and enters edges, of those that have waited so long. */
+/* For queued edges: prefetches the tetrahedra that their table entries name after half of `wait`, and enters the edges
+ * after all of it. */
 inline_always void edges_enter(const complex_job *c, uint wait, global const active_tetrahedron *active,
                                global const uchar *cases, volatile global uint *table, global uint *entries,
                                edge_work *work, uint *full) {
@@ -77,10 +79,10 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
         }
         edges_enter(&c, 0, active, cases, table, entries, &work, &full);
         for (uint place = 4 * first; place < 4 * (first + count); place++) {
-            uint entry = entries[place]; /* of an edge met before: where that is found */
+            uint entry = entries[place]; /* of an edge met before: the place whose entry it shares */
             entries[place] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : place];
         }
-        if (full) break; /* all begins again with a larger table */
+        if (full) break; /* the host starts again with a larger table */
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
 }

@@ -1,12 +1,12 @@
 /*
- * complex_number.cl - numbers of vertices: those that a tetrahedron owns follow those of the tetrahedra before it
+ * complex_number.cl - vertex numbers: vertices that a tetrahedron owns follow those of the tetrahedra before it
  */
 #ifndef COMPLEX_NUMBER_CL
 #define COMPLEX_NUMBER_CL
 
 #include "complex_join.cl"
 
-/* Which vertices tetrahedron a owns. */
+/* Which vertices tetrahedron a owns: bit n for the vertex on its crossed edge n. */
 inline_always uint owned_edges(uint a, global const active_tetrahedron *active, global const uchar *cases,
                                global const uint *table, global const uint *entries) {
     uint owned = 0, edges = edges_of(a, active, cases);
@@ -14,7 +14,7 @@ inline_always uint owned_edges(uint a, global const active_tetrahedron *active, 
     return owned;
 }
 
-/* The vertices of a tile of active tetrahedra; out NULL: nothing is stored. */
+/* Counts the vertices of a tile of active tetrahedra; stores numbers and owned edges unless `out` is NULL. */
 inline_always uint2 tile_number(tile_tools k, uint number, global const active_tetrahedron *active,
                                 global const uchar *cases, global const uint *table, global const uint *entries,
                                 global active_tetrahedron *out) {
@@ -44,7 +44,7 @@ inline_always void active_tile_settle(tile_tools k, uint number, global const ac
         head[HEAD_VERTICES] = tile_before(k.tiles, number + 1, TILE_VERTICES);
 }
 
-/* Numbers the vertices in the order of their owners. tiles: cleared. */
+/* Numbers the vertices in the order of their owners. `tiles` has to be cleared. */
 kernel void complex_number(slab s, complex_job c, global active_tetrahedron *active, global const uchar *cases,
                            global uint *state, global uint *tiles, global const uint *table,
                            global const uint *entries) {

@@ -1,8 +1,8 @@
 /*
  * complex_tile.cl - sums over tiles, of clusters in kernel 1 and of active tetrahedra in the numbering (scan.cl)
  *
- * A tile's items are counted by the group's work-items, each taking one at a time; what comes before an item in its
- * tile is kept with the item, what comes before the tile with the tile.
+ * The work-items of a group count a tile's items, one each at a time. The prefix sum within the tile is stored with the
+ * item, the prefix sum over the tiles before with the tile.
  */
 #ifndef COMPLEX_TILE_CL
 #define COMPLEX_TILE_CL
@@ -18,11 +18,11 @@ typedef struct tile_tools {
     local uint2 *sums;  /* one per work-item and one more */
 } tile_tools;
 
-/* Where a work-item has a tile to itself it asks for what its items will need some items before: what is fetched first
- * at this distance, what that leads to at half of it. */
+/* Where a work-item has a tile to itself, it prefetches in two stages: an item's table entries FETCH_AHEAD items
+ * before, what these entries name FETCH_AHEAD / 2 items before. */
 enum { FETCH_AHEAD = 16 };
 
-/* The group's next number. Called by all of it. */
+/* Takes the group's next tile number. Called by the whole group. */
 inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     group_barrier();
     if (get_local_id(0) == 0) shared[0] = atomic_inc(ticket);
@@ -32,7 +32,7 @@ inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     return number;
 }
 
-/* What work-items before this one have; *running becomes what all have on top of it. */
+/* Returns *running plus the values of the work-items before this one; adds the values of all to *running. */
 inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums) {
     if (WORK_ITEMS == 1) {
         *running += value;
@@ -55,7 +55,7 @@ inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums)
     return before;
 }
 
-/* What all tiles before tile `number` have, once that is settled. */
+/* The sum over all tiles before tile `number`; valid once the last of them has posted its prefix. */
 inline_always uint tile_before(global const uint *tiles, uint number, uint channel) {
     return number ? tiles[TILE_WORDS * (number - 1) + channel] & SCAN_VALUE : 0;
 }
@@ -66,8 +66,8 @@ inline_always void tile_post(tile_tools k, uint number, uint2 sums) {
     scan_post_sum(k.tiles, number, TILE_TRIANGLES, sums.y);
 }
 
-/* Looks back from a tile for what all tiles before it have; where that is not complete shared[1] is behind the tile
- * that lacks its sum. */
+/* Looks back from a tile for the sum over all tiles before it. Where that is not complete, shared[1] - 1 is the tile
+ * whose sum is missing. */
 inline_always bool tile_look_back(tile_tools k, uint number, uint channel, uint *prefix) {
     uint back = number;
     bool done = scan_look_back(k.tiles, channel, &back, prefix, k.s->spin_limit);
@@ -75,13 +75,14 @@ inline_always bool tile_look_back(tile_tools k, uint number, uint channel, uint 
     return done;
 }
 
-/* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else the tile
- * *missing is to be recounted first. With spin_limit 1 the tile before always is: so a test gets at that. */
+/* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else tile
+ * *missing has to be recounted first. With spin_limit 1 the tile before is always recounted: a test reaches the
+ * fallback so. */
 inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missing) {
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
-        uint vertices = 0, triangles = 0; /* of clusters: active tetrahedra for vertices */
+        uint vertices = 0, triangles = 0; /* in kernel 1 `vertices` counts active tetrahedra */
         k.shared[1] = number;
         done = (look || k.s->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
                tile_look_back(k, number, TILE_TRIANGLES, &triangles);

@@ -1,9 +1,9 @@
 /*
- * count.cl - the second stage of kernel 1: what the rows of a tile's bricks emit, and where in the brick it begins
+ * count.cl - the second stage of kernel 1: how much each row of a brick emits, and where in the brick its output begins
  *
- * A tile is a run of bricks: tile_rows rows of bricks in one layer, or tile_layers whole layers. The words of its
- * samples are where sign.cl left them; of the halo, the next row and the next plane of samples, which other tiles own,
- * they are in scratch. How a layer of bricks is gone through: count_alone.cl, count_groups.cl.
+ * A tile is a run of bricks: tile_rows rows of bricks in one layer, or tile_layers whole layers. sign.cl has made
+ * the words of its samples. The halo is the next row and the next plane of samples, which other tiles own; its words
+ * are in scratch. The loops over a layer of bricks are in count_alone.cl and count_groups.cl.
  */
 #ifndef COUNT_CL
 #define COUNT_CL
@@ -31,8 +31,8 @@ typedef struct tile_words {
     global brick_state *bricks;
 } tile_words;
 
-/* Scratch holds the plane z1, brick by brick the eight words of its rows (of the last brick, at y1, but one), then for
- * every plane of the tile the words of row y1. */
+/* Scratch holds the words of the halo: plane z1, brick by brick, eight rows each (of the bricks that begin at y1, one
+ * row); then row y1 of every plane of the tile. */
 inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
     return BRICK_ROWS * ((ulong)(y - t.y0) / BRICK_ROWS * s->words_x + w) + y % BRICK_ROWS;
 }
@@ -41,7 +41,7 @@ inline_always ulong halo_row(const slab *s, tile t, uint z, uint w) {
     return BRICK_ROWS * (ulong)(s->tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
 }
 
-/* The word of a row in the grid, which the words of the next rows of its brick follow (not at y1). */
+/* The word of a row in the grid. The words of the next rows of its brick follow it, except in row y1. */
 inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
     if (z >= t.z1) return k.scratch + halo_plane(s, t, y, w);
     if (y >= t.y1) return k.scratch + halo_row(s, t, z, w);
@@ -88,7 +88,7 @@ inline_always uint layer_bricks(const slab *s, tile t) {
     return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
 }
 
-/* LANES rows of samples straight from the samples. */
+/* The words of LANES rows, made of the samples; 0 outside the grid. */
 inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global const BITS *samples) {
     ulong word[LANES];
     for (uint n = 0; n < LANES; n++)
@@ -100,7 +100,7 @@ inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global co
 #endif
 }
 
-/* The fallback of the scan: one work-item's share of a tile's sums, straight from the samples. */
+/* The fallback of the scan: one work-item's share of a tile's sums, made of the samples alone. */
 inline_always emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
     tile t = tile_locate(s, number);
     emission sums = {0, 0, 0};
@@ -109,8 +109,7 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
         uint n = first + (uint)get_local_id(0);
         if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows * LANES, z = t.z0 + n / s->words_x / rows;
-        lanes words[8] = {
-            0}; /* of the cubes' four rows, at w and w + 1; moved up, as an index that varies needs memory */
+        lanes words[8] = {0}; /* the cubes' four rows, at w and w + 1; shifted in, as a variable index needs memory */
 #pragma unroll 1
         for (uint m = 0; m < 8; m++) {
 #pragma unroll

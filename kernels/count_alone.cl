@@ -1,19 +1,19 @@
 /*
- * count_alone.cl - counting where a work-item has bricks to itself: it skips those that are uniform and whose
- * neighbours are the same
+ * count_alone.cl - counting where a work-item has bricks to itself: it skips uniform bricks whose neighbours are on the
+ * same side
  */
 #ifndef COUNT_ALONE_CL
 #define COUNT_ALONE_CL
 
 #include "count.cl"
 
-/* Samples of rows that exist. */
+/* For LANES rows from y on: the samples of word w that exist. */
 inline_always lanes rows_valid(const slab *s, uint y, uint w) {
     return lanes_select(LANE_NUMBERS + y < (lanes)s->ny) & word_valid(s, w);
 }
 
-/* Whether the samples that follow a uniform brick in x, y or z have one on the other side. Those of its tile that are
- * uniform too have not where they are on its side. */
+/* Whether any sample that follows a uniform brick in x, y or z is on the other side. Bricks of the same tile that are
+ * uniform decide by their sign; in others the words are read. */
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {
@@ -38,8 +38,8 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
     return false;
 }
 
-/* Whether a brick emits something, or, where it is mixed, may. The bricks at higher x, y and z tell at once where they
- * are of this tile and on its side. */
+/* Whether a uniform brick emits something; true for a mixed brick, which may. Where the seven bricks at higher x, y and
+ * z are in this tile and on the same side, their signs suffice. */
 inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
     const uint number = brick_index(s, y, z, w), sign = k.bricks[number].sign;
     if (sign == SIGN_MIXED) return true;
@@ -53,7 +53,7 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
     return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign);
 }
 
-/* The words that cubes of a brick take from one brick: where those of its planes are, and of the plane after. */
+/* Where the words are that the cubes of a brick take from one brick in x and y: its planes, and the plane after. */
 typedef struct column {
     global const ulong *first, *after;
     uint stride; /* from plane to plane */
@@ -72,7 +72,7 @@ inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, ti
     return c;
 }
 
-/* Of the brick, of that at higher x, and of the rows after both. */
+/* Columns of the brick, of the brick at higher x, and of the bricks at higher y of both. */
 typedef struct brick_columns {
     column at, next, last, last_next;
 } brick_columns;
@@ -87,7 +87,7 @@ inline_always global const ulong *column_row(column c, uint plane, bool after) {
     return after ? c.after : c.first + plane * c.stride;
 }
 
-/* Rows y to y + 7 and y + 1 to y + 8 of a plane, which may be the one after the brick. */
+/* Loads rows y to y + 7 into *a and y + 1 to y + 8 into *b, of a plane of the brick or of the plane after. */
 inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
     lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
     lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
@@ -97,7 +97,7 @@ inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_ro
     *b = rows_shifted(lanes_up(at, last), lanes_up(next, last_next));
 }
 
-/* Of each lane, what the lanes before it have in all. */
+/* Exclusive prefix sum over lanes. */
 inline_always lanes lanes_before(lanes x) {
     x = (lanes)(0, x.s0123, x.s456);
     x += (lanes)(0, x.s0123, x.s456);
@@ -133,7 +133,8 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
     return mask;
 }
 
-/* Whether a run of bricks and those at higher x, y and z are known to be all on one side: nothing of it emits. */
+/* Whether a run of bricks and the bricks at higher x, y and z are known to be on one side, so that the run emits
+ * nothing. */
 inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, uint count,
                                global const brick_range *ranges) {
     const uint up = y + BRICK_ROWS < s->ny ? s->words_x : 0;
@@ -149,13 +150,13 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
            range_sign(s, here[up + deep + across]) == sign;
 }
 
-/* What a group needs of local memory: nothing here. */
+/* A group needs no local memory here. */
 typedef struct count_room {
     uint none;
 } count_room;
 
-/* Counts the layer that begins with plane z, brick by brick; *sums runs on from brick to brick. What comes before a
- * brick is stored within the tile. *emitting: how many bricks of the tile emit something. */
+/* Counts the layer that begins with plane z, brick by brick, and adds to *sums. A brick stores the sums before it, from
+ * the start of the tile. *emitting: how many bricks of the tile emit something. */
 inline_always void layer_count(const slab *s, tile t, uint z, tile_words k, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
                                emission *sums, global uint *emitting, local count_room *room) {

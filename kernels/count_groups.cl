@@ -6,7 +6,7 @@
 
 #include "count.cl"
 
-/* Brick n of a layer of the tile: x, then y. */
+/* A brick of a layer of the tile; bricks are numbered in x, then y. */
 typedef struct brick {
     uint w, y0;
 } brick;
@@ -40,7 +40,7 @@ inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w
     return report;
 }
 
-/* What a brick emits: sums over its rows, and which of them have any. */
+/* What a brick emits: sums over its rows; bit n of `rows`: row n emits something. */
 typedef struct brick_report {
     emission e;
     uint rows;
@@ -56,7 +56,7 @@ inline_always void emission_add(emission *sum, emission e) {
     sum->vertices += e.vertices, sum->triangles += e.triangles, sum->cells += e.cells;
 }
 
-/* Brick `number`, whose rows are rows[0] to [31]: where in it the work-item's row begins, and what it emits. */
+/* For brick `number` with rows[0] to [31]: stores where in it the work-item's row begins, and what the brick emits. */
 inline_always void brick_sum(uint number, const local row_report *rows, global ulong *offsets,
                              global ushort *triangle_offsets, local brick_report *out) {
     const uint place = (uint)get_local_id(0) % BRICK_WORDS;
@@ -77,10 +77,9 @@ inline_always void brick_sum(uint number, const local row_report *rows, global u
     if (place == 0) *out = all;
 }
 
-/* Counts the layer that begins with plane z0; *sums runs on from brick to brick. What comes before a brick is stored
- * within the tile. *emitting: how many bricks of the tile emit something. Nothing but the sums lives across a barrier,
- * and work-items without a row count another one's, as compilers have gone wrong on either. All work-items leave with
- * the same sums. */
+/* Counts the layer that begins with plane z0, and adds to *sums, equally in all work-items. A brick stores the sums
+ * before it, from the start of the tile. *emitting: how many bricks of the tile emit something. Only the sums live
+ * across a barrier, and a work-item without a row counts another one's: some compilers make wrong code otherwise. */
 inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
                                emission *sums, global uint *emitting, local count_room *room) {

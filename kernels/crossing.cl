@@ -50,12 +50,12 @@ inline_always float divide(float a, float b) {
     ulong kept = quotient >> drop, rest = quotient - (kept << drop), half_way = 1ul << (drop - 1);
     kept += rest > half_way || (rest == half_way && (inexact || (kept & 1)));
     int field = exponent + drop + 150;
-    uint magnitude = (uint)kept; /* rounded up to no 25th bit: such quotients end a last place or more below it */
+    uint magnitude = (uint)kept; /* never rounds up to 25 bits: quotients below 2^n are a last place or more below it */
     magnitude = magnitude >> 23 ? ((uint)field << 23) | (magnitude & 0x7fffff) : magnitude;
     return as_float(sign | magnitude);
 }
 
-/* For 1 <= a <= 4: a root of 25 bits, the last of which decides the rounding (no root lies half way). */
+/* For 1 <= a <= 4: makes 25 bits of the root; the last bit decides the rounding, as no root lies half way. */
 inline_always float root(float a) {
     uint mantissa;
     int exponent;
@@ -77,7 +77,7 @@ inline_always float root(float a) {
 #define ISOVALUE(s)  ((s)->isovalue32)
 #endif
 
-/* Where the isovalue lies between the samples at the two ends; halved first where their difference overflows. */
+/* Where the isovalue lies between the samples at the two ends. All three are halved where the difference overflows. */
 inline_always float crossing(REAL a, REAL b, REAL iso) {
 #if FLOATING
     REAL scale = isinf(b - a) ? (REAL)0.5f : (REAL)1;

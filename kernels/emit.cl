@@ -1,10 +1,10 @@
 /*
  * emit.cl - kernel 2: vertices and triangles of the bricks that have any
  *
- * Runs over the list that kernel 1 left. Groups stay and take runs of active bricks by ticket. How a brick is emitted
- * depends on who shares it: emit_numbers.cl and emit_brick.cl, or emit_rows.cl. Triangles come from the table of a cube
- * (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron, or of the loops that the
- * hybrid method has.
+ * Kernel 1 has made the list of active bricks; groups are persistent and take runs of them by ticket. A work-item alone
+ * emits a brick by emit_numbers.cl and emit_brick.cl, a group by emit_rows.cl. Triangles come from a table of a cube's
+ * cases (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron or, for the hybrid
+ * method, from loops of crossed edges.
  */
 #ifndef EMIT_CL
 #define EMIT_CL
@@ -15,8 +15,8 @@
 #include "emit_rows.cl"
 #endif
 
-/* Active bricks that a group takes at once: many where there are many, so that groups write to memory of their own,
- * page by page, and a new page does not hold up two of them. */
+/* Active bricks that a group takes at once. Where there are many, runs are long: groups then write to different pages
+ * of memory, and the first touch of a page delays only one group. */
 #define RUN_LEAST      8
 #define RUN_MOST       512
 #define RUNS_PER_GROUP 16

@@ -1,13 +1,15 @@
 /*
- * emit_brick.cl - kernel 2 where a work-item has bricks to itself: a brick in passes over its 32 rows, eight at a time
+ * emit_brick.cl - kernel 2 where a work-item has bricks to itself: passes over the 32 rows of a brick, eight rows at
+ * once
  *
  * Steps 1 and 2 are in emit_numbers.cl.
- * 3. Vertices are made of the list, in vector code.
- * 4. Active cubes are listed with their cases; a cube takes from the table what its case names, as lanes of the numbers
- *    of its four rows.
+ * 3. Vector code makes the vertices of the listed edges.
+ * 4. Active cubes are listed with their cases. A case names entries of the table of numbers (NUMBER_LANE), which become
+ *    the indices of the cube's triangles.
  *
- * A row has three active cubes, more or less. So as many indices are copied as most cases have. Positions and triangles
- * go through private memory, batch by batch, and from there to the mesh in whole cache lines.
+ * Cases have different numbers of indices, which are unpredictable. So a fixed number is copied for each cube, and the
+ * next cube overwrites the surplus. Positions and triangles go through private memory, batch by batch, and from there
+ * to the mesh in whole cache lines.
  */
 #ifndef EMIT_BRICK_CL
 #define EMIT_BRICK_CL
@@ -25,7 +27,7 @@ inline_always uint pattern_at(ulong8 corners, uint bit) {
     return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
 }
 
-/* Copies words of 4 bytes. Whole cache lines pass the caches by, which saves reading what is overwritten. */
+/* Copies words of 4 bytes. Whole cache lines bypass the caches, which saves reading lines that are overwritten. */
 inline_always void lines_store(const void *words, uint count, global void *out) {
     const uint *from = (const uint *)words;
     global uint *to = (global uint *)out;
@@ -42,7 +44,7 @@ inline_always void lines_store(const void *words, uint count, global void *out) 
 
 #ifdef REAL
 
-/* The samples at the ends of listed edges; of points it only asks for the cache lines. */
+/* Loads the samples at the ends of listed edges, and prefetches their points. */
 inline_always void batch_gather(const slab *s, const uint *list, uint count, grid_arrays in, brick_work *work) {
     for (uint n = 0; n < count; n++) {
         const ulong place = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
@@ -58,7 +60,8 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
     }
 }
 
-/* By steps of a fixed length into private arrays, which is what compilers turn into vector code. */
+/* Makes a batch of vertices, BATCH_STEP at a time into private arrays: loops of fixed length, which compilers
+ * vectorise. */
 inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
                                mesh_buffers mesh, brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
@@ -72,7 +75,7 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
             position_make(s, brick, list[first + n], t[n], positions + 3 * n);
 #endif
         }
-#if GRID /* what lies past the end of the list is no place in a grid */
+#if GRID /* items past the end of the list are no valid places */
         for (uint n = 0; n < left; n++) {
             uint place = list[first + n];
             position_between(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
@@ -105,8 +108,9 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Lists the active cubes of the rows in mask: a cube's place in the table of numbers from bit CASE_BITS on, below that
- * its case. First all patterns are made, as what is stored in whole vectors is not to be read in parts at once. */
+/* Lists the active cubes of the rows in mask: a cube's index in the table of numbers from bit CASE_BITS on, below that
+ * its case. With mask registers, patterns of all rows are made first: a part of a vector that was just stored could not
+ * be loaded by store forwarding. */
 #ifdef MASK_REGISTERS
 inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
     bytes64 patterns = 0;
@@ -162,8 +166,8 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
 }
 #endif
 
-/* The vertices of a cube's triangles, by lanes: numbers of its four rows from its first sample on. More of them than it
- * has are stored. `number` is that of the cube's own row. */
+/* Stores the vertex numbers of a cube's triangles, which its case names as lanes of the cube's four rows (NUMBER_LANE).
+ * Surplus numbers follow them. `number` points to the entry of the cube's first sample. */
 #ifdef MASK_REGISTERS /* compilers know no such shuffle by name */
 inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {
     int16 lane = convert_int16(vload16(0, lanes_named));
@@ -202,7 +206,7 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
 
-/* The samples of the rows that emit and of those that their edges lead to. */
+/* Prefetches the samples of the rows that emit, and of the rows after them in y and z, where their edges end. */
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
     uint before = 0;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
@@ -216,7 +220,7 @@ inline_always void samples_prefetch(const slab *s, corner c, uint mask, global c
     }
 }
 
-/* Asks ahead for what kernel 1 left. */
+/* Prefetches kernel 1's results for a brick. */
 inline_always void brick_prefetch(const slab *s, uint number, corner c, row_results k1) {
     uint up = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
          deep = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
@@ -232,14 +236,14 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
     line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up + deep));
 }
 
-/* Of the bricks that follow the first in the list. */
+/* Prefetches for the bricks after the first in the list: results of kernel 1 two bricks ahead, samples one ahead. */
 inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
                                  global const BITS *samples) {
     if (count > 2) brick_prefetch(s, active[2], brick_corner(s, active[2]), k1);
     if (count > 1) samples_prefetch(s, brick_corner(s, active[1]), k1.bricks[active[1]].rows, samples);
 }
 
-/* What a group needs of local memory: nothing here. */
+/* A group needs no local memory here. */
 typedef struct emit_room {
     uint none;
 } emit_room;

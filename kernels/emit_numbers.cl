@@ -2,12 +2,12 @@
  * emit_numbers.cl - where a work-item has bricks to itself: a brick's crossed edges and the numbers of their vertices
  *
  * 1. The sign words of the brick and its neighbours' next rows and planes give all crossed edges and active cubes.
- * 2. Crossed edges are listed, row by row, and numbered in a table with a place for every edge that a cube of the brick
- *    has: its own and, from what kernel 1 left, its neighbours'. The table is never cleared: only crossed edges are
- *    looked up.
+ * 2. Crossed edges are listed, row by row, and numbered in a table with an entry for every edge that a cube of the
+ * brick has: those that the brick owns and, numbered from kernel 1's results, those that its neighbours own. The table
+ * is never cleared: only crossed edges are looked up.
  *
- * A row has an edge of each type, more or less. So lists get one item of a row at the least: a branch that cannot be
- * foreseen costs more. What is too much is overwritten by what comes next.
+ * A row has about one crossed edge of each type. Each row appends at least one item to a list, even where it has none,
+ * as an unpredictable branch costs more. The next append overwrites the surplus item.
  */
 #ifndef EMIT_NUMBERS_CL
 #define EMIT_NUMBERS_CL
@@ -18,17 +18,17 @@
 
 #define NUMBER_STEP NUMBER_TYPES(HYBRID)
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
-#define LIST_MORE   16 /* items that are stored past its end, at the most */
+#define LIST_MORE   16 /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
 #define CASE_ITEMS  (HYBRID ? 18 : 30) /* indices that a cube has at the most */
 
-/* Sign words of the brick's rows (0) and those of the next brick in y (1), of its planes and the next one. */
+/* Sign words of the brick's rows [0] and of the next brick in y [1], in the brick's planes and the next plane. */
 typedef struct brick_signs {
     sample_rows rows[2][NUMBER_PLANES];
 } brick_signs;
 
-/* A brick under way. */
+/* What a work-item needs of private memory for a brick. */
 typedef struct brick_work {
     ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
@@ -59,7 +59,8 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 
 /* ------------------------------------------------------------------------------------------------------------ signs */
 
-/* The words of the brick that lies so many bricks further on. */
+/* The words of the brick that lies 0 or 1 bricks further in x, y and z (across, up, deep); outside the grid all are 0.
+ */
 inline_always global const ulong *words_beside(const slab *s, corner c, uint number, uint across, uint up, uint deep,
                                                row_results k1) {
     bool exists = c.x + 64 * across < s->nx && c.y + BRICK_ROWS * up < s->ny && c.z + BRICK_PLANES * deep < s->nz;
@@ -80,14 +81,14 @@ inline_always void signs_load(const slab *s, corner c, uint number, row_results 
     }
 }
 
-/* The rows of plane z that follow those of the brick by one. */
+/* Rows 1 to 8 of plane z, where the brick has rows 0 to 7. */
 inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
     const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
     sample_rows r = {lanes_up(here->at, up->at.s0), lanes_up(here->next, up->next.s0)};
     return r;
 }
 
-/* What cubes_list needs to tell cubes' cases. */
+/* Stores the words from which cubes_list takes the patterns of cubes. */
 inline_always void corners_store(const brick_signs *signs, brick_work *work) {
     for (uint z = 0; z < NUMBER_PLANES; z++) {
         ulong16 both;
@@ -120,7 +121,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
 /* Whether the first cube of a row of the brick is odd. */
 inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
 
-/* Numbers the crossed edges of a row of another brick. */
+/* Numbers the crossed edges of a row of another brick. Where there are none, column 64 gets a meaningless number. */
 inline_always void row_number(uint *number, ulong crossed, uint first) {
     do {
         number[NUMBER_STEP * lowest_bit(crossed)] = first++;
@@ -128,7 +129,7 @@ inline_always void row_number(uint *number, ulong crossed, uint first) {
     } while (crossed);
 }
 
-/* Lists and numbers the brick's own vertices; returns how many there are. */
+/* Lists and numbers the vertices that the brick owns; returns their count. */
 inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
@@ -150,7 +151,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
     return count;
 }
 
-/* Crossings of the next plane that the brick's cubes have. */
+/* Numbers the crossings in the next plane that the brick's cubes have. */
 inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
     const uint z = c.z + BRICK_PLANES, w = c.x / 64;
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
@@ -171,7 +172,7 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     }
 }
 
-/* Crossings of the next row of each plane. */
+/* Numbers the crossings in the next row of each plane. */
 inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, row_results k1,
                                     brick_work *work) {
     const uint y = c.y + BRICK_ROWS, w = c.x / 64;
@@ -211,7 +212,8 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
     }
 }
 
-/* Crossings of the next column, of rows y, y + 1 and planes z, z + 1. Last, since others store too much there. */
+/* Numbers the crossings in the next column, x = 64. Called last, as the functions above leave meaningless numbers there
+ * for rows without crossings. */
 inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
     const uint w = c.x / 64 + 1;
     if (w >= s->words_x) return;

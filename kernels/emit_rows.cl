@@ -1,10 +1,11 @@
 /*
  * emit_rows.cl - kernel 2 where the work-items of a group share bricks: each takes a row of 64 cubes
  *
- * For each brick the group makes a table in local memory: the crossed edges of its rows of samples, and of the rows
- * after them in y and z, whose edges its cubes name too, and where the numbers of their vertices begin. The number of a
- * vertex is that beginning plus the crossed edges of its type at lower x: a population count, made where a triangle
- * names it. So nothing of a cube is kept, and nothing private is indexed by a variable, which would need memory.
+ * For each brick the group makes a table in local memory. It holds the crossed edges of the brick's rows of samples and
+ * of the rows after them in y and z, which its cubes name too, and the first vertex number of each row and type. The
+ * number of a vertex is that first number plus the crossed edges of its type at lower x: a population count, made where
+ * a triangle names the vertex. So nothing is stored per cube, and no private array has a variable index, which would
+ * put it into memory.
  */
 #ifndef EMIT_ROWS_CL
 #define EMIT_ROWS_CL
@@ -17,7 +18,7 @@
 #define TABLE_ROWS_Y (BRICK_ROWS + 1)
 #define TABLE_ROWS   (TABLE_ROWS_Y * (BRICK_PLANES + 1))
 
-/* Of a brick; rows in y, then z. */
+/* The table of a brick; rows in y, then z. */
 typedef struct row_table {
     ulong crossed[EDGE_TYPES][TABLE_ROWS];
     ulong packed[TABLE_ROWS]; /* owner */
@@ -34,14 +35,14 @@ typedef struct emit_room {
     row_table tables[WORK_ITEMS / BRICK_WORDS];
 } emit_room;
 
-/* What a work-item needs of private memory: nothing here. */
+/* A work-item needs no private memory here. */
 typedef struct brick_work {
     uint none;
 } brick_work;
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) { work->none = 0; }
 
-/* Others of the group work while one waits for memory. */
+/* No prefetch: while a work-item waits for memory, others of its group run. */
 inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
                                  global const BITS *samples) {}
 
@@ -54,7 +55,7 @@ inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_resu
     return rows_shifted(at, next);
 }
 
-/* The cubes of a row. up, deep: whether the rows after it in y and in z are asked for; else they count as 0. */
+/* The cubes of a row. up, deep: whether the rows after it in y and in z are loaded; else they are 0. */
 inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool up, bool deep, row_results k1) {
     sample_rows a = row_of(s, y, z, w, k1), b = rows_shifted(0, 0), c = b, d = b;
     if (up) b = row_of(s, y + 1, z, w, k1);
@@ -65,8 +66,8 @@ inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool up
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-/* Enters row n of a brick's table, where it is in the grid. Of rows after the brick those types of edges are right that
- * its cubes name. */
+/* Enters row n of a brick's table, where it is in the grid. For rows after the brick only those types of edges are
+ * right that the brick's cubes name. */
 inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1, local row_table *table) {
     const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
     if (y >= s->ny || z >= s->nz) return;
@@ -127,8 +128,8 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* The number of the vertex on an edge of the cube at a bit of row n, which is row y, z of word w. Edges at x + 1 of the
- * last cube of a row are the first of the next word. */
+/* The number of the vertex on an edge of the cube at a bit of row n, which is row (y, z) of word w. Edges at x = 64 are
+ * owned by the first sample of the next word. */
 inline_always uint vertex_number(const slab *s, uint y, uint z, uint w, uint n, uint bit, uint item, row_results k1,
                                  const local row_table *table) {
     const uint type = item & 7, x = bit + (item >> 3 & 1), up = item >> 4 & 1, deep = item >> 5;
@@ -164,7 +165,7 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, 
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
 
-/* The row at a place of brick `number`. */
+/* Emits the row at a place of brick `number`. */
 inline_always void row_emit(const slab *s, uint number, uint place, grid_arrays in, row_results k1,
                             global const uchar *cases, mesh_buffers mesh, const local row_table *table) {
     const corner brick = brick_corner(s, number);
@@ -177,8 +178,8 @@ inline_always void row_emit(const slab *s, uint number, uint place, grid_arrays 
     row_triangles(s, y, z, brick.x / 64, n, before - s->triangle_window, k1, table, cases, mesh);
 }
 
-/* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group; no variable lives
- * across its barriers, as compilers have gone wrong on that. */
+/* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group. No variable lives
+ * across its barriers, as some compilers make wrong code for that. */
 inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arrays in, row_results k1,
                               global const uchar *cases, mesh_buffers mesh, local emit_room *room, brick_work *work) {
     local row_table *table = &room->tables[get_local_id(0) / BRICK_WORDS];

@@ -7,8 +7,8 @@
 
 #include "common.cl"
 
-/* AVX-512: masks of comparisons are integers in registers of their own. Tests leave it out, for other processors' text.
- */
+/* With AVX-512 masks of comparisons are integers in registers of their own. Tests define NO_AVX512, to try the text for
+ * processors without. */
 #if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(NO_AVX512)
 #define MASK_REGISTERS
 #endif
@@ -18,24 +18,24 @@
 #define kernel __kernel __attribute__((intel_vec_len_hint(1)))
 #endif
 
-/* Asks for the cache line at an address, which need not be one of the buffer's. Tools may define it empty, too. */
+/* Prefetches the cache line at an address, which may lie outside the buffer. Tools may define this as empty. */
 #ifndef line_prefetch
 #define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
 #endif
 
-/* Stores a vector as large as a cache line, at its start, without reading the line into the caches. */
+/* Stores a whole cache line without reading it into the caches; `place` is the start of a line. */
 #ifndef line_store
 #define line_store(value, place) __builtin_nontemporal_store(value, place)
 #endif
 
-/* Of the loop that follows. */
+/* Hints for the loop that follows. */
 #define loop_unrolled _Pragma("unroll")
 #define loop_copied   _Pragma("clang loop vectorize(disable) unroll(full)")
 #define loop_short    _Pragma("clang loop vectorize(disable) unroll(disable)")
 
 /* ---------------------------------------------------------------------------------------------------------- vectors */
 
-/* Sixteen words of 4 bytes, of any kind, anywhere. */
+/* Sixteen words of 4 bytes, of any type, at any multiple of 4 bytes. */
 typedef uint16 __attribute__((aligned(4), may_alias)) words16;
 
 /* 64 samples of a row, and a byte for each. */
@@ -43,7 +43,7 @@ typedef BITS samples64 __attribute__((ext_vector_type(64)));
 typedef BITS samples64_unaligned __attribute__((ext_vector_type(64), aligned(sizeof(BITS))));
 typedef char bytes64 __attribute__((ext_vector_type(64)));
 
-/* Keys of a cache line's samples, of large ones 16. */
+/* As many keys as a cache line has samples, at least 16. */
 #define LINE_KEYS (sizeof(BITS) < 4 ? 64 / sizeof(BITS) : 16)
 typedef BITS line_keys __attribute__((ext_vector_type(LINE_KEYS)));
 
@@ -53,14 +53,14 @@ constant const samples64 lane64 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 1
                                    48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
 
 #if FLOATING
-/* All bits of a sample are its sign. */
+/* Every bit of element n is the sign bit of sample n. */
 inline_always samples64 signs64(samples64 bits) {
     typedef signed_bits signed64 __attribute__((ext_vector_type(64)));
     return __builtin_astype(__builtin_astype(bits, signed64) >> (FLOATING - 1), samples64);
 }
 #endif
 
-/* Bit n for sample n that is at most the other. */
+/* Bit n: sample n is at most element n of `most`. */
 inline_always ulong at_most64(samples64 samples, samples64 most) {
     bytes64 is = __builtin_convertvector(samples <= most, bytes64);
 #ifdef MASK_REGISTERS
@@ -71,7 +71,7 @@ inline_always ulong at_most64(samples64 samples, samples64 most) {
 #endif
 }
 
-/* Elements 1 to 7 of one, then the other. OpenCL C's own form, a vector of vectors, makes slower code. */
+/* Elements 1 to 7 of x, then `last`. OpenCL C's own form, a vector literal, compiles to slower code. */
 inline_always ulong8 ulongs_joined(ulong8 x, ulong last) {
     return __builtin_shufflevector(x, (ulong8)last, 1, 2, 3, 4, 5, 6, 7, 8);
 }
@@ -86,14 +86,15 @@ inline_always ulong8 ulongs_joined(ulong8 x, ulong last) {
 /* All bits of byte n are bit n. */
 inline_always bytes64 bits_spread(ulong bits) { return __builtin_astype(__builtin_ia32_cvtmask2b512(bits), bytes64); }
 
-/* Of sixteen items those in the mask, one after another; stores all that fits behind them. */
+/* Stores the items in the mask one after another and returns their number. The rest of the 16 words at `out` is
+ * overwritten too. */
 inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
     *(words16 *)out =
         __builtin_astype(__builtin_ia32_compresssi512_mask(as_int16(items), (int16)0, (ushort)mask), words16);
     return (uint)popcount((ushort)mask);
 }
 
-/* Of the 32 words of both, those that lanes name by their lower five bits. */
+/* Element n: of the 32 words of low and high, the one that the lower five bits of lane[n] name. */
 inline_always int16 words_shuffled(words16 low, int16 lane, words16 high) {
     return __builtin_ia32_vpermi2vard512(as_int16(low), lane, as_int16(high));
 }

@@ -1,5 +1,5 @@
 /*
- * lanes.cl - bit-sliced code: how many rows of 64 cubes it has at a time, in words side by side
+ * lanes.cl - bit-sliced code: how many rows of 64 cubes it processes at once, one word per row
  */
 #ifndef LANES_CL
 #define LANES_CL

@@ -14,7 +14,7 @@ typedef ulong8 lanes;
 #define LANE_NUMBERS            ((ulong8)(0, 1, 2, 3, 4, 5, 6, 7))
 #define lanes_select(condition) as_ulong8(condition) /* all bits or none */
 
-/* popcount of a vector, in the form that compilers know: some built-in ones go element by element. */
+/* popcount of a vector, in a form that compilers vectorise: some built-in ones go element by element. */
 inline_always lanes lanes_popcount(lanes x) {
     x -= (x >> 1) & 0x5555555555555555ul;
     x = (x & 0x3333333333333333ul) + ((x >> 2) & 0x3333333333333333ul);
@@ -42,10 +42,10 @@ inline_always uint lanes_nonzero(lanes x) {
 }
 #endif
 
-/* The lanes moved down by one, then row `last`. */
+/* Lane n of the result is lane n + 1 of x; the highest lane is `last`. */
 inline_always lanes lanes_up(lanes x, ulong last) { return ulongs_joined(x, last); }
 
-/* Axes that normals are made of at once. */
+/* For normals: axes that are computed at once. */
 #define AXES_AT_ONCE 3
 
 #endif

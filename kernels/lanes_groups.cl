@@ -11,7 +11,7 @@ typedef ulong lanes;
 
 #define group_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 
-/* Others of the group work while one waits for memory. */
+/* No prefetch: while a work-item waits for memory, others of its group run. */
 #ifndef line_prefetch
 #define line_prefetch(address) ((void)(address))
 #endif
@@ -22,8 +22,7 @@ typedef ulong lanes;
 #define lanes_any(x)            (x)
 #define lanes_sum(x)            (x)
 
-/* Axes that normals are made of at once: one after the other, so that what one needs is not kept beside what another
- * does. */
+/* For normals: axes that are computed at once. One after another needs fewer registers. */
 #define AXES_AT_ONCE 1
 
 #endif

@@ -1,8 +1,9 @@
 /*
- * mesh.cl - kernel 2: what it reads of kernel 1's results, and where things are in the mesh
+ * mesh.cl - kernel 2: what it reads of kernel 1's results, and the numbers of vertices
  *
- * A vertex's number is what its slab and brick have before them, plus where its row's output begins, plus where its
- * edge type's does, plus the crossed edges of that type at lower x.
+ * The number of a vertex is a sum: the vertices of the slabs before its slab, of the bricks before its brick in the
+ * slab, of the rows before its row in the brick, of the edge types before its type in the row, and of edges of its type
+ * at lower x in the row.
  */
 #ifndef MESH_CL
 #define MESH_CL
@@ -47,7 +48,7 @@ inline_always owner owner_of(const slab *s, uint y, uint z, uint w, row_results 
 
 inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
-/* Where an edge of a type lies, seen from the sample that owns it. Diagonals differ with the parity of the cube. */
+/* Where an edge of a type lies, from the sample that owns it. Diagonals depend on the parity of the cube. */
 inline_always uint edge_place(uint type, bool odd) {
     switch (type) {
     case 0:
@@ -67,7 +68,7 @@ inline_always uint edge_place(uint type, bool odd) {
 
 #ifdef REAL
 
-/* How far apart the samples at the ends of an edge are in the buffer. */
+/* Distance of an edge's two samples in the sample buffer. */
 inline_always long place_step(const slab *s, uint place) {
     long x = (long)(place >> 14 & 3) - 1, y = (long)(place >> 16 & 3) - 1, z = (long)(place >> 18 & 3) - 1;
     return x + (y + z * s->ny) * s->nx;

@@ -2,7 +2,8 @@
  * ranges.cl - least and greatest sample of a brick or cluster, as keys: unsigned integers of 32 bits that order like
  * the samples
  *
- * Of 64-bit samples keys are the upper half, so that a key in doubt counts as mixed. From the build: BITS, FLOATING.
+ * Of a 64-bit key only the upper half is kept; where that cannot decide, the brick counts as mixed. From the build:
+ * BITS, FLOATING.
  */
 #ifndef RANGES_CL
 #define RANGES_CL
@@ -11,7 +12,7 @@
 
 #if FLOATING
 #define KEY_SIGN ((BITS)1 << (FLOATING - 1))
-/* From here on keys are infinite or NaN, up to its complement too. */
+/* Keys from here on, and keys up to its complement, are of infinities and NaNs. */
 #define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
 #endif
 
@@ -23,7 +24,7 @@ inline_always uint key_upper(BITS key) {
 #endif
 }
 
-/* Where a sample is missing the range tells nothing. */
+/* Whether all samples are finite; else the range decides nothing. */
 inline_always bool range_finite(brick_range range) {
 #if FLOATING
     return range.high < KEY_INFINITY && range.low > ~KEY_INFINITY;

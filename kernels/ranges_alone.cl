@@ -20,7 +20,7 @@ inline_always uint keys_least(BITS16 keys) {
     return key_upper(min(min(m4.x, m4.y), min(m4.z, m4.w)));
 }
 
-/* The largest upper half is the complement of the complement's least. */
+/* The greatest key is the complement of the least complement. */
 inline_always uint keys_most(BITS16 keys) { return key_upper((BITS) ~(BITS)0) - keys_least(~keys); }
 
 #endif

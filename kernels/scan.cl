@@ -3,9 +3,9 @@
  *
  * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted,
  * back to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket,
- * so all earlier tiles have been started; a device that lets a started group starve is met by the fallback: after
- * spin_limit polls the waiting group recomputes the missing sum itself. Where a group is one thread of a CPU, which the
- * system may take away at any time, groups post the sums of all their tiles before they look back for any.
+ * so all earlier tiles have been started. As a device may let a started group starve, there is a fallback: after
+ * spin_limit polls the waiting group computes the missing sum itself. Where a group is one thread of a CPU, which the
+ * system may suspend at any time, groups post the sums of all their tiles before they look back for any.
  *
  * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
  * Owens, "Decoupled Fallback" (2025).
@@ -30,7 +30,7 @@ inline_always void scan_post_sum(global uint *tiles, uint tile, uint channel, ui
     atomic_cmpxchg(scan_at(tiles, tile, channel), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
 }
 
-/* The sum that a group posted for a tile of its own. */
+/* The sum that a group has posted for one of its own tiles. */
 inline_always uint scan_own_sum(global uint *tiles, uint tile, uint channel) {
     return atomic_or(scan_at(tiles, tile, channel), 0u) & SCAN_VALUE;
 }
@@ -56,7 +56,7 @@ inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, 
     return *tile == 0;
 }
 
-/* The tiles of a group that posts the sums of all before it looks back, in the order in which it took them. */
+/* A list of the tiles of a group that posts all sums before it looks back, in the order in which it took them. */
 #define SETTLES_LATER (WORK_ITEMS == 1)
 #define NO_TILE       0xffffffffu
 

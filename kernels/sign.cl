@@ -1,10 +1,11 @@
 /*
- * sign.cl - the first stage of kernel 1: on which side the samples of a brick are, and its sign words where on both
+ * sign.cl - the first stage of kernel 1: on which side of the isovalue a brick's samples are; sign words of mixed
+ * bricks
  *
- * A first visit reads every sample once and leaves the range of every brick, as keys: unsigned integers of 32 bits that
- * order like the samples (of 64-bit samples the upper half, so that a key in doubt counts as mixed). Later visits with
- * another isovalue read the bricks only whose range holds it. How a layer of bricks is gone through: sign_alone.cl,
- * sign_groups.cl.
+ * A first visit reads every sample once and stores the range of every brick, as keys: unsigned integers of 32 bits that
+ * order like the samples. Of a 64-bit key only the upper half is kept; where that cannot decide, the brick counts as
+ * mixed. Later visits, with another isovalue, read only the bricks whose range holds the isovalue. The loops over a
+ * layer of bricks are in sign_alone.cl and sign_groups.cl.
  */
 #ifndef SIGN_CL
 #define SIGN_CL
@@ -14,7 +15,7 @@
 
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 
-/* Of the brick that a word is in, of any tile; mixed on the first visit. */
+/* The side of the brick that holds a word, also in another tile. On the first visit ranges are unknown: SIGN_MIXED. */
 inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global const brick_range *ranges) {
     return s->ranges_known ? range_sign(s, ranges[s->range_offset + brick_index(s, y, z, w)]) : SIGN_MIXED;
 }

@@ -1,6 +1,6 @@
 /*
- * sign_alone.cl - signs of bricks where a work-item has bricks to itself: it takes strips of them, so that samples are
- * read in long runs, 64 at a time
+ * sign_alone.cl - signs of bricks where a work-item has bricks to itself: it visits strips of bricks, to read samples
+ * in long runs, 64 at a time
  */
 #ifndef SIGN_ALONE_CL
 #define SIGN_ALONE_CL
@@ -59,7 +59,7 @@ inline_always brick_range line_range(line_keys low, line_keys high) {
     return range;
 }
 
-/* Words of a brick that is mixed. */
+/* Makes the words of a mixed brick. */
 inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, global const BITS *samples,
                                     global ulong *out) {
     ulong valid = word_valid(s, w);
@@ -72,7 +72,7 @@ inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, glo
 
 #define RUN_BRICKS_X 8
 
-/* Asks for the samples of `count` words. */
+/* Prefetches the samples of `count` words. */
 inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint count, global const BITS *samples) {
     global const BITS *row = samples + row_start(s, min(y, s->ny - 1), min(z, s->nz - 1)) + 64ul * w;
     for (uint n = 0; n < 64 * count; n += 64 / sizeof(BITS)) line_prefetch(row + n);
@@ -81,15 +81,16 @@ inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint coun
 #define STRIP_BRICKS   64
 #define PREFETCH_BYTES 4096
 
-/* Bricks visited together: `rows` rows of them, `count` in each, at most STRIP_BRICKS. Of every plane they are read row
- * after row, which where `count` are all is one long run: memory gives more that way than in shorter ones. */
+/* Bricks visited together: `rows` rows of `count` bricks, at most STRIP_BRICKS in all. Each plane is read row after
+ * row. Where `count` bricks make whole rows of the grid, that is one long run, which memory serves faster than short
+ * ones. */
 typedef struct strip {
     uint y, z, w; /* of the first word */
     uint rows, count;
 } strip;
 
-/* Words, ranges and signs of a strip seen for the first time. Asks for what is read PREFETCH_BYTES later, be it in the
- * next plane or the next strip: memory is far away, and what it foresees by itself ends with a page. */
+/* Makes words, ranges and signs of a strip on the first visit. Prefetches what is read PREFETCH_BYTES later, also in
+ * the next plane or the next strip, as hardware prefetch stops at page ends. */
 inline_always void strip_visit(const slab *s, strip p, global const BITS *samples, global ulong *words,
                                global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
     const uint rows = p.rows * BRICK_ROWS, later = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
@@ -129,7 +130,7 @@ inline_always void strip_visit(const slab *s, strip p, global const BITS *sample
     }
 }
 
-/* The sign that a run of bricks has in common. */
+/* The side that all bricks of a run are on by their ranges, or SIGN_MIXED. */
 inline_always uint run_sign(const slab *s, global const brick_range *ranges, uint count) {
     brick_range whole = ranges[0];
     if (count == RUN_BRICKS_X) {
@@ -145,7 +146,7 @@ inline_always uint run_sign(const slab *s, global const brick_range *ranges, uin
     return range_sign(s, whole);
 }
 
-/* Signs of bricks whose ranges are known. Returns which are mixed, whose samples it asks for. */
+/* Stores signs of bricks whose ranges are known. Prefetches the samples of mixed bricks; returns these, a bit each. */
 inline_always uint run_sign_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
                                   global brick_state *bricks, global const brick_range *ranges) {
     const uint first = brick_index(s, y0, z0, w);
@@ -170,7 +171,8 @@ inline_always void run_words_make(const slab *s, uint y0, uint z0, uint w, uint 
         if (mixed >> n & 1) brick_words_make(s, y0, z0, w + n, samples, words + BRICK_WORDS * (first + n));
 }
 
-/* A layer whose ranges are known: words are made one mixed run behind, when their samples have come. */
+/* A layer whose ranges are known. The words of a run with mixed bricks are made after the next such run is prefetched.
+ */
 inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, global const BITS *samples,
                                     global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
     uint asked = 0, asked_y = y0, asked_w = 0;
@@ -185,7 +187,7 @@ inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, glo
     run_words_make(s, asked_y, z, asked_w, asked, samples, words);
 }
 
-/* What a group needs of local memory: nothing here. */
+/* A group needs no local memory here. */
 typedef struct sign_room {
     uint none;
 } sign_room;
@@ -206,13 +208,13 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         }
 }
 
-/* A word of any tile. */
+/* The word at w of a row of any tile; `sign` is the side of its brick. */
 inline_always ulong word_at(const slab *s, uint y, uint z, uint w, uint sign, global const BITS *samples) {
     ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
     return word & word_valid(s, w);
 }
 
-/* The words of a row, and those of the rows y to y + 7, below y1, brick by brick. */
+/* Makes the words of a row; the next function, those of rows y to y + 7, below y1, brick by brick. */
 inline_always void row_words_make(const slab *s, uint y, uint z, global const BITS *samples,
                                   global const brick_range *ranges, global ulong *out) {
     for (uint w = 0; w < s->words_x; w++) out[w] = word_at(s, y, z, w, sign_known(s, y, z, w, ranges), samples);

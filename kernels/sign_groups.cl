@@ -33,8 +33,8 @@ typedef struct sign_room {
     brick_range found[BRICKS_AT_ONCE];
 } sign_room;
 
-/* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. No variable lives across a barrier, as
- * compilers have gone wrong on that. */
+/* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. No variable lives across a barrier, as some
+ * compilers make wrong code for that. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
                               local sign_room *room) {
@@ -66,7 +66,7 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
             if (lid < BRICKS_AT_ONCE && n + lid < count) {
                 brick_range range = found[lid];
                 brick_sign_store(number, range_sign(s, range), bricks);
-                if (!s->ranges_known) ranges[s->range_offset + number] = range; /* else other groups read it */
+                if (!s->ranges_known) ranges[s->range_offset + number] = range; /* a known one: other groups read it */
 #if FLOATING && !MISSING
                 *nonfinite |= !range_finite(range);
 #endif
@@ -76,7 +76,7 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
     }
 }
 
-/* A row of words, each `stride` words after the last. */
+/* Makes the words of a row and stores them `stride` words apart. */
 inline_always void row_words_spread(const slab *s, uint y, uint z, global const BITS *samples,
                                     global const brick_range *ranges, global ulong *out, uint stride) {
     for (uint first = 0; first < ROW_PARTS * s->words_x; first += WORK_ITEMS) {
@@ -95,7 +95,7 @@ inline_always void row_words_make(const slab *s, uint y, uint z, global const BI
     row_words_spread(s, y, z, samples, ranges, out, 1);
 }
 
-/* The words of the rows y to y + 7, below y1, brick by brick. */
+/* Makes the words of rows y to y + 7, below y1, brick by brick. */
 inline_always void rows_words_make(const slab *s, uint y, uint y1, uint z, global const BITS *samples,
                                    global const brick_range *ranges, global ulong *out) {
     for (uint n = 0; n < BRICK_ROWS && y + n < y1; n++)

@@ -21,8 +21,8 @@ typedef uint64_t slab_u64;
 typedef float slab_f32;
 #endif
 
-/* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word; a brick has 32 of them, in a buffer of
- * words one after the other: place 8 z + y. */
+/* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word. A brick has 32 rows, whose words are
+ * consecutive: that of row (y, z) of the brick has place 8 z + y. */
 enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 
 /* On which side a brick's samples are. Words of uniform bricks are not stored: two bricks of constant words at the
@@ -32,12 +32,12 @@ enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 /* What kernel 1 finds out about a brick. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
-    slab_u32 rows;                /* those that emit something, by place */
+    slab_u32 rows;                /* bit n: the row of place n emits something */
     slab_u32 sign;
 } brick_state;
 
-/* Least and largest sample of a brick, as keys that order like the samples do; of 64-bit samples their upper half. Kept
- * with a grid, so that later isovalues leave bricks unread. */
+/* Least and greatest sample of a brick, as keys that order like the samples; of 64-bit keys the upper half. Kept with a
+ * grid, so that for later isovalues only some bricks are read. */
 typedef struct brick_range {
     slab_u32 low, high;
 } brick_range;
@@ -45,18 +45,20 @@ typedef struct brick_range {
 /* The table of cases for kernel 2, of 2 parities x 256 patterns: the number of triangles, then three edges for each. */
 enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
 
-/* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_COLUMNS samples of
- * NUMBER_ROWS x NUMBER_PLANES rows, and of each a place for every type of edge and one or two more. */
+/* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
+ * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
+ * make their number a power of two. */
 #define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
-/* Of a sample, counted in samples. */
+/* The index of a sample in that table, in samples. */
 #define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
 
-/* The table of cases then names lanes: of the NUMBER_LANES numbers from the cube's first sample on of its four rows. */
+/* For that kernel the table of cases names lanes. A cube has four rows of samples; from its first sample on,
+ * NUMBER_LANES numbers of each row make a vector. A lane is an index into the four vectors, one after another. */
 #define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
 
-/* Local memory that a group takes for every 32 of its work-items, at the most: kernel 2's table of a brick's rows. */
+/* The most local memory that a group takes for every 32 of its work-items: kernel 2's table of a brick's rows. */
 enum { LOCAL_BYTES_PER_BRICK = 2816 };
 
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
@@ -79,10 +81,10 @@ enum {
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
 typedef struct slab {
-    slab_u64 sample_offset; /* of plane sample_z in the buffer, in samples */
-    slab_u64 sample_count;  /* samples in the buffer from there on */
-    slab_u64 point_offset; /* floats before the point of place 0 in the sample buffer, in that of points, modulo 2^64 */
-    slab_u64 blanked_offset;      /* likewise, bytes of the buffer of blanked samples */
+    slab_u64 sample_offset;  /* of plane sample_z in the buffer, in samples */
+    slab_u64 sample_count;   /* samples in the buffer from there on */
+    slab_u64 point_offset;   /* in floats: sample n of the buffer has its point at 3 n + point_offset, modulo 2^64 */
+    slab_u64 blanked_offset; /* sample n has its byte of blanked samples at n + blanked_offset */
     slab_u64 blanked_cell_offset; /* of plane sample_z in the buffer of blanked cells */
     slab_u64 blanked_cell_count;  /* in that buffer from there on */
     slab_u64 inside_low;          /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
@@ -90,7 +92,7 @@ typedef struct slab {
     slab_u64 key_flip;       /* integers: key = bits ^ key_flip */
     slab_u32 key_inside;     /* keys from here on are surely inside */
     slab_u32 key_outside;    /* keys below are surely outside */
-    slab_u64 nodata_bits[2]; /* patterns of the missing value; one twice where it has one pattern */
+    slab_u64 nodata_bits[2]; /* bits of the missing value: two patterns, equal where it has only one */
     slab_u32 nx, ny, nz;     /* samples of the whole grid */
     slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
     slab_u32 bricks_y;

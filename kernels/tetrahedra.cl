@@ -85,7 +85,7 @@ inline_always lanes crossings_any(const crossings *k) {
     return k->type[0] | k->type[1] | k->type[2] | k->type[3] | k->type[4] | k->type[5];
 }
 
-/* Bit by bit a + b + c: the sum in *sum, what is carried returned. */
+/* Adds a + b + c bit by bit: the sum bits in *sum, the carries returned. */
 inline_always lanes add_carry(lanes a, lanes b, lanes c, lanes *sum) {
     *sum = a ^ b ^ c;
     return (a & b) | (c & (a ^ b));
@@ -101,10 +101,11 @@ inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, la
 /* Corner n of an even cube, corner n ^ 1 of an odd one. Ones and twos of the five tetrahedra are added bit by bit, so
  * that four words are counted and not ten.
  *
- * In the hybrid method a loop of n vertices has n - 2 triangles. The tetrahedra's surface consists of disks with all
- * vertices on their borders: it has n - 2 triangles too, but counts vertices on face diagonals, which are the edges of
- * the central tetrahedron. Where that emits one triangle, three of them are crossed, where two, four: it takes two away
- * from what the others emit, which is counted as one less than one more where it does not. */
+ * In the hybrid method a loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks
+ * with all vertices on their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals.
+ * These are the edges of the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where
+ * two, four. So hybrid triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0.
+ * Below, two[0] adds 2 where the central one emits none, and at the end 2 is subtracted for every cube. */
 inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
     lanes e = r->even;
     lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
@@ -145,7 +146,7 @@ inline_always lanes offsets_pack(const crossings *k, lanes *vertex_count) {
     return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46;
 }
 
-/* Shifts and widths of the types, a byte and four bits of a constant for each: types may vary. */
+/* Shift and width of a type are a byte and four bits of two constants: no table, as `type` may be variable. */
 inline_always uint offset_of_type(ulong packed, uint type) {
     const uint shift = (uint)(0x2e251d150e37ul >> (8 * type)) & 63, width = 0x998871u >> (4 * type) & 15;
     return ((uint)packed & 0x3fff) + ((uint)(packed >> shift) & ((1u << width) - 1));

@@ -1,5 +1,5 @@
 /*
- * vertex.cl - position and normal of one vertex, behind crossing.cl; host/lib/reference/reference_vertex.inc is its twin
+ * vertex.cl - position and normal of one vertex, after crossing.cl; host/lib/reference/reference_vertex.inc is its twin
  *
  * From the build: REAL, SAMPLE_VALUE(bits), NORMALS, GRID (0: uniform, 1: rectilinear, 2: curvilinear).
  */
@@ -9,7 +9,7 @@
 #include "crossing.cl"
 #include "words.cl"
 
-/* What is known of a grid at its samples. */
+/* The arrays of a grid that have an item per sample or coordinate. */
 typedef struct grid_arrays {
     global const BITS *samples;
     global const float *coordinates; /* rectilinear: positions along x, y, z; curvilinear: points */
@@ -21,8 +21,8 @@ typedef struct corner {
     uint x, y, z;
 } corner;
 
-/* Where an edge begins and which way it goes, in one word: offsets of its first end from the first sample of the
- * brick's row of bits 0-6 x, 7-10 y, 11-13 z, then a step of -1, 0 or 1 along each axis, plus 1, two bits each. */
+/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, from the brick's first sample. Then two bits
+ * for each axis: the step to its other end, -1, 0 or 1, plus 1. */
 #define PLACE(x, y, z, step_x, step_y, step_z)                                                                         \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
      (uint)((step_z) + 1) << 18)
@@ -42,7 +42,7 @@ inline_always void position_make(const slab *s, corner c, uint place, float t, f
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
 #else
-/* The same. Samples at the ends of the edge are at place `from` of the buffer and `step` further on. */
+/* The same, between points. The edge's samples are at `from` and `from` + `step` in the sample buffer. */
 inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
                                     float out[3]) {
 #if GRID == 1
@@ -61,12 +61,12 @@ inline_always void position_between(const slab *s, grid_arrays in, corner c, uin
 
 #if NORMALS
 
-/* The samples that a difference along one axis is taken between: central, one-sided at borders and beside missing
- * samples, the same one twice between two. */
+/* The two samples whose difference along an axis is taken: central; one-sided at borders and beside missing samples;
+ * the same sample twice, so 0, where both sides are a border or missing. */
 typedef struct neighbours {
     ulong before, after; /* places in the sample buffer */
     uint first, last;    /* along the axis */
-    float weight;        /* 1/16 of the usual one, so that nothing that is made of differences overflows */
+    float weight;        /* 1/16 of the usual weight, so that products of differences do not overflow */
 } neighbours;
 
 inline_always bool neighbour_missing(grid_arrays in, const slab *s, ulong n) {
@@ -77,7 +77,7 @@ inline_always bool neighbour_missing(grid_arrays in, const slab *s, ulong n) {
 #endif
 }
 
-/* One of three by an axis that may vary, which as an index would put them into memory. */
+/* One of three, selected by axis: with a variable index the compiler would put them into memory. */
 #define OF_AXIS(axis, x, y, z) ((axis) == 0 ? (x) : (axis) == 1 ? (y) : (z))
 
 inline_always neighbours neighbours_of(grid_arrays in, const slab *s, const uint p[3], uint axis) {
@@ -158,7 +158,7 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
     REAL j[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 #endif
 #pragma unroll AXES_AT_ONCE
-    for (uint axis = 0; axis < 3; axis++) { /* each is entered last; after three all have their places */
+    for (uint axis = 0; axis < 3; axis++) { /* results are shifted in, so that no index varies */
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
         REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
         g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);

@@ -4,7 +4,7 @@
  * A sample is inside when it is >= the isovalue. For every type the samples that are inside are one run of bit patterns
  * (floats order like integers within a sign), so the test is (bits - low) <= span in unsigned integers: exact whatever
  * the device does with subnormals, and the same text for all types. Bits past the end of a row are 0.
- * How words are made of samples: words_alone.cl, words_groups.cl.
+ * words_alone.cl and words_groups.cl make words of samples.
  */
 #ifndef WORDS_CL
 #define WORDS_CL
@@ -26,7 +26,7 @@ inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }
 
-/* Where in its brick a row is. */
+/* The place of a row in its brick. */
 inline_always uint row_place(const slab *s, uint y, uint z) {
     return (z - s->word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
 }
@@ -35,12 +35,12 @@ inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
     return BRICK_WORDS * brick_index(s, y, z, w) + row_place(s, y, z);
 }
 
-/* The 32 words of brick `number`. Where they are constant, they are set past the ends of rows and of the grid too. */
+/* The 32 words of brick `number`. The constant words of a brick that is inside have bits set outside the grid too. */
 inline_always global const ulong *brick_words(uint number, uint sign, global const ulong *words) {
     return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)number : (long)sign - UNIFORM_BRICKS);
 }
 
-/* Whether a sample counts as missing by its bits; without branches. */
+/* Whether a sample's bits make it missing; without branches. */
 inline_always bool bits_missing(BITS bits, const slab *s) {
     bool missing = (s->has_nodata != 0) & ((bits == (BITS)s->nodata_bits[0]) | (bits == (BITS)s->nodata_bits[1]));
 #if FLOATING

@@ -31,7 +31,7 @@ inline_always uint mask_pack(char16 mask) {
 }
 #endif
 
-/* 16 samples from n on, of which those from index `end` of the buffer on are read as 0. */
+/* 16 samples from index n on; past the end of the buffer, 0. */
 inline_always BITS16 samples_load(global const BITS *samples, const slab *s, ulong n) {
     ulong end = s->sample_offset + s->sample_count;
     if (n + 16 <= end) return vload16(0, samples + n);
@@ -54,7 +54,7 @@ inline_always ulong word_inside(global const BITS *samples, const slab *s, uint 
     return word;
 }
 
-/* Bit n for byte `first` + n, which is not 0; bytes from `end` on are not read. */
+/* Bit n: byte `first` + n is not 0. Bytes from `end` on are not read. */
 inline_always ulong bytes_word(global const uchar *bytes, ulong first, ulong end) {
     ulong word = 0;
     for (uint part = 0; part < 4 && first + 16 * part < end; part++) {

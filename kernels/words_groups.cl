@@ -1,8 +1,8 @@
 /*
  * words_groups.cl - sign words where the work-items of a group share bricks: sample by sample
  *
- * Every work-item has samples of its own, so that a group has many loads under way; each needs few registers. Loops
- * stay loops for the same reason: unrolled, they need masks and addresses side by side.
+ * Every work-item loads samples of its own, so a group has many loads in flight; for that a work-item has to need few
+ * registers. Loops are not unrolled for the same reason: masks and addresses would need registers side by side.
  */
 #ifndef WORDS_GROUPS_CL
 #define WORDS_GROUPS_CL
@@ -31,7 +31,7 @@ inline_always ulong word_inside(global const BITS *samples, const slab *s, uint 
     return signs_make(samples + row_start(s, y, z) + 64 * w, min(s->nx - 64 * w, 64u), s);
 }
 
-/* Bit n for byte `first` + n, which is not 0; bytes from `end` on are not read. */
+/* Bit n: byte `first` + n is not 0. Bytes from `end` on are not read. */
 inline_always ulong bytes_word(global const uchar *bytes, ulong first, ulong end) {
     const uint count = first < end ? (uint)min(end - first, 64ul) : 0;
     ulong word = 0;
