@@ -1,6 +1,6 @@
 /*
- * The public call that carries a field. Arguments are checked; a surface that is not the last that was counted or
- * extracted is counted first; then its vertices are gone through.
+ * The public call that interpolates a field at the vertices of a surface. It checks arguments, counts the surface again
+ * unless it is the one counted or extracted last, then visits its vertices.
  */
 #include "opencl/context.h"
 #include "failure.h"
@@ -21,7 +21,7 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
     return TC_OK;
 }
 
-/* Counts the surface where what fields are carried by is not there. */
+/* Counts the surface, unless the results that carrying needs are still there. */
 static tc_status surface_find(tc_grid *grid, const tc_extract_options *options) {
     tc_counts counts;
     surface_carries(grid);

@@ -1,5 +1,5 @@
 /*
- * The public calls on contexts: a device is chosen and opened, launch parameters are chosen.
+ * The public calls on contexts: they choose and open a device, and choose launch parameters.
  */
 #include "context_create.h"
 
@@ -26,7 +26,7 @@ void tc_expert_options_init(tc_expert_options *options) {
     *options = (tc_expert_options){.struct_size = sizeof *options};
 }
 
-/* Commands are put into it one after the other, and each relies on those before. */
+/* The caller's queue has to execute in order: each command relies on those before it. */
 static tc_status queue_check(tc_context *context, cl_context theirs, cl_command_queue queue) {
     cl_context of_queue = NULL;
     cl_command_queue_properties properties = 0;

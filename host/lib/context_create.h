@@ -4,7 +4,7 @@
 
 #include "opencl/context.h"
 
-/* As tc_context_create; its kernels are built without asking what is known of them. */
+/* As tc_context_create, but kernels are built without vetting (vetting.h). */
 tc_status context_create_for_trial(const tc_context_options *options, tc_context **context);
 
 #endif

@@ -29,7 +29,7 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
-/* At the start of a call: kernels that are not known to be good are vetted, and perhaps the other text is taken. */
+/* At the start of a call: vets kernels that are not known to be good; may switch to the other text of the kernels. */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!surface_needs_kernels(grid, options)) return TC_OK;
     tc_status status = call_vet(grid->context, surface_kind(grid, options, emits));

@@ -1,5 +1,5 @@
 /*
- * grids.h - grids of either kind, made and destroyed; their options are complete
+ * grids.h - making and destroying grids of either kind, from complete options
  */
 #ifndef GRIDS_H
 #define GRIDS_H
@@ -11,7 +11,7 @@ tc_status grid_create(tc_context *context, const tc_grid_options *options, scan_
 tc_status complex_create(tc_context *context, const tc_tetrahedra_grid_options *options, scan_parameters scan,
                          tc_grid **out);
 
-/* NULL is no grid. */
+/* NULL is accepted. */
 void grid_destroy(tc_grid *grid);
 
 #endif

@@ -9,18 +9,18 @@
 #include "opencl/kernel_kind.h"
 #include "grid/mesh.h"
 
-/* The kernels that make it; emits: kernel 2 too. */
+/* The kind of the kernels that make the surface; emits: kernel 2 too. */
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
-/* False where the isovalue, or the grid, is such that nothing runs. */
+/* False under the reference engine, and where grid, sample type and isovalue allow no surface. */
 bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options);
 
 /* share: of the whole call, for progress. */
 tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
-/* Whether what surface_carry works on is there: of the surface that was counted or extracted last, of grids in slabs
- * from surface_carries on. The reference engine needs nothing. */
+/* Whether the results that surface_carry needs exist: for the surface counted or extracted last; on grids in slabs,
+ * only after surface_carries. The reference engine needs none. */
 bool surface_is_classified(const tc_grid *grid, const tc_extract_options *options);
 void surface_carries(tc_grid *grid);
 

@@ -124,7 +124,7 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
     return status;
 }
 
-/* So that it is known which of the two failed, building or running. */
+/* Builds the kernels apart from running them, so that the report can tell which of the two failed. */
 static tc_status kernels_build(tc_context *context, kernel_kind kind) {
     sized_kernel of_complexes[COMPLEX_KERNELS];
     kernels k;

@@ -23,8 +23,8 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind);
  * what differs, where the device computes wrongly. Uses the workspace; emits: kernel 2 is tried too. */
 tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
-/* True where trial_run would run kernels: also after an extraction that met the grid's first missing sample, and took
- * other kernels then. */
+/* True where trial_run would run kernels. That may be so after an extraction too: when it meets the grid's first
+ * missing sample, it switches to other kernels. */
 bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
 /* What one trial extracts from. */

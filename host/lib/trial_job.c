@@ -41,7 +41,8 @@ static tc_status job_do(const job *j, tc_context *context) {
     return j->kind == KERNEL_KINDS ? TC_OK : trial_of_kind(context, kind_of_number(j->kind));
 }
 
-/* Programs that have not passed are not put into the cache; PoCL would compile for that what has not run yet. */
+/* Keeps programs that have not passed out of the cache; storing them would make PoCL compile kernels that have not run.
+ */
 static void programs_forget(tc_context *context) {
     for (program *p = context ? context->programs : NULL; p; p = p->next) p->cached = true;
 }

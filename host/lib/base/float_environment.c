@@ -5,9 +5,9 @@
 
 static _Thread_local float_environment *innermost;
 
-/* On x86 most callers have the default, and then the flags are all that there is to save: the whole environment takes
- * half a microsecond. Nothing here raises flags of the x87. C knows nothing of flushed subnormal numbers, so its
- * default environment need not end that. */
+/* On x86 most callers have the default environment; then only its flags are saved, as saving the whole environment
+ * takes half a microsecond. Nothing here raises x87 flags. C does not define flushing of subnormal numbers, so setting
+ * its default environment need not end it. */
 #ifdef __SSE2_MATH__
 #include <xmmintrin.h>
 
@@ -61,7 +61,7 @@ static float_environment *outermost(float_environment *e) {
     return e;
 }
 
-/* Calls within the function are no part of this one: they have the function itself for their caller. */
+/* Public calls within the lent-to function do not nest in this call: the function is their caller. */
 float_environment *float_environment_lend(void) {
     float_environment *lent = innermost;
     innermost = NULL;

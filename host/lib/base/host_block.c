@@ -7,9 +7,9 @@
 static const size_t page_bytes = 4096;
 static const size_t huge_page_bytes = 2 << 20;
 
-/* Address space behind a block, of which nothing is used: where samples change while a surface is made of them, a brick
- * may have more vertices and triangles than were counted, and what it has of them does not fall on other memory. A
- * brick of 2,048 cubes has ten triangles of 12 bytes each, at most. */
+/* Unused address space behind a block. Where the caller changes samples during an extraction, a brick may emit more
+ * vertices and triangles than were counted; the margin keeps these from overwriting other memory. A brick of 2,048
+ * cubes has at most ten triangles of 12 bytes per cube. */
 static const size_t margin_bytes = 256 << 10;
 
 static const size_t huge_from_bytes = 256

@@ -1,8 +1,8 @@
 /*
  * host_block.h - large memory on the host, cheap to touch for the first time
  *
- * New memory costs a fault and a clearing per page, which at these speeds is much of a run: blocks are kept between
- * runs and lie in huge pages.
+ * New memory costs a page fault and clearing per page, a large part of an extraction's time. So blocks are kept between
+ * extractions and lie in huge pages.
  */
 #ifndef HOST_BLOCK_H
 #define HOST_BLOCK_H
@@ -14,7 +14,7 @@ typedef struct host_block {
     size_t bytes; /* whole pages */
 } host_block;
 
-/* Makes the block at least so large, from a page's boundary on; its content is lost where it has to grow. Returns 0 or
+/* Makes the block at least `bytes` large, page-aligned; its content is lost where it has to grow. Returns 0 or
  * TC_ERROR_MEMORY. */
 tc_status host_block_reserve(host_block *block, uint64_t bytes);
 void host_block_release(host_block *block);

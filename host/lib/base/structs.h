@@ -1,5 +1,5 @@
 /*
- * structs.h - public structs that callers of older headers pass: their size, the first member, says what they have
+ * structs.h - public structs of callers with older headers: the first member, the size, tells which members exist
  */
 #ifndef STRUCTS_H
 #define STRUCTS_H
@@ -10,10 +10,10 @@
  * that was never initialised and for one of a newer library. */
 tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what);
 
-/* The other way: zeroes a struct of the caller's, of any older size, but for its size; fails like options_take. */
+/* Zeroes a struct of the caller, of any older size, except for its size; fails like options_take. */
 tc_status result_begin(void *out, size_t known_bytes, const char *what);
 
-/* Copies as much of *from as the struct of the caller's has, but for its size. */
+/* Copies the members that the caller's struct has from *from, except for the size. */
 void result_give(void *out, const void *from);
 
 #endif

@@ -41,7 +41,7 @@ typedef enum cell_shape {
     CELL_OTHER
 } cell_shape;
 
-/* What is to be known about one of VTK's types of cells. */
+/* One of VTK's types of cells. */
 typedef struct cell_type {
     const char *name;
     cell_shape shape;
@@ -51,11 +51,11 @@ typedef struct cell_type {
     uint8_t corners[CELL_CORNERS_MAX]; /* where in the cell's points the corners of the shape are */
 } cell_type;
 
-/* Types that VTK does not have are CELL_OTHER. */
+/* CELL_OTHER for types that VTK does not have. */
 const cell_type *cell_type_get(unsigned vtk_type);
 
-/* Cuts a shape but a polyhedron with these point numbers at its corners; returns the number of tetrahedra. Those with a
- * point twice, as collapsed cells have them, are left out. */
+/* Cuts a shape other than a polyhedron, with these point numbers at its corners; returns the number of tetrahedra.
+ * Tetrahedra with a point twice, as in collapsed cells, are left out. */
 int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32_t out[CELL_TETRAHEDRA_MAX][4]);
 
 #endif

@@ -54,7 +54,7 @@ static void blocks_write(void *shared) {
     }
 }
 
-/* Memory that free() takes, in huge pages where it is large. */
+/* Allocates memory to be freed by free(), in huge pages where it is large. */
 static void *pages_allocate(uint64_t bytes) {
     const uint64_t huge_page_bytes = 2 << 20;
     if (bytes < huge_page_bytes) return malloc(bytes ? (size_t)bytes : 1);
@@ -138,7 +138,7 @@ double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]
            (e[0][0] * e[1][1] - e[0][1] * e[1][0]) * e[2][2];
 }
 
-/* A size that result_begin takes, with room for the arrays. */
+/* Whether a struct of this size is valid (result_begin) and has room for the arrays. */
 static bool size_fits(size_t bytes) {
     return bytes >= offsetof(tc_tetrahedra, flat_cell_count) && bytes <= sizeof(tc_tetrahedra) &&
            bytes % sizeof bytes == 0;

@@ -12,10 +12,10 @@ typedef struct side {
     uint32_t falls;     /* whether the face passes it from high to low */
 } side;
 
-/* What is known of a face of the cell while faces are turned: a forest of faces that share edges. */
+/* A face of the cell in a union-find of faces that share edges, while faces are turned. */
 typedef struct turned_face {
     uint32_t parent;
-    uint32_t flipped; /* against its parent; at the end, against the winding that was given */
+    uint32_t flipped; /* relative to its parent; in the end, to the given winding */
 } turned_face;
 
 typedef struct polyhedron {
@@ -54,7 +54,7 @@ static int side_compare(const void *a, const void *b) {
     return x->high < y->high ? -1 : x->high > y->high;
 }
 
-/* By their points; Shell's sort with Ciura's gaps, as most polyhedra have less than a hundred. */
+/* Sorts by points: Shell's sort with Ciura's gaps, as most polyhedra have fewer than a hundred sides. */
 static void sides_sort(side *sides, uint32_t count) {
     static const uint32_t gaps[] = {301, 132, 57, 23, 10, 4, 1};
     if (count > SHELL_SORT_MOST) {
@@ -83,7 +83,7 @@ static void sides_list(polyhedron *p) {
     sides_sort(p->sides, p->side_count);
 }
 
-/* The end of the sides from n on that have the same points. */
+/* The end of the run of sides from n on that have the same points. */
 static uint32_t run_end(const polyhedron *p, uint32_t n) {
     uint32_t end = n + 1;
     while (end < p->side_count && side_compare(&p->sides[n], &p->sides[end]) == 0) end++;
@@ -101,7 +101,7 @@ static bool is_closed(const polyhedron *p) {
     return true;
 }
 
-/* The face that stands for those joined with f, and whether f is turned against it; the way there is shortened. */
+/* The root of f in the union-find, and whether f is turned against it; shortens the path. */
 static uint32_t face_root(turned_face *faces, uint32_t f, uint32_t *flipped) {
     uint32_t root = f, sum = 0;
     for (; faces[root].parent != root; root = faces[root].parent) sum ^= faces[root].flipped;
@@ -115,7 +115,7 @@ static uint32_t face_root(turned_face *faces, uint32_t f, uint32_t *flipped) {
     return root;
 }
 
-/* Two faces that meet in an edge, and in no third there, pass it in opposite directions. */
+/* Turns faces so that two faces that share an edge with no third pass it in opposite directions. */
 static void faces_turn(polyhedron *p) {
     uint32_t flipped;
     for (uint32_t n = 0, end; n < p->side_count; n = end) {
@@ -144,7 +144,7 @@ static uint32_t smallest_point(const polyhedron *p) {
     return smallest;
 }
 
-/* The place of the face's smallest point; -1 where it contains the apex. */
+/* The index in the face of its smallest point; -1 where the face contains the apex. */
 static int64_t fan_centre(const int64_t *face, int64_t count, uint32_t apex) {
     int64_t first = 0;
     for (int64_t n = 0; n < count; n++) {

@@ -15,9 +15,9 @@
 typedef enum polyhedron_verdict {
     POLYHEDRON_GOOD,
     POLYHEDRON_NO_FACES,
-    POLYHEDRON_OFFSETS,   /* of the cell or of one of its faces do not rise, or lead beyond the last */
+    POLYHEDRON_OFFSETS,   /* offsets of the cell or of a face do not rise, or pass the end */
     POLYHEDRON_TOO_LARGE, /* more corners than POLYHEDRON_CORNERS_MOST */
-    POLYHEDRON_POINT,     /* a point that is not there */
+    POLYHEDRON_POINT,     /* an invalid point number */
     POLYHEDRON_OPEN,      /* the faces bound no volume */
     POLYHEDRON_NO_MEMORY
 } polyhedron_verdict;
@@ -27,8 +27,8 @@ enum { POLYHEDRON_CORNERS_MOST = 1 << 22 }; /* of all its faces */
 /* Whether offsets and points of cell c may be used. */
 polyhedron_verdict polyhedron_look(const tc_cells *cells, uint64_t c);
 
-/* Of a cell that is good so far: its tetrahedra go to `out`, or are only counted where that is NULL. May still find the
- * last two verdicts. Takes memory of its own where the cell has many faces. */
+/* Cuts a cell that polyhedron_look accepts: writes its tetrahedra to `out`, or only counts them where that is NULL. May
+ * still give the last two verdicts. Allocates memory where the cell has many faces. */
 polyhedron_verdict polyhedron_cut(const tc_cells *cells, uint64_t c, uint32_t (*out)[4], int *tetrahedron_count);
 
 #endif

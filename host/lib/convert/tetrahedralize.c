@@ -57,14 +57,14 @@ static cell_verdict unsupported_look(const tc_cells *cells, cell_tally *tally) {
     return CELL_SKIPPED;
 }
 
-/* Of a polyhedron whose faces are looked at: all the points that they have, one face after the other. */
+/* The points of all faces of a polyhedron that has been checked, one face after the other. */
 static const int64_t *polyhedron_points(const tc_cells *cells, uint64_t c, int64_t *count) {
     const int64_t *offsets = cells->face_offsets, *starts = cells->cell_faces;
     *count = offsets[starts[c + 1]] - offsets[starts[c]];
     return cells->face_connectivity + offsets[starts[c]];
 }
 
-/* The first of them that is not usable, or NULL. */
+/* The first point of a polyhedron that is not usable, or NULL. */
 static const int64_t *polyhedron_unusable_point(const tc_cells *cells, uint64_t c) {
     int64_t count;
     const int64_t *points = polyhedron_points(cells, c, &count);
@@ -95,7 +95,7 @@ static cell_verdict polyhedron_judge(const tc_cells *cells, uint64_t c, cell_tal
     }
 }
 
-/* Looks at one cell; its corners are there where it is good. */
+/* Checks one cell; fills `corners` where it is good. */
 static cell_verdict cell_look(const tc_cells *cells, uint64_t c, cell_tally *tally, uint32_t corners[]) {
     const cell_type *type = cell_type_get(cells->types[c]);
     if (!cell_offsets_rise(cells, c)) return CELL_BAD;
@@ -153,7 +153,7 @@ static void cell_orient(const tc_cells *cells, uint32_t tetrahedra[][4], int cou
     tally->inverted += v.is_turned;
 }
 
-/* The faces of a polyhedron have no right way round, so that none is inverted. */
+/* Faces of a polyhedron may be wound either way, so no polyhedron counts as inverted. */
 static bool polyhedron_put(const tc_cells *cells, uint64_t c, tetrahedron_writer *writer) {
     const uint64_t place = writer->tally->tetrahedra;
     uint32_t(*out)[4] = writer->tetrahedra ? writer->tetrahedra + place : NULL;
@@ -188,7 +188,7 @@ static bool cells_cut(const void *source, uint64_t first, uint64_t end, tetrahed
 
 /* ------------------------------------------------------------------------------------------------------------ check */
 
-/* A cell whose points are all there. */
+/* The error for a cell with a position that is not usable; its point numbers are valid. */
 static tc_status position_refuse(const tc_cells *cells, uint64_t c, uint32_t point) {
     const cell_type *type = cell_type_get(cells->types[c]);
     double p[3];
@@ -245,7 +245,7 @@ static tc_status cell_refuse(const tc_cells *cells, uint64_t c, const uint32_t c
                            name, (unsigned long long)cells->point_count);
 }
 
-/* The first bad cell, from one on that begins its block. Where there is none, memory ran out for a while. */
+/* The error for the first bad cell from c on, where its block begins. If there is none, memory had run out. */
 static tc_status bad_cell_refuse(const tc_cells *cells, uint64_t c) {
     uint32_t corners[CELL_CORNERS_MAX];
     cell_tally tally = {0};

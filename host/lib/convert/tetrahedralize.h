@@ -1,8 +1,8 @@
 /*
  * tetrahedralize.h - making a tetrahedral complex in two passes over the cells: count, then write
  *
- * Cells are taken in blocks, by several threads; what a block makes goes where the sums of the blocks before it say, so
- * that tetrahedra lie in the order of the cells whatever the number of threads.
+ * Several threads take cells in blocks. A block writes its tetrahedra behind those of all blocks before it, by prefix
+ * sums: their order is that of the cells, whatever the number of threads.
  */
 #ifndef TETRAHEDRALIZE_H
 #define TETRAHEDRALIZE_H
@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-/* What a block of cells gave. */
+/* Counts of a block of cells. */
 typedef struct cell_tally {
     uint64_t tetrahedra, flat, curved, blanked, inverted, folded, unsupported, surplus;
 } cell_tally;
@@ -28,7 +28,7 @@ typedef struct tetrahedron_writer {
  * runs out. */
 typedef bool block_function(const void *source, uint64_t first, uint64_t end, tetrahedron_writer *writer);
 
-/* Zeroes a complex of the caller's; TC_ERROR_ARGUMENT, naming what, where it has no room for the arrays. */
+/* Zeroes the caller's complex. TC_ERROR_ARGUMENT, naming what, where its struct lacks the arrays. */
 tc_status complex_begin(tc_tetrahedra *complex, const char *what);
 
 /* Fills *complex, with its struct_size set. Where a block returns false: TC_ERROR_DATA, without a text, and *bad_cell
@@ -36,7 +36,7 @@ tc_status complex_begin(tc_tetrahedra *complex, const char *what);
 tc_status complex_make(block_function *block, const void *source, uint64_t cell_count, tc_tetrahedra *complex,
                        uint64_t *bad_cell);
 
-/* Puts the tetrahedra of one cell behind those of the cells before it in the block. */
+/* Appends the tetrahedra of one cell to its block. */
 void tetrahedra_put(tetrahedron_writer *writer, const uint32_t tetrahedra[][4], int count, uint64_t cell);
 
 /* Six times the volume, positive where (v1 - v0) x (v2 - v0) . (v3 - v0) is. */

@@ -1,6 +1,6 @@
 /*
- * A batch in three steps: samples at the ends of all edges, where the isovalue lies between them, the field there. Each
- * is a loop over arrays of one type, which compilers turn into vector code.
+ * A batch takes three steps: load the samples at the ends of all edges, find where the isovalue lies between them,
+ * interpolate the field there. Each is a loop over arrays of one type, which compilers vectorise.
  *
  * The arithmetic is that of kernels/crossing.cl and of the reference (reference_crossing.inc, carry_vertex.c): the same
  * operations in the same order.
@@ -54,7 +54,7 @@ static void gather_f64(tc_type type, const void *values, int stride, int n, cons
 }
 #undef REAL
 
-/* All numbers are halved first where the difference of two samples overflows. */
+/* Where the difference of two samples overflows, all numbers are halved first. */
 static void crossings_f32(const float *a, const float *b, float iso, uint32_t count, float *t) {
     for (uint32_t n = 0; n < count; n++) {
         const float scale = isinf(b[n] - a[n]) ? 0.5f : 1, low = scale * a[n], high = scale * b[n];
@@ -69,7 +69,7 @@ static void crossings_f64(const double *a, const double *b, double iso, uint32_t
     }
 }
 
-/* The value of an end where t is 0 or 1, whatever the other is. */
+/* Where t is 0 or 1, exactly the value of that end, whatever the other is. */
 static void interpolate(const double *from, const double *to, const float *t, uint32_t count, float *values) {
     for (uint32_t n = 0; n < count; n++) {
         const double between = from[n] + (double)t[n] * (to[n] - from[n]);

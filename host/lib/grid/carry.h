@@ -1,9 +1,9 @@
 /*
  * carry.h - another field of the grid on the vertices of a surface
  *
- * A vertex lies on the edge between two samples, at t. So a field is carried by reading it at both and interpolating:
- * on the host, as that is where the field is. What is needed of a surface is its crossed edges in the order of their
- * vertices. Those who know them (structured_carry.c, complex_carry.c) hand them over in batches, from several threads.
+ * A vertex lies at t on the edge between two samples. A field is carried to it by reading the field at both samples and
+ * interpolating; on the host, where the field is. That needs the crossed edges of the surface in the order of their
+ * vertices: structured_carry.c and complex_carry.c hand these over in batches, from several threads.
  */
 #ifndef CARRY_H
 #define CARRY_H
@@ -19,7 +19,7 @@ typedef struct carry {
 
 enum { BATCH_EDGES = 1024 };
 
-/* Crossed edges whose vertices follow each other, from number `vertex` on. */
+/* Crossed edges whose vertices have consecutive numbers, from `vertex` on. */
 typedef struct edge_batch {
     uint64_t vertex;
     uint32_t count;

@@ -41,7 +41,7 @@ static int tetrahedron_corners(const void *source, uint64_t tetrahedron, double 
     return 4;
 }
 
-/* Points relative to the origin: the caller's own where they are that already. */
+/* Makes points relative to the origin. Uses the caller's array where that is so already. */
 static tc_status points_take(tc_grid *grid, const tc_tetrahedra_grid_options *o) {
     complex_grid *c = grid->complex;
     double *origin = grid->origin;

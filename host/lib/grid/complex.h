@@ -19,7 +19,7 @@ typedef struct complex_part {
     bool ranges_known;
 } complex_part;
 
-/* Of a surface that is in the workspace. */
+/* Counts of a surface in the workspace. */
 typedef struct surface_size {
     uint64_t vertex_count;
     uint32_t active_count, tile_actives;
@@ -30,7 +30,7 @@ typedef struct complex_grid {
     uint32_t point_count;
     uint32_t tetrahedron_count;
     const float *points; /* relative to the grid's origin */
-    float *own_points;   /* what points leads to where they are not the caller's; NULL: they are */
+    float *own_points;   /* memory of points; NULL where it is the caller's */
     const uint32_t *tetrahedra;
 
     /* Under an OpenCL engine: */
@@ -41,10 +41,11 @@ typedef struct complex_grid {
     bool carries;                /* a field was carried to a surface of the complex */
 } complex_grid;
 
-/* What its kernels are: one program, tried with emission or without. */
+/* The kind of its kernels: one program, tried with emission or without. */
 kernel_kind complex_kind(const tc_grid *grid, bool emits);
 
-/* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. share: of the whole call, for progress. */
+/* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. share: of the whole call, for
+ * progress. */
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
@@ -53,21 +54,21 @@ tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const 
 tc_status complex_describe(const tc_tetrahedra_grid_options *options, tc_grid *grid);
 void complex_release(tc_grid *grid);
 
-/* The sentence for a tetrahedron with a point that is not there. */
+/* Records the error for a tetrahedron with an invalid point number. */
 tc_status complex_point_fail(const complex_grid *c);
 
-/* The device path (complex_device.c); samples lie on both sides of the isovalue as far as their type goes. */
+/* The device path (complex_device.c); the sample type has values on both sides of the isovalue. */
 tc_status complex_device_create(tc_grid *grid);
 void complex_device_destroy(tc_grid *grid);
 tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
 tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
 
-/* True where this surface was the last to be counted or extracted; complex_device_carry needs that. It carries a field
- * to as many vertices as *vertex_count says; to none where there is room for more or fewer (complex_carry.c). */
+/* True where this surface was the last to be counted or extracted, which complex_device_carry needs. That carries a
+ * field to the *vertex_count vertices; to none where the caller's room is for another number (complex_carry.c). */
 bool complex_is_classified(const tc_grid *grid, double isovalue);
 tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
-/* The scalar reference (reference_complex.c), likewise. */
+/* The same by the scalar reference (reference_complex.c). */
 tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);
 tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh);
 tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);

@@ -17,7 +17,7 @@ typedef struct point_check {
     int64_t count;
     atomic_llong next;    /* chunk */
     atomic_llong fault;   /* the first point of a present sample that is not usable, or count */
-    atomic_bool excluded; /* some point is not usable, or some sample missing */
+    atomic_bool excluded; /* some point is not usable, or some sample is missing */
 } point_check;
 
 static uint32_t floats_most(const float *at, int64_t count) {
@@ -37,7 +37,7 @@ static bool floats_finite(const float *at, int64_t count) { return floats_most(a
 
 static bool point_usable(const tc_grid *grid, int64_t n) { return floats_usable(grid->points + 3 * n, 3); }
 
-/* Blanked samples are not looked for. */
+/* Whether some sample of the chunk has no value. Samples that are only blanked may be overlooked. */
 static bool chunk_misses(const tc_grid *grid, int64_t first, int64_t end) {
     bool misses = false;
     if (!grid->samples || !(grid->has_nodata || type_is_real(grid->type))) return false;
@@ -109,7 +109,7 @@ static void face_add(flux *f, const int64_t p[3], int axis, double sign) {
                       (triple_product(q[0], q[1], q[3]) + triple_product(q[1], q[2], q[3])));
 }
 
-/* All cubes count. */
+/* The flux through the grid's boundary, where all cubes count. */
 static void boundary_add(flux *f) {
     const int64_t *dims = f->grid->dims;
     for (int axis = 0; axis < 3; axis++) {
@@ -183,7 +183,7 @@ static void plane_add(flux *f, int64_t z, const uint8_t *below, const uint8_t *c
         }
 }
 
-/* Some cubes may not count. */
+/* The flux through the boundary of the cubes that count, where some may not. */
 static tc_status counted_add(flux *f) {
     const tc_grid *grid = f->grid;
     cube_planes planes = {0};
@@ -254,7 +254,7 @@ static tc_status own_coordinates_allocate(tc_grid *grid, uint64_t count) {
                                                    (unsigned long long)count);
 }
 
-/* Points relative to the origin: the caller's own where they are that already. */
+/* Makes points relative to the origin. Uses the caller's array where that is so already. */
 static tc_status points_move(tc_grid *grid) {
     const double *o = grid->origin;
     const uint64_t count = (uint64_t)grid_sample_count(grid);

@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-/* Finite, and so are differences. */
+/* Whether a coordinate is finite, and so are its differences from others. */
 static inline bool coordinate_usable(float value) { return fabsf(value) < 0x1p127f; }
 
 /* Sets the grid's origin (NULL: the one that fits it), its axes or points relative to that, and whether it is mirrored.

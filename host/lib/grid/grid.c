@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Indices up to here are exact in float32, as which vertices are placed: where a grid begins farther from 0 they count
- * from a number near it, but as many samples along an axis have to be exact in any case. */
+/* Indices up to here are exact in float32, in which vertices are placed. Where a grid begins farther from 0, indices
+ * count from a number near its first; so only the number of samples along an axis is limited by this. */
 static const int64_t index_limit = 1 << 24;
 
 size_t tc_type_bytes(tc_type type) { return sample_bytes(type); }
@@ -83,12 +83,12 @@ static void normal_matrix_derive(const double m[3][3], double determinant, float
     for (int n = 0; n < 9; n++) out[n] = (float)(c[n] / largest);
 }
 
-/* The double that the matrix gives for an index. */
+/* World coordinate r of an index, in double. */
 static double world_at(const double matrix[3][4], const double index[3], int r) {
     return matrix[r][0] * index[0] + matrix[r][1] * index[1] + matrix[r][2] * index[2] + matrix[r][3];
 }
 
-/* Where the grid lies, its cells being parallelepipeds. */
+/* The extent of a grid whose cells are parallelepipeds. */
 static void uniform_extent(const double matrix[3][4], const tc_grid *grid, extent *e) {
     *e = extent_empty;
     for (int r = 0; r < 3; r++) {
@@ -104,7 +104,7 @@ static void uniform_extent(const double matrix[3][4], const tc_grid *grid, exten
     }
 }
 
-/* So far away that even a double has no room for the grid's size: the origin is where the first index lies. */
+/* For a grid so far from 0 that doubles cannot resolve its size: the origin is at the first index. */
 static void uniform_origin(const double matrix[3][4], const extent *e, double origin[3]) {
     origin_choose(e, origin);
     for (int r = 0; r < 3; r++)
@@ -183,7 +183,7 @@ static tc_status matrix_take(const double given[3][4], const double *origin, tc_
     return TC_OK;
 }
 
-/* How many of a grid's arrays of positions are there. */
+/* How many of the three arrays of positions are given. */
 static int arrays_given(const void *x, const void *y, const void *z) { return (x != NULL) + (y != NULL) + (z != NULL); }
 
 static tc_status coordinates_check(const tc_grid_options *o) {
@@ -233,7 +233,8 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->cl_samples = o->cl_samples;
     grid->cl_samples_offset = o->cl_samples_offset;
     grid->has_nodata = o->has_nodata != 0;
-    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata; /* 0.1 is no f32, its nearest is one */
+    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata
+                                     : o->nodata; /* 0.1 is no float32; samples have the nearest float32 */
     grid->blanked_samples = o->blanked_samples;
     grid->blanked_cells = o->blanked_cells;
     status = coordinates_check(o);

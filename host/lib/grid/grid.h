@@ -21,7 +21,7 @@ typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEA
 
 struct tc_grid {
     tc_context *context;
-    scan_parameters scan; /* those of the context, but in a trial */
+    scan_parameters scan; /* the context's, except in a trial */
     int64_t dims[3];
     int64_t first[3];
     tc_type type;
@@ -36,8 +36,8 @@ struct tc_grid {
     double origin[3];       /* world coordinates minus this are what matrix, axes and points give */
     const float *axes[3];   /* rectilinear */
     const float *points;    /* curvilinear */
-    coordinate_array given_axes[3], given_points; /* as the caller gave them, while the grid is described */
-    float *own_coordinates; /* what axes or points lead to where they are not the caller's; NULL: they are */
+    coordinate_array given_axes[3], given_points;   /* as the caller gave them, while the grid is described */
+    float *own_coordinates;                         /* memory of axes or points; NULL where it is the caller's */
     const uint8_t *blanked_samples, *blanked_cells; /* or NULL */
     bool mirrored;                                  /* negative determinant, or sum of the Jacobians */
     struct device_grid *device;                     /* NULL under the reference engine */
@@ -47,11 +47,11 @@ struct tc_grid {
 /* The caller's options, complete and checked. */
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
 
-/* Checks the options and fills *grid, which is zeroed, but for context, scan and device; to be released in any case. */
+/* Checks the options and fills *grid, which is zeroed, except for context, scan and device. Release it in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 void grid_release(tc_grid *grid);
 
-/* TC_ERROR_ARGUMENT for an origin that the caller gives and that is no place. */
+/* TC_ERROR_ARGUMENT for an origin of the caller that is not finite. */
 tc_status origin_check(int has_origin, const double origin[3]);
 
 static inline int64_t grid_sample_count(const tc_grid *grid) { return grid->dims[0] * grid->dims[1] * grid->dims[2]; }

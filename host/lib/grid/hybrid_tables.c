@@ -1,5 +1,5 @@
 /*
- * The cases of a cube in the hybrid method: marching cubes, with tetrahedra to decide what is ambiguous.
+ * The cases of a cube in the hybrid method: marching cubes, whose ambiguous faces are decided as by the tetrahedra.
  *
  * Vertices lie on the twelve edges of a cube. On a face with four of them the diagonal by which the face is cut joins
  * two corners of one sign, so each of the other two is cut off on its own, as the tetrahedra would do it; both cubes of
@@ -35,7 +35,7 @@ static int diagonal_at(unsigned parity, unsigned corner) {
     return memchr(tetrahedron_corners[parity][0], (int)corner, 4) != NULL;
 }
 
-/* Enters the sides that start or end in a face into next: of an edge, the one that follows it in its loop. */
+/* Enters the sides of the patch in a face into `next`: for an edge, the edge that follows it in its loop. */
 static void face_sides(unsigned parity, unsigned pattern, const uint8_t corners[FACE_CORNERS],
                        uint8_t next[CUBE_EDGES]) {
     uint8_t places[FACE_CORNERS];
@@ -62,7 +62,7 @@ static int middle(unsigned edge, unsigned axis) {
     return (int)(2 * start[axis] + (e.type == axis));
 }
 
-/* What a chord between two edges costs. */
+/* The squared length of the chord between the middles of two edges, or more for chords to avoid. */
 static int chord_cost(unsigned a, unsigned b) {
     int cost = 0;
     for (unsigned axis = 0; axis < 3; axis++) {

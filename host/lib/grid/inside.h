@@ -14,15 +14,15 @@
 #include <stdbool.h>
 
 typedef struct inside_range {
-    bool uniform; /* every sample of the type is on the same side: no surface */
+    bool uniform; /* all values of the type are on the same side: no surface */
     uint64_t low, span;
-    uint64_t key_flip;                /* of integers: see slab.h */
+    uint64_t key_flip;                /* for integers: see slab.h */
     uint32_t key_inside, key_outside; /* ranges of bricks compare with them: see slab.h */
 } inside_range;
 
 inside_range inside_range_of(tc_type type, double isovalue);
 
-/* Patterns of the samples that equal value, two for zero in floating types. False where none can. */
+/* Bit patterns of samples that equal `value`: two for zero in floating types. False where no sample can equal it. */
 bool sample_patterns(tc_type type, double value, uint64_t patterns[2]);
 
 #endif

@@ -18,7 +18,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Coordinates as the caller gave them: one of the two is there. */
+/* Coordinates as the caller gave them; one of the two pointers is not NULL. */
 typedef struct coordinate_array {
     const float *f32;
     const double *f64;
@@ -46,7 +46,8 @@ void origin_choose(const extent *e, double origin[3]);
  * at once. */
 typedef int cell_corners(const void *source, uint64_t cell, double corners[][3]);
 
-/* The origin of a grid of that many cells. Looks at a sample of them first, and at all where these may lie far. */
+/* The origin of a grid of cell_count cells. Reads some cells first, and all cells only where the grid may lie far from
+ * 0. */
 void origin_find(cell_corners *corners, const void *source, uint64_t cell_count, double origin[3]);
 
 /* Writes tuples of coordinates minus those of the origin, rounded to float32: three components of points, one of an

@@ -57,10 +57,10 @@ owned_edge edge_between(unsigned corner_a, unsigned corner_b);
  * owned by samples at x + 1. */
 extern const owned_edge cube_edges[CUBE_EDGES];
 
-/* The place there of the edge between two corners. */
+/* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b);
 
-/* What all tetrahedra of a cube emit, derived from the tables above: edges are places in cube_edges. */
+/* What all tetrahedra of a cube emit, derived from the tables above; edges are indices in cube_edges. */
 typedef struct cube_case {
     uint8_t triangle_count;
     uint8_t edges[CUBE_TRIANGLES_MAX][3];

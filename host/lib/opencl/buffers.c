@@ -90,7 +90,7 @@ tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const v
     return error ? context_fail(context, "reading results back", error) : TC_OK;
 }
 
-/* What kernel 1 has left is lost with it. */
+/* Releases the workspace, with the results of kernel 1 in it. */
 void workspace_release(tc_context *context) {
     context->counted = context->classified = NULL;
     device_buffer *buffers = (device_buffer *)&context->work;

@@ -12,7 +12,8 @@ enum { PATH_BYTES = 4096, NAME_BYTES = 96 };
 
 static const off_t file_bytes_most = 1 << 28;
 
-/* Programs that run with another user's rights take no machine code from a place that the environment names. */
+/* A program that runs with another user's rights must not load machine code from a folder that the environment names.
+ */
 static bool folder_name(char path[PATH_BYTES]) {
     const char *own = secure_getenv("TETRACUBES_CACHE_DIR"), *xdg = secure_getenv("XDG_CACHE_HOME");
     const char *home = secure_getenv("HOME");
@@ -31,7 +32,7 @@ bool cache_is_on(void) {
     return folder_name(folder);
 }
 
-/* This user's or root's, and written by nobody else. */
+/* Whether a file is owned by this user or root, and nobody else may write to it. */
 static bool is_trusted(int file) {
     struct stat about;
     return !fstat(file, &about) && (about.st_uid == geteuid() || about.st_uid == 0) &&
@@ -52,7 +53,7 @@ bool cache_path(const char *name, char *path, size_t bytes) {
     return folder_name(folder) && snprintf(path, bytes, "%s/%s", folder, name) < (int)bytes;
 }
 
-/* The folder at the path, with those above it: its own user's alone, as the XDG base directories are. */
+/* Makes the folder and those above it, accessible to this user only, as XDG base directories are. */
 static void folders_make(char *path) {
     for (char *at = strchr(path + 1, '/'); at; at = strchr(at + 1, '/')) {
         *at = 0;
@@ -107,7 +108,7 @@ bool cache_read(const char *name, cache_text *out) {
     return done;
 }
 
-/* A new file of no other process, and its name. */
+/* Creates a temporary file with a name that no other process uses. */
 static int beside_make(int folder, const char *name, char beside[NAME_BYTES]) {
     int file = -1;
     for (unsigned n = 0; n < 100 && file < 0 && (n == 0 || errno == EEXIST); n++) {

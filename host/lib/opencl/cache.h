@@ -3,7 +3,7 @@
  *
  * It is TETRACUBES_CACHE_DIR, else XDG_CACHE_HOME/tetracubes, else HOME/.cache/tetracubes, of the environment; none
  * where TETRACUBES_CACHE_DIR is empty. A file appears whole or not at all: it is written beside and renamed, so that
- * processes may share the folder. What cannot be read or written is done without.
+ * processes may share the folder. A file that cannot be read or written is treated as missing.
  *
  * Files are handed to drivers as machine code. So folder and file have to be this user's or root's, and nobody else may
  * be able to write to them; others are neither read nor replaced.
@@ -28,7 +28,7 @@ bool cache_write(const char *name, const void *bytes, size_t count);
 /* The name of the file with its folder; false where there is no folder. */
 bool cache_path(const char *name, char *path, size_t bytes);
 
-/* True where there is a folder to be used, whether it exists yet or not. */
+/* True where a cache folder is configured, whether it exists yet or not. */
 bool cache_is_on(void);
 
 #endif

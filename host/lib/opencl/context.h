@@ -15,16 +15,16 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* A buffer that grows when it has to and is kept. */
+/* A buffer that grows on demand and is kept between extractions. */
 typedef struct device_buffer {
     cl_mem memory;
     uint64_t bytes;
-    host_block block; /* where it lies, on devices that work in place */
+    host_block block; /* its memory, on devices that work in the host's memory */
 } device_buffer;
 
 enum { KERNELS_MOST = COMPLEX_KERNELS, PROGRAM_OPTIONS_BYTES = 512 };
 
-/* Kernels as built with some options: one of the two, or those of complexes. */
+/* A program of kernels, built with certain options. */
 typedef struct program {
     char asked[PROGRAM_OPTIONS_BYTES];   /* its options but for the work-items, which a kernel may allow fewer of */
     char options[PROGRAM_OPTIONS_BYTES]; /* those that it was built with */
@@ -36,7 +36,7 @@ typedef struct program {
     struct program *next;
 } program;
 
-/* What kernel 1 leaves for kernel 2, per word or brick of the window of sign words. */
+/* Results of kernel 1 for kernel 2, per word or brick of the window of sign words. */
 typedef struct word_buffers {
     device_buffer words, offsets, triangle_offsets, bricks, active;
 } word_buffers;
@@ -45,17 +45,17 @@ typedef struct mesh_buffers {
     device_buffer positions, normals, triangles;
 } mesh_buffers;
 
-/* What a grid is given by, a value or more per sample or cube. */
+/* The arrays of a grid, with one or more values per sample or cube. */
 enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, ARRAY_COUNT };
 
-/* What the kernels of complexes leave for each other. */
+/* Results that the kernels of complexes pass to each other. */
 typedef struct complex_buffers {
     device_buffer clusters, active_clusters, state, cases;
     device_buffer active, entries, table, tiles;
 } complex_buffers;
 
-/* All that kernels need besides arrays of the grid that fit whole. A second window is in use where copies overlap
- * kernels. */
+/* All buffers of kernels except arrays that the grid keeps whole on the device. The second window is used where copies
+ * overlap kernels. */
 typedef struct workspace {
     word_buffers words[2];
     device_buffer arrays[2][ARRAY_COUNT];
@@ -79,22 +79,22 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
-    bool is_trial;                    /* kernels are built without asking what is known of them */
-    bool tries;                       /* a trial is under way: progress is not told (trial.c) */
+    bool is_trial;                    /* kernels are built without vetting */
+    bool tries;                       /* a trial is running: progress is not reported (trial.c) */
     bool text_changed;                /* the other text was taken within a call, which starts again */
     bool vetted[KERNEL_KINDS + 1];    /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *served;     /* the grid that the workspace was last used for */
     bool passed[KERNEL_KINDS];        /* kernels that were tried (trial.c) */
     const struct tc_grid *counted;    /* whose counts the workspace holds since tc_count; NULL: none */
-    const struct tc_grid *classified; /* whose surface it knows, counted or extracted; NULL: no grid's */
+    const struct tc_grid *classified; /* whose surface it holds, counted or extracted; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
 
 /* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */
 tc_status context_fail(const tc_context *context, const char *what, cl_int error);
 
-/* True in a child of the process that made the context, which has no threads of the driver's: commands are never done
- * there, and OpenCL objects are left alone. */
+/* True in a forked child of the process that made the context. The child lacks the driver's threads, so commands would
+ * never finish there; OpenCL objects are left alone. */
 bool context_is_inherited(const tc_context *context);
 
 /* TC_ERROR_DEVICE, with what to do, for such a context. */
@@ -103,7 +103,7 @@ tc_status context_check(const tc_context *context);
 /* Waits for all commands, where they can end. */
 void context_finish(const tc_context *context);
 
-/* Tells the caller how far the work is; TC_ERROR_CANCELLED where it asks to stop. */
+/* Reports progress to the caller; TC_ERROR_CANCELLED where the caller asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
 /* False where vertices of a wide type have to be made on the host. */
@@ -116,7 +116,7 @@ tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags 
 /* Makes the queue of copies, in order like the other, where there is none yet. */
 tc_status copies_queue_provide(tc_context *context);
 
-/* Makes the buffer at least so large; its content is lost where it has to grow. name is for the error. */
+/* Makes the buffer at least `bytes` large; its content is lost where it has to grow. name is for the error. */
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);
 void buffer_release(tc_context *context, device_buffer *buffer);
 
@@ -124,11 +124,11 @@ void buffer_release(tc_context *context, device_buffer *buffer);
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
 
-/* Has the host see `bytes` of what the device wrote, until it is unmapped; waits for commands before. */
+/* Maps the first `bytes` of a buffer for the host to read; waits for earlier commands. */
 tc_status buffer_map(tc_context *context, const device_buffer *buffer, uint64_t bytes, const void **memory);
 tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const void *memory); /* NULL: nothing */
 
-/* Gives the buffers back that are kept between extractions. */
+/* Releases the buffers that are kept between extractions. */
 void workspace_release(tc_context *context);
 
 /* Milliseconds of a clock that only runs forward. */

@@ -44,7 +44,7 @@ static tc_status platform_list_make(platform_list *list) {
     return TC_OK;
 }
 
-/* Wakes the driver of platform p. One without devices is passed over. */
+/* Appends the devices of platform p, which wakes its driver. A platform without devices is skipped. */
 static void devices_append(device_list *list, const platform_list *platforms, cl_uint p) {
     cl_device_id devices[DEVICES_MAX];
     cl_uint device_count = 0, room = (cl_uint)(DEVICES_MAX - list->count);
@@ -96,13 +96,13 @@ static tc_status device_list_make(device_list *list) {
     return status || list->count ? status : no_device(&platforms, list);
 }
 
-/* Questions to a device; error: the first that it did not answer. */
+/* Queries to a device; error: the first failure. */
 typedef struct questions {
     cl_device_id device;
     cl_int error;
 } questions;
 
-/* Asks; false where the answer is not to be had. A version of OpenCL that does not know the question is no failure. */
+/* Queries; false where there is no answer. A query that the device's OpenCL version does not know is no failure. */
 static bool ask(questions *q, cl_device_info what, size_t bytes, void *answer) {
     cl_int error = cl->GetDeviceInfo(q->device, what, bytes, answer, NULL);
     if (error && error != CL_INVALID_VALUE && !q->error) q->error = error;
@@ -136,7 +136,7 @@ static void platform_get(questions *q, tc_device_info *info) {
     if (error && !q->error) q->error = error;
 }
 
-/* Nothing can be done without these. */
+/* The limits that every extraction needs. */
 static tc_status limits_check(const tc_device_info *info) {
     const char *none = !info->compute_units         ? "compute units"
                        : !info->max_work_group_size ? "work-groups"
@@ -205,7 +205,7 @@ static bool device_matches(const char *specification, int index, const device_ch
     return text_contains(info.name, specification) || text_contains(info.platform, specification);
 }
 
-/* Platforms behind that of the device meant stay asleep: a driver may take long to wake. */
+/* Stops at the platform of the device: waking the drivers of further platforms may take long. */
 tc_status device_choose(const char *specification, device_choice *choice) {
     platform_list platforms;
     device_list list = {0};

@@ -17,7 +17,7 @@ typedef struct device_choice {
 /* specification: as tc_context_options.device, NULL for the default. */
 tc_status device_choose(const char *specification, device_choice *choice);
 
-/* The place of a device among all of this machine; false where it is none of them. */
+/* The indices of a device among all of this machine; false where it is none of them. */
 bool device_find(cl_device_id device, int *platform_index, int *device_index);
 
 /* Fills all but the indices, which stay -1 where the device is not one of a choice. */

@@ -1,5 +1,5 @@
 /*
- * kernel_kind.h - what decides on the kernels of a call: for each kind they are built, tried and judged apart
+ * kernel_kind.h - the kind of a call's kernels: each kind is built, tried and judged separately
  */
 #ifndef KERNEL_KIND_H
 #define KERNEL_KIND_H

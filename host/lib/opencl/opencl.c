@@ -13,7 +13,7 @@
 const struct opencl_functions *cl;
 
 static struct opencl_functions functions;
-static char load_error[200]; /* what the system says of a loader that does not load */
+static char load_error[200]; /* the system's message where the loader cannot be loaded */
 static pthread_once_t load_once = PTHREAD_ONCE_INIT;
 
 static void load(void) {
@@ -56,7 +56,7 @@ void opencl_awake(void) {
     atomic_compare_exchange_strong(&awake_in, &none, (int)getpid());
 }
 
-/* Forked processes first: a thread that is not there any more may hold the lock. */
+/* Checks for a fork first: a thread that does not exist in the child may hold the lock. */
 tc_status opencl_lock(void) {
     const int process = atomic_load(&awake_in);
     if (process && process != getpid()) return opencl_forked_fail("this process was forked from one that uses OpenCL");

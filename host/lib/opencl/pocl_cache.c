@@ -27,7 +27,7 @@ static void find_folder(char *folder, size_t bytes) {
         snprintf(folder, bytes, "/tmp/pocl/kcache");
 }
 
-/* Whether a folder can be made in that one: tried, as permissions do not tell of /proc, or of disks that are full. */
+/* Whether a folder can be made in this one. It is tried, as permissions do not reveal /proc or a full disk. */
 static bool has_room(const char *folder) {
     static const char probe[] = "/.tetracubes-XXXXXX";
     char path[PATH_MAX + sizeof probe];

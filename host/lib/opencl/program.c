@@ -1,7 +1,6 @@
 /*
- * Kernels: the .cl files of the source tree, embedded as text, built for one sample type at a time, and taken from the
- * cache of built programs where that has them. What was built here is put there at the end of the context, when the
- * kernels have run.
+ * Programs of kernels: the .cl files, embedded as text, built for one sample type at a time or loaded from the cache of
+ * built programs. Programs built here are stored there when the context ends, after their kernels have run.
  */
 #include "opencl/program.h"
 
@@ -45,7 +44,7 @@ static void emit_options_write(const tc_context *context, kernel_kind kind, unsi
              context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
-/* Complexes have points, and no cells: what is missing has no tetrahedra. */
+/* Complexes are always built for missing samples: a tetrahedron that has one is never active. */
 static void complex_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
     const kernel_kind built = {.type = kind.type, .missing = true};
     char common[PROGRAM_OPTIONS_BYTES - 16];
@@ -121,7 +120,7 @@ static tc_status program_build(const tc_context *context, program *p) {
 
 static const uint32_t items_step = 32; /* kernels of groups take whole parts of a brick's 32 words */
 
-/* What a kernel allows per group, and the multiple of work-items that suits the device. */
+/* The most work-items per group that kernels allow, and the multiple that the device prefers. */
 typedef struct group_limit {
     const char *kernel; /* that allows the fewest */
     size_t most, multiple;
@@ -151,7 +150,7 @@ static tc_status kernels_create(const tc_context *context, program *p, const cha
     return status;
 }
 
-/* Gives back what was built, not the program's place. */
+/* Releases what was built; the program stays in the list. */
 static void program_clear(program *p) {
     for (int n = 0; n < KERNELS_MOST; n++)
         if (p->kernels[n]) cl->ReleaseKernel(p->kernels[n]);

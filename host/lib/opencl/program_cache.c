@@ -1,10 +1,10 @@
 /*
  * A file per program: a head, the key, the binary.
  *
- * The key is the text of all that decides on the binary: device, vendor, versions, options, sources. It is kept and
- * compared whole, so that the hash in the file's name need only be spread well. FNV-1a does that in two lines; the core
- * has no library for a better one. The checksum finds damage: an implementation handed half a binary may crash. A file
- * that is not right in every byte is as good as none, and is replaced after the next build.
+ * The key is the text of all that determines the binary: device, vendor, versions, options, sources. It is stored and
+ * compared whole, so the hash in the file's name only has to be well distributed: FNV-1a, two lines, is enough. The
+ * checksum finds damage: an implementation handed half a binary may crash. A file that is not right in every byte is as
+ * good as none, and is replaced after the next build.
  */
 #include "opencl/program_cache.h"
 
@@ -21,7 +21,7 @@ typedef struct head {
     uint64_t checksum; /* of key and binary */
 } head;
 
-static const char magic[] = "tetracubes prg 1"; /* without its end */
+static const char magic[] = "tetracubes prg 1"; /* stored without the terminating 0 */
 
 static uint64_t hash_of(const char *bytes, size_t count) {
     uint64_t hash = 0xcbf29ce484222325u;
@@ -117,8 +117,8 @@ cl_program program_cache_load(const tc_context *context, const program_recipe *r
 
 enum { DEVICES_MOST = 64 };
 
-/* Where the context's device stands among those of the program: all of the OpenCL context, which may be the caller's.
- */
+/* The index of the context's device among the program's devices. These are all devices of the OpenCL context, which may
+ * be the caller's. */
 typedef struct place {
     cl_uint index, count;
 } place;
@@ -133,7 +133,7 @@ static bool place_find(const tc_context *context, cl_program built, place *at) {
     return false;
 }
 
-/* 0 where the implementation tells no binary. */
+/* 0 where the implementation gives no binary. */
 static size_t binary_bytes(cl_program built, place at) {
     size_t sizes[DEVICES_MOST] = {0};
     cl_int error = cl->GetProgramInfo(built, CL_PROGRAM_BINARY_SIZES, at.count * sizeof *sizes, sizes, NULL);

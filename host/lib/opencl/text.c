@@ -6,8 +6,8 @@
  * extensions of the other may abort the process. Nothing but speed depends on the choice.
  *
  * PoCL 6.0 with LLVM 18 or 19 asks the optimiser to check itself (pass instcombine, verify-fixpoint), and aborts the
- * process where code could be simplified twice. The kernels are written so that it does not; but what it takes is luck,
- * so it does not count as tried, and first builds in a process of its own where a trial is asked for. */
+ * process where code could be simplified twice. The kernels do not trigger that now, but nothing guarantees it.
+ * So these versions do not count as tried: where a trial is asked for, they first build in a process of their own. */
 static const text_rule rules[] = {
     {"Portable Computing Language", "cpu", TEXT_ALONE, true, "3.1",
      "PoCL compiles by Clang; one work-item per group is three times as fast there"},

@@ -24,7 +24,7 @@ static const struct {
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 
 static const uint32_t work_items_most = 1024; /* CPUs keep the variables of all work-items of a group on one stack */
-static const uint32_t kept_most = 1u << 16;   /* more groups, or bricks, would do nothing but fill memory */
+static const uint32_t kept_most = 1u << 16;   /* more groups, or bricks, would only use memory */
 
 /* Groups share bricks, for each of which they need local memory. */
 static uint32_t work_items_limit(const tc_device_info *device) {
@@ -49,7 +49,7 @@ static void device_text(const tc_device_info *d, char out[1024]) {
         if ((unsigned char)*c < ' ') *c = ' ';
 }
 
-/* Behind the parameters at the start of the line; NULL where it is of another form. */
+/* Parses the parameters at the start of a line; returns the text after them, NULL where the form is another. */
 static const char *parameters_parse(const char *line, tc_tuning *out) {
     for (int n = 0; n < PARAMETERS; n++) {
         size_t length = strlen(parameters[n].name);
@@ -64,7 +64,7 @@ static const char *parameters_parse(const char *line, tc_tuning *out) {
     return line;
 }
 
-/* What the file keeps for the device, where the device can do it. */
+/* The parameters that the file has for the device, where they are within its limits. */
 static bool kept_find(const tc_device_info *device, tc_tuning *out) {
     char name[1024], *rest = NULL;
     cache_text file;
@@ -85,7 +85,7 @@ static void line_write(FILE *out, const tc_tuning *tuning, const char *device) {
     fprintf(out, "%s\n", device);
 }
 
-/* The lines of other devices, as they are. */
+/* Writes the lines of other devices unchanged. */
 static void others_write(FILE *out, const char *device) {
     cache_text file;
     char *rest = NULL;

@@ -5,7 +5,7 @@
  *
  *     work_items=1 work_groups=2 tile_bricks=0 device=NAME, 2 units, PLATFORM, VERSION, driver DRIVER
  *
- * A line that is not of this form, or has values that no device can do with, is passed over.
+ * A line of another form, or with values that no device allows, is ignored.
  */
 #ifndef TUNING_H
 #define TUNING_H
@@ -26,7 +26,7 @@ typedef struct launch_parameters {
     uint32_t other_items; /* work-items of the other text of the kernels; 0: there is none to take (vetting.c) */
 } launch_parameters;
 
-/* What the options leave at 0 is chosen. TC_ERROR_ARGUMENT for what the device cannot do. */
+/* Chooses the parameters that the options leave at 0. TC_ERROR_ARGUMENT for values beyond the device's limits. */
 tc_status tuning_choose(const tc_expert_options *options, const tc_device_info *device, launch_parameters *out);
 
 /* Puts the parameters into the file, in place of what it has for the device. */

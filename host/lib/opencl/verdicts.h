@@ -1,8 +1,8 @@
 /*
  * verdicts.h - verdicts of trials, kept in the cache: a file of four lines per device, driver and kind of kernels
  *
- * The first three lines are the key, compared whole; the fourth is the verdict with its reason. What is not so in every
- * byte is as good as none. Files of drivers and versions that are gone are never read again.
+ * The first three lines are the key, compared whole; the fourth is the verdict with its reason. A file that differs
+ * from this in any byte is ignored. Files of drivers and versions that are gone are never read again.
  */
 #ifndef VERDICTS_H
 #define VERDICTS_H
@@ -14,7 +14,7 @@ typedef struct kept_verdict {
     char reason[600];
 } kept_verdict;
 
-/* Of the kernels that the context builds now, by the number of their kind. */
+/* Reads the verdict on the kernels of a kind, by its number, in the text that the context builds now. */
 void verdict_read(const tc_context *context, unsigned kind, kept_verdict *out);
 void verdict_write(const tc_context *context, unsigned kind, const kept_verdict *verdict);
 

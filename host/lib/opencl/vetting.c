@@ -16,7 +16,7 @@ enum { OPENING = KERNEL_KINDS }; /* the number of the device itself, beside thos
 
 /* ----------------------------------------------------------------------------------------------------------- driver */
 
-/* Nobody has seen it fail, with the text that the context builds, or when it is opened. */
+/* Whether the driver counts as tried, with the text that the context builds, or for opening the device. */
 static bool driver_is_known(const tc_context *context, unsigned kind) {
     const bool usual = text_for(context->launch.work_items) == text_rule_of(&context->info)->text;
     return text_tried(&context->info) && (usual || kind == OPENING);
@@ -48,8 +48,8 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
     return true;
 }
 
-/* A verdict that the next run may not find again is not kept: nor one without a linker, as a good one rests then on
- * what the cache has. */
+/* Asks for a trial. A verdict that the next run may not reproduce is not kept; nor is one without a linker, as a good
+ * one then depends on what PoCL's cache holds. */
 static void trial_ask(const tc_context *context, unsigned kind, kept_verdict *out) {
     char job[256];
     *out = (kept_verdict){TC_VERDICT_NONE, ""};
@@ -92,7 +92,7 @@ static tc_status verdict_fail(const tc_context *context, unsigned kind, const ke
 
 /* ------------------------------------------------------------------------------------------------------------ texts */
 
-/* From here on nothing of the text before is left. */
+/* Switches to the other text and drops all that was built from the first. */
 static void text_exchange(tc_context *context) {
     cl->Finish(context->queue);
     workspace_release(context);

@@ -1,9 +1,9 @@
 /*
- * vetting.h - no driver builds kernels in this process that is not known to be good, where the caller can have it tried
+ * vetting.h - before a driver builds kernels in this process: is it known to be good, or can the caller try it apart?
  *
  * What is known comes from the table of drivers, from verdicts kept in the cache, and else from the trial that the
  * context's options name (tetracubes.h). Where a text of the kernels is bad the other one is taken, if work_items is
- * the library's to choose; none left is an error that says what the driver did.
+ * the library's to choose; if none is left, that is an error that says what the driver did.
  */
 #ifndef VETTING_H
 #define VETTING_H

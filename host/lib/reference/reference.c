@@ -28,7 +28,7 @@ typedef struct reference {
     tc_mesh *mesh;    /* NULL: count only */
     const carry *carried;
     bool normals, hybrid;
-    int edge_types; /* with vertices: of each sample the first so many */
+    int edge_types; /* types of edges with vertices: the first so many */
     cube_case hybrid_cases[2][256];
     uint64_t vertex_count, triangle_count, active_cell_count;
 } reference;
@@ -104,7 +104,7 @@ static bool edge_exists(const reference *r, const int64_t owner[3], int type) {
     return false;
 }
 
-/* A row of cubes and edges without a sign change, neighbours included, has nothing to emit. */
+/* Whether a row of cubes and edges has no sign change, neighbours included: it then emits nothing. */
 static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     int64_t count = (x1 < r->dims[0] ? x1 + 1 : x1) - x0;
     uint8_t any = 0, all = INSIDE;
@@ -119,11 +119,11 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-/* The samples that a difference along one axis is taken between: central, one-sided at borders and beside missing
- * samples, the same one twice between two. */
+/* The two samples whose difference along an axis is taken: central; one-sided at borders and beside missing samples;
+ * the same sample twice, so 0, where both sides are a border or missing. */
 typedef struct neighbours {
     int64_t before[3], after[3];
-    float weight; /* 1/16 of the usual one, so that nothing that is made of differences overflows */
+    float weight; /* 1/16 of the usual weight, so that products of differences do not overflow */
 } neighbours;
 
 static neighbours neighbours_of(const reference *r, const int64_t p[3], int axis) {
@@ -180,7 +180,7 @@ static float edge_crossing(const reference *r, const int64_t a[3], const int64_t
                                        : crossing_f32(value_a, value_b, r->isovalue);
 }
 
-/* Few edges have a vertex: the loop over all of them keeps its registers. */
+/* Not inlined, as few edges have a vertex: the loop over all edges keeps its registers. */
 __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
     const float t = edge_crossing(r, a, b);
     float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
@@ -282,7 +282,7 @@ static void layer_run(reference *r, int64_t layer, row_stage *stage) {
                     stage(r, x0, x0 + BRICK_X < r->dims[0] ? x0 + BRICK_X : r->dims[0], y, z);
 }
 
-/* progress: where this stage begins in the whole call, and how much of it it is. */
+/* before, share: where this stage begins in the whole call and its share of it, for progress. */
 static tc_status layers_run(reference *r, const char *stage, double before, double share) {
     int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
@@ -309,7 +309,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     return TC_OK;
 }
 
-/* Zeros: an edge without a vertex is never asked for, unless samples change meanwhile. */
+/* Zeroed: edges without a vertex are read only where the caller changes samples meanwhile. */
 static tc_status ids_allocate(reference *r) {
     size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * EDGES_PER_SAMPLE;
     for (int n = 0; n < 2; n++)
@@ -318,7 +318,7 @@ static tc_status ids_allocate(reference *r) {
     return TC_OK;
 }
 
-/* What has been emitted is what was counted, unless what the caller has lent has changed in between. */
+/* Whether as much was emitted as was counted: not where the caller has changed its arrays in between. */
 static tc_status mesh_complete(const reference *r, bool triangles) {
     if (r->vertex_count == r->mesh->vertex_count && (!triangles || r->triangle_count == r->mesh->triangle_count))
         return TC_OK;

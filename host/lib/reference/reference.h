@@ -13,14 +13,14 @@
 /* Counts only. counts->struct_size is left alone. */
 tc_status reference_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 
-/* Fills the mesh; on failure it is in no defined state and to be cleared. */
+/* Fills the mesh. After a failure its content is undefined: clear it. */
 tc_status reference_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
 /* Makes the positions and normals alone of a mesh that is already allocated, for devices that cannot (u32, i32 and f64
  * samples without fp64). */
 tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
-/* Carries a field to the vertices that there is room for; *vertex_count: how many there are. */
+/* Carries a field to as many vertices as there is room for; *vertex_count: how many the surface has. */
 tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                           uint64_t *vertex_count);
 

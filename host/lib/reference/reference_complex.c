@@ -1,6 +1,6 @@
 /*
- * The scalar reference of complexes: one loop over the tetrahedra counts, another emits. A table of the crossed edges
- * met so far tells whose vertex is there already, so that vertices are numbered as they are met.
+ * The scalar reference of complexes: one loop over the tetrahedra counts, another emits. A hash table holds the crossed
+ * edges met so far with their vertices; vertices are numbered in the order in which edges are first met.
  */
 #include "grid/complex.h"
 #include "reference/carry_vertex.h"
@@ -45,7 +45,7 @@ static bool table_allocate(reference *r, uint64_t size) {
     return r->table != NULL;
 }
 
-/* The edge's entry, or the free one where it belongs. */
+/* The edge's entry, or the free entry for it. */
 static edge_entry *edge_find(const reference *r, uint32_t low, uint32_t high) {
     uint64_t hash = ((uint64_t)high << 32 | low) * 0x9e3779b97f4a7c15u;
     uint64_t n = (hash ^ hash >> 29) & (r->table_size - 1);
@@ -80,7 +80,7 @@ static tc_status change_fail(void) {
     return (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a surface was made of them");
 }
 
-/* The vertex on the edge of two points, made when it is met first. */
+/* The number of the vertex on the edge of two points; makes the vertex when the edge is first met. */
 static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     tc_status status = table_grow(r);
@@ -134,7 +134,7 @@ static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
     return status;
 }
 
-/* progress: where this stage begins in the whole call, and how much of it it is. */
+/* before, share: where this stage begins in the whole call and its share of it, for progress. */
 static tc_status tetrahedra_run(reference *r, const char *stage, double before, double share) {
     const complex_grid *c = r->grid->complex;
     const uint64_t count = c->tetrahedron_count, steps = 64;

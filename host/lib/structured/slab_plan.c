@@ -126,7 +126,8 @@ static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_
     return low;
 }
 
-/* The same with sign words whole where one layer per slab leaves room for them, else with windows of them. */
+/* As layers_fit. Keeps all sign words on the device where at least one layer per slab fits beside them, else windows.
+ */
 static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
                             uint64_t budget) {
     uint64_t bytes;
@@ -146,7 +147,8 @@ static slab_plan plan_begin(const tc_grid *grid) {
                        .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
 }
 
-/* Bytes of everything but the mesh, at the least and where all is whole; false: buffers are too large for that. */
+/* The least bytes of everything but the mesh, and the bytes with all arrays whole; false where a buffer is too large.
+ */
 static bool plan_least(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
     slab_plan plan = plan_begin(grid);
     plan.samples_whole = grid->cl_samples != NULL;

@@ -20,18 +20,18 @@ typedef struct slab_plan {
     bool overlaps;                               /* copies and kernels run at once: windows are double */
     uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
     uint32_t scratch_words;                      /* per group */
-    uint32_t work_items;                         /* that tiles are shaped for */
+    uint32_t work_items;                         /* for which tiles are shaped */
     uint64_t mesh_bytes;                         /* bound on the mesh, or all windows of it */
 } slab_plan;
 
-/* The least budget from which on a grid can be extracted from whatever its samples are, normals included; and whole,
- * for tc_emit, without its mesh. As far as the device's limit on buffers allows. */
+/* The least budget with which a grid can be extracted whatever its samples are, normals included; and with which it can
+ * be whole on the device, as tc_emit needs, without the mesh. Within the device's limit on buffers. */
 uint64_t plan_budget(const tc_context *context, const tc_grid *grid);
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid);
 
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
-/* Shapes the tiles anew where the context's text of the kernels is another than when the plan was made. */
+/* Shapes the tiles again where the context has changed to the other text of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
 /* Planes z0 <= z < z1 of a slab. */
@@ -42,7 +42,7 @@ uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_inde
 uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index);
 uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
 
-/* How many windows of samples, and of sign words where these are not whole, there are: 1 or 2. */
+/* The number of windows of samples, and of sign words that are not whole: 1 or 2. */
 uint32_t plan_window_count(const slab_plan *plan);
 
 /* Bytes of an array of the grid in one window, or of all of it; 0 where there is none, or it is the caller's buffer. */

@@ -81,7 +81,7 @@ static tc_status word_buffers_reserve(run *r, word_buffers *w) {
     return status ? status : buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
 }
 
-/* Windows kept for another grid would come on top of the memory that this one may have. */
+/* Releases windows of another grid, which would exceed the budget together with those of this grid. */
 static void windows_trim(run *r) {
     workspace *w = &r->context->work;
     uint32_t windows = plan_window_count(r->plan);
@@ -102,7 +102,7 @@ static tc_status workspace_reserve(run *r) {
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
     if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
-        workspace_release(r->context); /* what another grid has left could make too much of it */
+        workspace_release(r->context); /* with buffers of another grid it could exceed the budget */
     }
     r->context->served = r->grid;
     windows_trim(r);
@@ -143,8 +143,8 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
 void run_end(run *r, tc_status status) {
     workspace *w = &r->context->work;
     cl->Finish(r->context->queue);
-    if (status) workspace_release(r->context); /* what it holds may not be what it is taken for */
-    if (r->context->in_place) {                /* windows in memory that is not ours to keep */
+    if (status) workspace_release(r->context); /* its state is undefined after a failure */
+    if (r->context->in_place) {                /* windows in memory of the caller */
         mesh_buffers *mesh = &w->mesh[0];
         device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
         for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
@@ -228,7 +228,7 @@ static tc_status slabs_classify(run *r) {
  * missing cells, and remembered as such. */
 static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits,
                           double share) {
-    grid->context->counted = grid->context->classified = NULL; /* from here on the workspace is another */
+    grid->context->counted = grid->context->classified = NULL; /* the workspace is overwritten from here on */
     slab_store_release(&grid->device->store);
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
@@ -246,7 +246,7 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
-/* For tc_emit and tc_interpolate_field. r NULL: there is no surface. */
+/* Keeps results for tc_emit and tc_interpolate_field. r NULL: there is no surface. */
 static void results_keep(tc_grid *grid, const tc_extract_options *options, run *r) {
     struct device_grid *device = grid->device;
     free(device->heads);

@@ -13,10 +13,10 @@
 tc_status structured_grid_create(tc_grid *grid);
 void structured_grid_destroy(tc_grid *grid);
 
-/* Shapes tiles anew where the context's text of the kernels is another than when the grid was made. */
+/* Shapes tiles again where the context has changed to the other text of the kernels. */
 void structured_reshape(tc_grid *grid);
 
-/* What its kernels are; emits: kernel 2 too. */
+/* The kind of its kernels; emits: kernel 2 too. */
 kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
 /* As tc_count, tc_emit and tc_extract, with arguments already checked. share: of the whole call, for progress. */
@@ -28,10 +28,10 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
 /* Results of kernel 1 are kept from now on. */
 void structured_carries(tc_grid *grid);
 
-/* True where what kernel 1 has left of this surface is still there; structured_carry needs that. */
+/* True where the results of kernel 1 for this surface still exist, which structured_carry needs. */
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options);
 
-/* Carries a field to as many vertices as *vertex_count says; to none where there is room for more or fewer
+/* Carries a field to the *vertex_count vertices; to none where the caller's room is for another number
  * (structured_carry.c). */
 tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                            uint64_t *vertex_count);

@@ -1,7 +1,7 @@
 /*
- * Fields carried to the vertices of a surface that kernel 1 has classified: the sign words that it left give the
- * crossed edges again, and with every row of 64 samples it left where its vertices begin. So threads of the host take
- * runs of bricks, and no kernel runs.
+ * Fields carried to the vertices of a surface that kernel 1 has classified. Its sign words give the crossed edges
+ * again, and it has stored where the vertices of each row of 64 samples begin. So threads of the host process runs of
+ * bricks, and no kernel runs.
  *
  * Where the workspace holds these results no longer, the surface is counted again first. Of grids in slabs they are
  * kept on the host from the first field that is carried on (device_grid: carries).
@@ -19,7 +19,7 @@
 
 enum { SHARE_BRICKS = 32, STEP_BRICKS = 1 << 16 };
 
-/* Of all slabs, in the host's memory. */
+/* Results of kernel 1 for all slabs, in the host's memory. */
 typedef struct results {
     const uint64_t *words, *offsets;
     const brick_state *bricks;
@@ -48,8 +48,8 @@ typedef struct carry_job {
 /* -------------------------------------------------------------------------------------------------------- sign words
  */
 
-/* The words of a brick's rows (0) and of those in the brick at higher x (1): of its planes and the next one, of its
- * rows and the next one. */
+/* Words of the brick [0] and of the brick at higher x [1]: in the brick's planes and the plane after, of its rows and
+ * the row after. */
 typedef struct brick_words {
     uint64_t word[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
 } brick_words;
@@ -63,7 +63,7 @@ static const uint64_t *words_of(const carry_job *j, uint64_t brick) {
     return sign == SIGN_MIXED ? j->k1.words + BRICK_WORDS * brick : sign == SIGN_INSIDE ? inside : outside;
 }
 
-/* Words of rows and planes that the grid has not may be anything. */
+/* Words of rows and planes outside the grid are undefined. */
 static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t at[3], brick_words *w) {
     const uint64_t beside[3] = {1, j->plan->words_x, plan_bricks_per_layer(j->plan)};
     const uint32_t count[3] = {j->plan->words_x, j->plan->bricks_y, j->plan->layer_count};
@@ -98,7 +98,7 @@ static row_pair row_of(const brick_words *w, int y, int z, uint64_t valid) {
     return (row_pair){at, at >> 1 | w->word[1][z][y] << 63};
 }
 
-/* What kernels/tetrahedra.cl has: edges that the samples of a row own whose ends differ. */
+/* As crossings_owned in kernels/tetrahedra.cl: crossed edges that the samples of a row own. */
 static void crossings_of(const carry_job *j, const brick_words *w, int row, int plane, const uint32_t first[3],
                          uint64_t crossed[EDGES_PER_SAMPLE]) {
     const int64_t *dims = j->grid->dims;
@@ -146,7 +146,7 @@ static uint64_t present_only(const carry_job *j, uint64_t crossed, int type, con
 }
 
 /* Where a row's vertices of a type end, counted from its first, as kernel 1 has packed it (kernels/tetrahedra.cl:
- * offsets_pack). That of the last type is not there. */
+ * offsets_pack). The end of the last type is not packed. */
 static uint32_t type_end(uint64_t packed, int type) {
     static const uint8_t shift[] = {14, 21, 29, 37, 46}, width[] = {7, 8, 8, 9, 9};
     return (uint32_t)(packed >> shift[type]) & ((1u << width[type]) - 1);
@@ -167,7 +167,7 @@ static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t fi
 /* ------------------------------------------------------------------------------------------------------------ batches
  */
 
-/* An edge of a row without one is no branch: it is overwritten by what comes next. Two are what most rows have. */
+/* Appends two edges without a branch, as most rows have at most two; the next append overwrites surplus ones. */
 static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t owner, unsigned odd, uint32_t at,
                             edge_batch *batch) {
     const unsigned bit = (unsigned)__builtin_ctzll(bits | UINT64_C(1) << 63), parity = (odd ^ bit) & 1;
@@ -191,13 +191,13 @@ static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE]
     batch->count = count;
 }
 
-/* Asks for a row of `count` items, each of `bytes`. */
+/* Prefetches a row of `count` items, each of `bytes`. */
 static void row_prefetch(const void *values, size_t bytes, int64_t first, int64_t count) {
     const char *at = (const char *)values + bytes * (size_t)first, *end = at + bytes * (size_t)count;
     for (; at < end; at += 64) __builtin_prefetch(at);
 }
 
-/* Asks for what a brick's edges lead to, as hardware prefetch stops at page ends. */
+/* Prefetches the samples and values at the edges of a brick, as hardware prefetch stops at page ends. */
 static void brick_prefetch(const carry_job *j, uint64_t brick) {
     const tc_grid *grid = j->grid;
     const tc_field *f = j->carry->field;
@@ -251,7 +251,7 @@ static void brick_carry(carry_job *j, uint64_t brick, edge_batch *batch) {
     j->vertices += batch->vertex + batch->count - vertex;
 }
 
-/* Place n of the list; UINT64_MAX where that is no brick of the slab. */
+/* Brick n of the list; UINT64_MAX where the entry is no brick of the slab. */
 static uint64_t active_brick(const carry_job *j, uint64_t n) {
     const uint64_t brick = j->k1.active[n] + (j->plan->words_whole ? 0 : j->slab_brick);
     return brick >= j->slab_brick && brick < j->brick_end ? brick : UINT64_MAX;
@@ -309,7 +309,7 @@ static tc_status slabs_carry(carry_job *j) {
     return status;
 }
 
-/* How far the ends of an edge are from the sample that owns it. Diagonals differ with the parity of the cube. */
+/* Distances in samples from the owner of an edge to its ends. Diagonals depend on the parity of the cube. */
 static void ends_fill(carry_job *j) {
     const int64_t strides[3] = {1, j->grid->dims[0], j->grid->dims[0] * j->grid->dims[1]};
     for (int type = 0; type < EDGES_PER_SAMPLE; type++)
@@ -328,7 +328,7 @@ typedef struct mapping {
     const void *memory[4];
 } mapping;
 
-/* Of several failures the last is told. */
+/* Of several failures the last is reported. */
 static tc_status mapping_close(tc_context *context, mapping *m, tc_status status) {
     for (int n = 0; n < 4; n++) {
         tc_status ended = buffer_unmap(context, m->buffers[n], m->memory[n]);
@@ -366,7 +366,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     *vertex_count = 0;
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
-    if (*vertex_count != c->room) return TC_OK; /* the caller is told */
+    if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
     j.edge_types = options->method == TC_METHOD_HYBRID ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
     ends_fill(&j);
     if (!j.plan->words_whole) {

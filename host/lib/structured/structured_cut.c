@@ -1,5 +1,5 @@
 /*
- * A surface cut into steps that windows can hold, by the sums that kernel 1 has left with every brick.
+ * Cuts a surface into steps that fit windows, by the prefix sums that kernel 1 has stored with every brick.
  */
 #include "structured/structured_emission.h"
 
@@ -29,7 +29,8 @@ void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles) {
     }
 }
 
-/* What is before a row of bricks in its slab, by its first brick: of every layer the first row; all rows of one. */
+/* Prefix sums in the slab before rows of bricks, taken from the first brick of a row: of every layer the first row, and
+ * of one layer all rows. */
 typedef struct row_sums {
     brick_state *layers;
     brick_state *bricks; /* all of a layer, made when first needed */
@@ -92,7 +93,7 @@ static void step_end(const run *r, const row_sums *sums, emit_step *step, uint32
     step->part.triangle1 = step->slab_triangle + to[1];
 }
 
-/* The step leaves `shrink` halvings of its window free. */
+/* Whether the step fits a window that is halved `shrink` times. */
 static bool step_fits(const run *r, const emission *e, const emit_step *step, unsigned shrink) {
     const mesh_window *part = &step->part;
     return e->window_count == 0 ||
@@ -131,8 +132,8 @@ static tc_status step_add(emission *e, const emit_step *step) {
     return TC_OK;
 }
 
-/* Makes the step end with the last of its slab's rows, `stride` after each other, up to `most`, that fits; false where
- * not even the first does, which it ends with then. */
+/* Makes the step as long as fits, in steps of `stride` rows and up to row `most`; false where not even the first stride
+ * fits, with which the step then ends. */
 static bool step_stretch(const run *r, const emission *e, const row_sums *sums, emit_step *step, uint32_t stride,
                          uint32_t most) {
     emit_step longer = *step;
@@ -146,8 +147,8 @@ static bool step_stretch(const run *r, const emission *e, const row_sums *sums, 
     return true;
 }
 
-/* Cuts a slab into few steps: of whole layers, of single rows in a layer that is too large. *fits: false, with the last
- * step that of the row that is too large, where that is not possible. */
+/* Cuts a slab into few steps: whole layers, or rows in a layer that is too large. *fits is false where a row is too
+ * large; the last step is then that row. */
 static tc_status slab_cut(const run *r, emission *e, row_sums *sums, emit_step first, bool *fits) {
     const uint32_t rows = r->plan->bricks_y, slab_rows = slab_layer_count(r, first.place.slab_index) * rows;
     tc_status status = TC_OK;
@@ -182,7 +183,7 @@ static tc_status slabs_cut(const run *r, emission *e, row_sums *sums, bool *fits
     return status;
 }
 
-/* With smaller steps where windows for the largest are too large together: in the end of one row each. *fits as for
+/* Makes steps smaller, down to one row each, while the windows for the largest step do not fit together. *fits as for
  * slab_cut. */
 static tc_status windows_cut(const run *r, emission *e, row_sums *sums, bool *fits) {
     enum { SHRINK_MOST = 20 };

@@ -28,18 +28,18 @@ typedef struct emission {
     uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
     emit_step *steps;
     uint32_t step_count, step_room;
-    unsigned shrink; /* steps of several rows leave so many halvings of a window free */
+    unsigned shrink; /* steps of several rows use a window halved so many times */
     double kernels_end_ms;
 } emission;
 
-/* True where one of so many windows can hold so much of the mesh. */
+/* True where each of `windows` windows can hold this many vertices and triangles. */
 bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows);
 
 /* The largest numbers of vertices and triangles of a step. */
 void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles);
 
 /* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one (structured_cut.c).
- * TC_ERROR_MEMORY, with what would do, where a row of bricks is too large for one. */
+ * TC_ERROR_MEMORY, with the memory needed, where a row of bricks is too large for one. */
 tc_status steps_plan(run *r, emission *e, bool whole);
 
 #endif

@@ -36,7 +36,7 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     return status;
 }
 
-/* Has the host see what the device wrote in its memory. */
+/* Makes what the device wrote in the host's memory visible to the host. */
 static tc_status part_sync(run *r, device_buffer *buffer) {
     cl_command_queue queue = r->context->queue;
     cl_int error;
@@ -84,7 +84,7 @@ static uint8_t edge_item(const run *r, uint8_t edge) {
     return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
 }
 
-/* The cube table of the run's method, by items. */
+/* Writes the cube table of the run's method, with edges as kernel 2 names them (edge_item). */
 static void cases_write(const run *r, cube_case cases[2][256]) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
     if (r->method == TC_METHOD_HYBRID)
@@ -110,7 +110,7 @@ static tc_status cases_provide(run *r, device_buffer **out) {
     cases_write(r, cases);
     cl_int error =
         cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    if (error) buffer_release(r->context, buffer); /* one that is there counts as filled */
+    if (error) buffer_release(r->context, buffer); /* a buffer that exists counts as filled */
     return error ? context_fail(r->context, "uploading the case table", error) : TC_OK;
 }
 
@@ -157,7 +157,7 @@ static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
     buffer_release(context, &b->triangles);
 }
 
-/* Windows as large as the largest step needs: they would grow while copies from them are under way. */
+/* Reserves windows for the largest step at once, as a window must not grow while copies from it run. */
 static tc_status windows_reserve(run *r, emission *e) {
     mesh_window largest = {0};
     tc_status status = TC_OK;
@@ -169,7 +169,7 @@ static tc_status windows_reserve(run *r, emission *e) {
     return status;
 }
 
-/* Buffers kept from an extraction with other windows would come on top of the memory that these may have. */
+/* Releases buffers of an extraction with other windows, which would exceed the budget together with the new ones. */
 static tc_status windows_begin(run *r, emission *e) {
     mesh_buffers *buffers = r->context->work.mesh;
     mesh_buffers_release(r->context, &buffers[1]);
@@ -202,7 +202,7 @@ static tc_status step_emit(run *r, uint32_t n) {
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
-    const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has been since */
+    const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has overwritten that */
     tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->place, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;

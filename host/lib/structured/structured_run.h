@@ -38,7 +38,7 @@ typedef struct run {
     kernels kernels;
     tc_method method;
     bool normals;
-    slab base;       /* what all slabs have in common */
+    slab base;       /* the fields that all slabs share */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
     cl_command_queue copies; /* takes copies to and from the device; may be the queue of kernels */
@@ -57,7 +57,7 @@ typedef struct slab_place {
 device_buffer *place_array(const run *r, slab_place place, int array);
 word_buffers *place_words(const run *r, slab_place place);
 
-/* Brings the slab's samples, and what tells which are missing, to the device; for kernel 2 its points too. */
+/* Brings the slab's samples and the arrays of blanked items to the device; for kernel 2 its points too. */
 tc_status slab_load(run *r, slab_place place, bool emits);
 
 /* The slab's parameters; its samples are loaded. */
@@ -84,8 +84,8 @@ typedef struct step_stages {
 /* All steps, in order; overlaps: copies run beside the kernels of other steps, which use other windows. */
 tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool overlaps);
 
-/* Describes an extraction, builds its kernels and provides what they work on but the mesh; run_end gives it back,
- * with all that the context keeps where the extraction has failed. */
+/* Describes an extraction, builds its kernels and reserves their buffers except the mesh; run_end releases these, and
+ * after a failure all buffers that the context keeps. */
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
 void run_end(run *r, tc_status status);
 

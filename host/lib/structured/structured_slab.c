@@ -24,7 +24,7 @@ static char *array_start(const tc_grid *grid, int array, uint64_t z) {
     return (char *)(uintptr_t)grid_array_data(grid, array) + z * grid_array_plane_bytes(grid, array);
 }
 
-/* Items in the buffer before plane z, its first: one that is used in place starts at a page's boundary. */
+/* Items in the buffer before plane z, the first it holds: a buffer used in place starts at a page boundary. */
 static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
     const uint64_t item_bytes = grid_array_item_bytes(grid, array);
     if (array == ARRAY_SAMPLES && grid->cl_samples)
@@ -79,7 +79,7 @@ static tc_status axes_provide(tc_grid *grid) {
     return status;
 }
 
-/* The caller's buffer, not counted as ours. */
+/* Takes the caller's buffer, which does not count as memory of the context. */
 static tc_status samples_adopt(tc_grid *grid, device_buffer *buffer) {
     const uint64_t bytes = tc_type_bytes(grid->type), count = (uint64_t)grid_sample_count(grid);
     size_t held = 0;
@@ -113,7 +113,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
     if (!status) status = axes_provide(grid);
     if (!status && device->plan.samples_whole) status = arrays_provide(grid);
-    if (status) cl->Finish(grid->context->queue); /* copies under way read what is the caller's */
+    if (status) cl->Finish(grid->context->queue); /* running copies read the caller's memory */
     return status;
 }
 

@@ -1,7 +1,7 @@
 /*
- * Fields carried to the vertices of a complex: the active tetrahedra that the numbering has left in the workspace name
- * the crossed edges that they own, in the order of their vertices. Of a complex in slabs the host has joined the edges,
- * and keeps them from the first field that is carried on. Threads of the host take runs of either.
+ * Fields carried to the vertices of a complex. The numbered active tetrahedra in the workspace name the crossed edges
+ * that they own, in the order of their vertices. For a complex in slabs the host has joined the edges; it keeps them
+ * after the first field has been carried. Threads of the host process runs of tetrahedra or of edges.
  */
 #include "tetrahedra/complex_run.h"
 
@@ -25,7 +25,7 @@ typedef struct carry_job {
     _Atomic uint64_t next; /* tile, or run of edges */
     uint64_t end;
     _Atomic uint64_t vertices; /* met so far */
-    atomic_bool wrong;         /* there are points that the complex has not */
+    atomic_bool wrong;         /* there are invalid point numbers */
 } carry_job;
 
 static void edge_add(carry_job *j, uint32_t low, uint32_t high, edge_batch *batch) {
@@ -115,7 +115,7 @@ tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry
     const struct complex_slabs *slabs = grid->complex->slabs;
     carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
     *vertex_count = j.size.vertex_count;
-    if (c->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller is told */
+    if (c->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller compares the two */
     complex_cases(j.cases);
     if (!slabs) return workspace_carry(&j);
     j.edges = slabs->edges.edges;

@@ -1,6 +1,6 @@
 /*
- * Complexes on a device: whole, with totals, a new mesh and emission after each other, where the device has room; else
- * slab by slab (complex_slabs.c), for good.
+ * Complexes on a device: whole where the device has room (count, allocate the mesh, emit); else slab by slab
+ * (complex_slabs.c), from then on always.
  */
 #include "tetrahedra/complex_run.h"
 
@@ -32,7 +32,7 @@ void complex_device_destroy(tc_grid *grid) {
     free(slabs);
 }
 
-/* What a complex is cut for that the device has whole so far. */
+/* Cuts a complex into slabs that the device has held whole so far, as its surface does not fit. */
 static tc_status cut_later(complex_run *r) {
     cl->Finish(r->context->queue);
     tc_status status = complex_cut(r->grid);
@@ -43,7 +43,7 @@ static tc_status cut_later(complex_run *r) {
     return TC_OK;
 }
 
-/* All but the mesh; head has the counts then. */
+/* All stages before emission; head has the counts then. */
 static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
     tc_status status = complex_run_begin(r, grid, isovalue);
     if (!status) status = surface_classify(r);
@@ -85,7 +85,7 @@ static tc_status mesh_open(complex_run *r, device_buffer *buffer, const host_blo
                                 : buffer_reserve(r->context, buffer, bytes, name);
 }
 
-/* Brings what the device wrote to the host: a copy, or a map that makes it seen. */
+/* Brings what the device wrote to the host: by a copy, or by a map where memory is shared. */
 static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_block *block, uint64_t bytes) {
     cl_command_queue queue = r->context->queue;
     cl_int error = CL_SUCCESS;

@@ -10,7 +10,7 @@
 
 static const uintptr_t page_bytes = 4096;
 
-/* In place from its page's boundary on, else copied. *offset in items. */
+/* Uses the array in place, from its page boundary on, or copies it. *offset in items. */
 static tc_status array_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
                                size_t item_bytes, uint64_t *offset, const char *name) {
     uintptr_t before = context->in_place ? (uintptr_t)array & (page_bytes - 1) : 0;

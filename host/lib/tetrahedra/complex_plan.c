@@ -1,9 +1,9 @@
 /*
  * How much of the device's memory a complex takes, and slabs of it.
  *
- * Beside the arrays that the caller gave, that is per tetrahedron about two bytes before the surface is known, and for
- * each tetrahedron that it passes through up to 190, the mesh included: four crossed edges, each with a vertex of its
- * own, and two triangles. A slab is counted as if it passed through all.
+ * Beside the caller's arrays: about two bytes per tetrahedron before the surface is known; then up to 190 bytes per
+ * active tetrahedron, mesh included, for four crossed edges, each with a vertex of its own, and two triangles. For
+ * slabs every tetrahedron counts as active.
  */
 #include "tetrahedra/complex_run.h"
 

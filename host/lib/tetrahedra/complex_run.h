@@ -44,8 +44,8 @@ tc_status complex_cut(tc_grid *grid);
 
 /* ---------------------------------------------------------------------------- arrays of a part (complex_part.c) */
 
-/* Brings tetrahedra, and points with samples, of the host's to the device: in place where it can. Of points and samples
- * none are there where one fails. */
+/* Bring tetrahedra, or points with samples, from the host to the device, in place where possible. If points or samples
+ * fail, neither is kept. */
 tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uint32_t count);
 tc_status part_points_provide(tc_grid *grid, const float *points, const void *samples, uint32_t count);
 void part_tetrahedra_release(tc_grid *grid); /* with their ranges */
@@ -61,11 +61,11 @@ typedef struct local_points {
     uint32_t *tetrahedra; /* of local points */
 } local_points;
 
-/* Room for slabs of so many tetrahedra. */
+/* Allocates for slabs of tetrahedron_count tetrahedra. */
 tc_status local_points_allocate(const tc_grid *grid, uint32_t tetrahedron_count, local_points *local);
 void local_points_release(local_points *local);
 
-/* Fills numbers, points, samples and tetrahedra. TC_ERROR_DATA for points that the complex has not. */
+/* Fills numbers, points, samples and tetrahedra. TC_ERROR_DATA for invalid point numbers. */
 tc_status local_points_gather(const tc_grid *grid, const uint32_t *tetrahedra, uint32_t tetrahedron_count,
                               local_points *local, uint32_t *count);
 
@@ -98,7 +98,8 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
 /* Notes that the workspace, or the slabs, know this surface. */
 void complex_classified_note(tc_grid *grid, double isovalue, surface_size size);
 
-/* A buffer for what is as large as the surface. TC_ERROR_MEMORY and too_large where that is not cut and too large. */
+/* Reserves a buffer whose size depends on the surface. Where it does not fit and the complex is not cut into slabs yet:
+ * TC_ERROR_MEMORY, and too_large is set. */
 tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes, const char *name);
 bool surface_fits(complex_run *r, uint64_t bytes);
 
@@ -107,7 +108,7 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]);
 
 /* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
 
-/* before: how much of the whole call is over, for progress; share: how much is when the surface is counted. */
+/* before, share: the parts of the whole call that are done before, and after the count, for progress. */
 tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
 tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
 

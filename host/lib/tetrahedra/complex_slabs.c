@@ -1,6 +1,6 @@
 /*
- * A complex slab by slab: all are classified and their vertices joined, with totals of 64 bits carried; then those that
- * have triangles are classified once more, which their clusters' ranges make short, and emitted.
+ * A complex slab by slab. First all slabs are classified and their vertices joined, with 64-bit totals. Then slabs with
+ * triangles are classified again, which is quick by the known ranges of their clusters, and emitted.
  *
  * A slab's vertices are numbered by the first of its tetrahedra that has the edge. The host goes through them in this
  * order and gives each the number that its edge has in the mesh: what an earlier slab has given it, else the next. That
@@ -77,7 +77,7 @@ static tc_status points_load(slabs_run *t, uint32_t slab_index, const uint32_t *
     uint32_t point_count;
     if (t->slabs->points_whole)
         return c->part.points.memory ? TC_OK : part_points_provide(grid, c->points, grid->samples, c->point_count);
-    part_points_release(grid); /* in place they lie where the next ones are gathered */
+    part_points_release(grid); /* a buffer in place uses the memory in which the next slab is gathered */
     tc_status status =
         local_points_gather(grid, *tetrahedra, slab_tetrahedron_count(t, slab_index), &t->local, &point_count);
     *tetrahedra = t->local.tetrahedra;
@@ -109,7 +109,7 @@ static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known
 
 /* -------------------------------------------------------------------------------------------------- classification */
 
-/* As far as the ranges of its clusters tell. */
+/* Whether the slab may have a surface, by the ranges of its clusters. */
 static bool slab_possible(const slabs_run *t, uint32_t slab_index) {
     const slab *s = &t->r.s;
     const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
@@ -125,7 +125,7 @@ static void *room_enlarge(void *memory, uint64_t *room, uint64_t count, size_t i
     return grown;
 }
 
-/* Room for what the slab has. */
+/* Makes room for the active tetrahedra and vertex numbers of a slab. */
 static tc_status lists_reserve(slabs_run *t) {
     const uint64_t active = t->r.job.active_count, numbers = t->number_count + t->r.head[HEAD_VERTICES];
     void *grown = t->active;
@@ -173,7 +173,7 @@ static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
     return slab_join(t);
 }
 
-/* progress: where this stage begins in the whole call, and where it ends. */
+/* before, after: where this stage begins and ends in the whole call, for progress. */
 static tc_status slabs_classify(slabs_run *t, double before, double after) {
     const uint32_t count = t->slabs->slab_count;
     tc_status status = TC_OK;
@@ -185,7 +185,7 @@ static tc_status slabs_classify(slabs_run *t, double before, double after) {
     return status;
 }
 
-/* What carries fields needs of a surface that is joined. */
+/* Keeps the joined edges, from which fields are carried. */
 static void edges_keep(slabs_run *t, double isovalue, uint64_t vertex_count) {
     complex_classified_note(t->r.grid, isovalue, (surface_size){.vertex_count = vertex_count});
     if (!t->r.complex->carries) return;

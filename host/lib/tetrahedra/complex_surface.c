@@ -16,7 +16,7 @@
 bool surface_fits(complex_run *r, uint64_t bytes) {
     const tc_context *context = r->context;
     const uint64_t budget = complex_budget(context);
-    if (r->complex->slabs) return true; /* they are cut so */
+    if (r->complex->slabs) return true; /* slabs are cut to fit */
     if (bytes > context->info.max_buffer_bytes || context->device_bytes > budget ||
         bytes > budget - context->device_bytes)
         r->too_large = true;
@@ -186,7 +186,7 @@ static tc_status table_reserve(complex_run *r, uint64_t entries) {
     return surface_reserve(r, &r->work->table, 4 * entries, "the table of edges");
 }
 
-/* A larger table, and all else that an attempt with one too small has left behind. */
+/* Enlarges the table, and resets what the attempt with the smaller table has changed. */
 static tc_status table_enlarge(complex_run *r, uint64_t entries) {
     tc_status status = table_reserve(r, entries);
     if (!status) status = buffer_fill(r, &r->work->table, EDGE_NONE, 0, 4 * entries);
@@ -214,7 +214,7 @@ static tc_status edges_join(complex_run *r) {
 }
 
 /* In most complexes an edge has five tetrahedra: a table half as large as the crossed edges, each counted for every
- * tetrahedron, is then less than half full. Where it does not do, one that always does. */
+ * tetrahedron, is then less than half full. Where that overflows, a table that always suffices is used. */
 tc_status surface_number(complex_run *r) {
     complex_buffers *w = r->work;
     uint64_t entries = 64;

@@ -7,7 +7,7 @@
 
 #define SLOT_FREE UINT32_MAX
 
-/* The slot of the edge's number, or the free one where that belongs. */
+/* The slot of the edge's number, or the free slot for it. */
 static uint32_t *slot_find(const edge_numbers *n, uint64_t edge) {
     const uint64_t hash = edge * 0x9e3779b97f4a7c15u, mask = n->slot_count - 1;
     uint64_t slot = (hash ^ hash >> 29) & mask;
