@@ -1,9 +1,9 @@
 /*
  * complex_check.h - how the tetrahedra of a complex meet in faces, from the complex alone
  *
- * Knows nothing of cells or of how they were cut. Of a conforming complex, oriented, two tetrahedra pass their common
- * face in opposite directions. Where both pass it in the same one they lie on the same side of it: they overlap, and
- * the two triangles that a surface through the face has there run against each other.
+ * The check does not depend on cells or on how they were cut. In a conforming, oriented complex two tetrahedra pass
+ * their common face in opposite directions. Where both pass it in the same direction, they lie on the same side of it:
+ * they overlap, and the two triangles of a surface that meet in the face have opposite windings.
  */
 #ifndef COMPLEX_CHECK_H
 #define COMPLEX_CHECK_H

@@ -72,7 +72,7 @@ static uint32_t find_root(uint32_t *parents, uint32_t i) {
     return i;
 }
 
-/* 1 where two sets became one. */
+/* Joins two sets; 1 where they were different ones. */
 static uint32_t unite(uint32_t *parents, uint32_t i, uint32_t j) {
     i = find_root(parents, i);
     j = find_root(parents, j);

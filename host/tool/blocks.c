@@ -62,7 +62,7 @@ static int cut_structured(const options *o, prepared_block *b) {
     return input_status(o, status);
 }
 
-/* The failure of a cut, with the option that helps where nothing is amiss but cells that cannot be cut. */
+/* Reports a failed cut; names the option that helps where only cells that cannot be cut are at fault. */
 static int refuse_cells(const options *o, const tc_cells *cells, tc_status status) {
     tc_cells others = *cells;
     tc_tetrahedra complex = {.struct_size = sizeof complex};

@@ -57,8 +57,8 @@ static int has_narrow_range(const dataset *d, const point_field *from, int compo
     return range[0] <= range[1];
 }
 
-/* A field that tells nothing is none that anybody wants: it is constant, or becomes so, nearly, as float32. Whether it
- * is, in any component; that is told. */
+/* Whether a component of the field is constant, or nearly so once it is float32; gives a notice of that, as such values
+ * are of no use. */
 static int tell_narrow(const dataset *d, const point_field *from) {
     int constant_count = 0, is_narrow = 0;
     double value = 0;

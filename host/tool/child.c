@@ -60,7 +60,7 @@ static int make_pipes(int report[2], int chatter[2]) {
     return -1;
 }
 
-/* Signals as a program finds them that a shell starts: what this process ignores or blocks is its own business. */
+/* The child starts with default signals, as from a shell, whatever this process ignores or blocks. */
 static int set_attributes(posix_spawnattr_t *attributes) {
     sigset_t none, all;
     sigemptyset(&none);
@@ -133,7 +133,7 @@ static void keep_said(child_end *end, const char *text) {
     end->said[count] = '\0';
 }
 
-/* Of all its threads. */
+/* Processor time of all threads of a process. */
 static double processor_ms(pid_t process) {
     clockid_t clock;
     struct timespec used;

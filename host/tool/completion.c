@@ -26,7 +26,7 @@ static void bash_options(const completion_command *c, FILE *out) {
     fputs("' ;;\n", out);
 }
 
-/* What may follow each option that takes a value: one of a choice, a file, or what nobody can complete. */
+/* What may follow each option that takes a value: one of a choice, a file, or a value that cannot be completed. */
 static void bash_values(const completion_command *c, FILE *out) {
     option_view o;
     for (size_t n = 0; options_view(c->bit, n, &o); n++) {

@@ -1,8 +1,9 @@
 /*
  * effects.h - options that have no effect beside the other options, or on the input that was read
  *
- * One table (effects.c) has them all: what can only be a mistake is refused, the rest is told in a notice. What readers
- * and writers of files know alone (fields that are not there, formats that hold no fields) they refuse themselves.
+ * One table (effects.c) has them all: options that can only be a mistake are refused, the rest give a notice. What
+ * readers and writers of files know alone (fields that are not there, formats that hold no fields) they refuse
+ * themselves.
  */
 #ifndef EFFECTS_H
 #define EFFECTS_H

@@ -15,7 +15,7 @@ static int is_missing(const scalar_block *s, int64_t n) {
     return !isfinite(value) || (s->blanked_points && s->blanked_points[n]) || (s->has_nodata && value == s->nodata);
 }
 
-/* Of any kind, all of them missing: 1; also where there are none. */
+/* 1 where all samples are missing, or there are none. */
 static int are_missing(const scalar_block *s, int64_t count) {
     for (int64_t n = 0; n < count; n++)
         if (!is_missing(s, n)) return 0;

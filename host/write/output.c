@@ -70,7 +70,7 @@ int output_open(output *o, const char *path) {
     return fail_write(path, error);
 }
 
-/* Where a file system has no such call, or no room, writing will tell. */
+/* Errors are ignored: where the file system lacks the call, or room, the writes will show it. */
 void output_expect(output *o, uint64_t bytes) {
     if (o->temporary && bytes > 0 && bytes <= INT64_MAX) (void)fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
 }

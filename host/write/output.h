@@ -32,7 +32,7 @@ typedef struct output {
  * it at once. */
 typedef unsigned char *output_encode(const void *source, uint64_t first, uint64_t end, unsigned char *to);
 
-/* Has `asked` asked between writes, by all outputs from now on: nonzero ends them, and output_close then fails. */
+/* From now on all outputs call `asked` between writes. Where it returns nonzero they end, and output_close fails. */
 void output_stop_when(int (*asked)(void));
 
 /* Whether the name is "-": standard output. */

@@ -44,7 +44,7 @@ static unsigned char *encode_triangles(const void *source, uint64_t first, uint6
     return to;
 }
 
-/* Soup or not: it is the only form there is. */
+/* Ignores s->soup: in STL every triangle has vertices of its own. */
 void stl_write(output *o, const shown_mesh *s) {
     char header[HEADER_BYTES + 4] = "binary STL, tetracubes isosurface";
     uint32_t count = (uint32_t)s->mesh->triangle_count;

@@ -1,5 +1,5 @@
 /*
- * write.c - finds the format, checks that its counts suffice, and has it written
+ * write.c - finds the format, checks that the counts fit it, and calls its writer
  */
 #include "mesh_write.h"
 

@@ -114,7 +114,7 @@ static void face_cone(splitting *s, int apex, const uint8_t face[4]) {
     tetrahedron_add(s, apex, f[0], f[2], f[3]);
 }
 
-/* For a hexahedron none of whose three far diagonals meets the far corner: these cut the corner off with a triangle. */
+/* Where none of the three far diagonals meets the far corner, they form a triangle that cuts this corner off. */
 static void hexahedron_split_5(splitting *s, int apex, uint8_t faces[3][4]) {
     const int far = hexahedron_opposite[apex];
     uint8_t cut[3] = {0}; /* a face's triangle at the far corner, which is in the middle */

@@ -167,7 +167,8 @@ static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t fi
 /* ------------------------------------------------------------------------------------------------------------ batches
  */
 
-/* Appends two edges without a branch, as most rows have at most two; the next append overwrites surplus ones. */
+/* Stores the first edge of bits at place `at`, without a branch: where bits is 0 the next edge overwrites it. Most rows
+ * have at most two edges of a type, so row_add stores two before it branches. */
 static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t owner, unsigned odd, uint32_t at,
                             edge_batch *batch) {
     const unsigned bit = (unsigned)__builtin_ctzll(bits | UINT64_C(1) << 63), parity = (odd ^ bit) & 1;

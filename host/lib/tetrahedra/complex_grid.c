@@ -19,7 +19,7 @@ static bool surface_possible(const tc_grid *grid, double isovalue) {
     return grid->complex->tetrahedron_count && !inside_range_of(grid->type, isovalue).uniform;
 }
 
-/* After a failure the state of the workspace is undefined: it is released. */
+/* Ends a call on the device. After a failure the state of the workspace is undefined. */
 static tc_status device_end(tc_context *context, tc_status status) {
     if (!status) return TC_OK;
     cl->Finish(context->queue);
