@@ -233,8 +233,8 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->cl_samples = o->cl_samples;
     grid->cl_samples_offset = o->cl_samples_offset;
     grid->has_nodata = o->has_nodata != 0;
-    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata
-                                     : o->nodata; /* 0.1 is no float32; samples have the nearest float32 */
+    /* 0.1 is no float32; samples have the nearest float32. */
+    grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata;
     grid->blanked_samples = o->blanked_samples;
     grid->blanked_cells = o->blanked_cells;
     status = coordinates_check(o);
