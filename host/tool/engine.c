@@ -4,11 +4,11 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "far.h"
 #include "progress.h"
 #include "trial.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,15 +40,10 @@ void engine_close(engine *e) {
     *e = (engine){0};
 }
 
-/* Whether positions relative to that point keep the shapes of the cells in float32: they are no farther away than 512
- * times the smallest of them, or 8 times the size of all. So the library has it of 0 (tc_grid_options). */
+/* Whether positions relative to that point keep the shapes of the cells in float32 (far.h). */
 static int origin_suits(const cell_range *cells, const double origin[3]) {
-    enum { CELLS = 512, SIZES = 8 };
-    for (int axis = 0; axis < 3; axis++) {
-        const double size = cells->high[axis] - cells->low[axis];
-        const double reach = fmax(fabs(cells->low[axis] - origin[axis]), fabs(cells->high[axis] - origin[axis]));
-        if (size > 0 && reach > SIZES * size && reach > CELLS * cells->least[axis]) return 0;
-    }
+    for (int axis = 0; axis < 3; axis++)
+        if (lies_far(cells->low[axis], cells->high[axis], cells->least[axis], origin[axis])) return 0;
     return 1;
 }
 

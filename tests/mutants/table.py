@@ -142,6 +142,7 @@ FILES = {
     "host/read/plot3d": ["test_plot3d"],
     "host/read/average.c": ["test_dataset", "test_vtk_legacy"],
     "host/read/": READERS,
+    "host/common/far.h": ["test_far, reference"],
     "host/common/stored_types.c": READERS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
     "kernels/cells.cl": ["test_random, u8 with missing"],

@@ -1,13 +1,12 @@
 #include "grid/origin.h"
 
+#include "far.h"
 #include "parallel.h"
 
 #include <math.h>
 #include <pthread.h>
 
 enum { PROBED_CELLS = 4096, CHUNK = 1 << 14 };
-
-static const double far_cells = 512, far_sizes = 8;
 
 const extent extent_empty = {
     {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
@@ -33,20 +32,18 @@ void extent_add(extent *e, const double corners[][3], int count) {
     extent_join(e, &cell);
 }
 
-static double reach_of(const extent *e, int axis) { return fmax(fabs(e->low[axis]), fabs(e->high[axis])); }
-
 static bool cells_far(const extent *e) {
     for (int axis = 0; axis < 3; axis++)
-        if (reach_of(e, axis) > far_cells * e->cell[axis]) return true;
+        if (far_reach(e->low[axis], e->high[axis], 0) > far_cells * e->cell[axis]) return true;
     return false;
 }
 
 void origin_choose(const extent *e, double origin[3]) {
     for (int axis = 0; axis < 3; axis++) {
-        const double size = e->high[axis] - e->low[axis], reach = reach_of(e, axis);
+        const double size = e->high[axis] - e->low[axis];
         int exponent;
         origin[axis] = 0;
-        if (!(size > 0) || reach <= far_sizes * size || reach <= far_cells * e->cell[axis]) continue;
+        if (!lies_far(e->low[axis], e->high[axis], e->cell[axis], 0)) continue;
         frexp(size, &exponent);
         const double step = ldexp(1, exponent), middle = e->low[axis] + size / 2;
         if (step > 0) origin[axis] = step * rint(middle / step);

@@ -5,12 +5,10 @@
  * A float32 has 24 bits. At 4,600,000 metres they are steps of half a metre: cells of a quarter of a metre collapse.
  * Coordinates are therefore taken in double precision, a point near the grid is subtracted, and the rest is rounded.
  *
- * Along each axis the origin is 0 unless the grid lies
- *     farther from 0 than 512 times its smallest cell, where float32 leaves less than 15 bits within a cell, and
- *     farther from 0 than 8 times its own size, so that moving it gains at least 3 bits.
- * Else it is the middle of the grid, rounded to a multiple of the power of two that is at least the grid's size: a
- * short number, and coordinates minus it are exact in double precision. Only corners of cells that are present count,
- * so that fill values of points that nothing uses are ignored. The origin depends on the grid alone.
+ * Along each axis the origin is 0 unless the grid lies far from 0, by the rule of far.h. Else it is the middle of the
+ * grid, rounded to a multiple of the power of two that is at least the grid's size: a short number, and coordinates
+ * minus it are exact in double precision. Only corners of cells that are present count, so that fill values of points
+ * that nothing uses are ignored. The origin depends on the grid alone.
  */
 #ifndef ORIGIN_H
 #define ORIGIN_H
