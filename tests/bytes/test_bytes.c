@@ -16,8 +16,8 @@
  */
 #include "cases.h"
 
-#include "../engines.h"
-#include "../random.h"
+#include "engines.h"
+#include "random.h"
 
 #include <inttypes.h>
 

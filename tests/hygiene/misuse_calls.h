@@ -7,7 +7,7 @@
 #ifndef MISUSE_CALLS_H
 #define MISUSE_CALLS_H
 
-#include "../api.h"
+#include "api.h"
 
 #include <stddef.h>
 

@@ -7,8 +7,8 @@
  *
  *     test_order [SEED [STEPS]]
  */
-#include "../random.h"
 #include "kinds.h"
+#include "random.h"
 
 enum { CONTEXTS = 2, GRIDS = 4, MESHES = 3 };
 

@@ -7,8 +7,8 @@
  */
 #define CL_TARGET_OPENCL_VERSION 120
 
-#include "../api.h"
-#include "../folder.h"
+#include "api.h"
+#include "folder.h"
 #include "layer_find.h"
 
 #include <math.h>

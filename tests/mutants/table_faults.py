@@ -6,9 +6,10 @@ mesh_collapse.c, is not repeated.
 """
 from mutant import Mutant
 
-RESULTS, FAR, IMAGES, GRIDS = "test_results.py", "test_cli_far.py", "test_cli_images.py", "test_cli_grids.py"
+RESULTS, FAR = "tool/test_results.py", "tool/test_cli_far.py"
+IMAGES, GRIDS = "tool/test_cli_images.py", "tool/test_cli_grids.py"
 ENDINGS, TRIALS, SELFTEST = "drivers/test_endings.py", "drivers/test_trials.py", "drivers/test_selftest.py"
-REFERENCE, STRIKE, LAYER, FAULT = ("reference",), ("drivers/strike",), ("layer/layer",), ("fault=mesh_fault",)
+REFERENCE, STRIKE, LAYER, FAULT = ("reference",), ("drivers/strike",), ("layer/layer",), ("fault=tool/mesh_fault",)
 
 # As test() of table.py takes them: program, only, arguments, whether it needs a device, libraries.
 TESTS = {
@@ -42,13 +43,13 @@ TESTS = {
     "test_trials, damaged": (TRIALS, "*test_damaged*", (), True, LAYER),
     "test_trials, killed": (TRIALS, "*test_killed", (), True, LAYER),
     "test_selftest, crash": (SELFTEST, "*test_crash_of_one", ("source",), True, LAYER),
-    "test_text": ("test_text",),
-    "test_fork": ("test_fork", "", (), True),
-    "test_float_environment": ("test_float_environment",),
-    "test_own_context": ("test_own_context", "", (), True),
-    "test_program_cache": ("test_program_cache", "", (), True),
-    "test_budget": ("test_budget", "", (), True),
-    "test_changing": ("test_changing",),
+    "test_text": ("library/test_text",),
+    "test_fork": ("library/test_fork", "", (), True),
+    "test_float_environment": ("library/test_float_environment",),
+    "test_own_context": ("library/test_own_context", "", (), True),
+    "test_program_cache": ("library/test_program_cache", "", (), True),
+    "test_budget": ("library/test_budget", "", (), True),
+    "test_changing": ("library/test_changing",),
     "test_trial": ("layer/test_trial", "", (), True),
     "test_lacks": ("layer/test_lacks", "", (), True),
 }

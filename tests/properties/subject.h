@@ -8,7 +8,7 @@
 #ifndef SUBJECT_H
 #define SUBJECT_H
 
-#include "../complex.h"
+#include "complex.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 #include "surface.h"
 
-#include "../samples.h"
-#include "../split.h"
-#include "../topology.h"
+#include "samples.h"
+#include "split.h"
+#include "topology.h"
 
 #include <math.h>
 #include <stdio.h>

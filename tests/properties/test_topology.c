@@ -12,10 +12,10 @@
  */
 #include "surface.h"
 
-#include "../engines.h"
-#include "../random.h"
-#include "../samples.h"
-#include "../topology.h"
+#include "engines.h"
+#include "random.h"
+#include "samples.h"
+#include "topology.h"
 
 #include <inttypes.h>
 

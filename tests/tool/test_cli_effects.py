@@ -18,7 +18,7 @@ import test_cli
 from test_cli_grids import GridCase, HEXAHEDRON, hexahedra, lattice, vti_text, vtu_text
 from test_results import DataCase, ply_read
 
-SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "host", "tool", "effects.c")
+SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "host", "tool", "effects.c")
 RAW = ["--dims", "8,8,8", "--type", "u8"]
 VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],

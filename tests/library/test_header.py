@@ -30,14 +30,14 @@ def compiled(compiler, names, source, include):
 
 def main():
     source, given = Path(sys.argv[1]), [name for name in sys.argv[2:] if name]
-    tests, include = source / "tests", source / "host" / "include"
+    here, include = Path(__file__).resolve().parent, source / "host" / "include"
     found = {shutil.which(name): "++" in name for name in ("gcc", "clang", "g++", "clang++")}
     found.update({name: "++" in Path(name).name for name in given})
     found.pop(None, None)
     failures = count = 0
     for compiler, is_cpp in found.items():
         for names in CPP_STANDARDS if is_cpp else C_STANDARDS:
-            text = compiled(compiler, names, tests / ("test_header.cpp" if is_cpp else "test_header.c"), include)
+            text = compiled(compiler, names, here / ("test_header.cpp" if is_cpp else "test_header.c"), include)
             count += 1
             failures += text is not None
             if text is not None:
