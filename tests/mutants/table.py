@@ -7,8 +7,8 @@ import table_faults
 import table_host
 import table_kernels
 
-# A program of tests/ with arguments; only: what it chooses of its cases (expect.h); libraries: below tests/, which stand
-# behind the tool in the arguments of a test in Python. Without a device it makes use of the reference alone.
+# A program of tests/ with arguments; only: what it chooses of its cases (common/expect.h); libraries: below tests/, which
+# stand behind the tool in the arguments of a test in Python. Without a device it makes use of the reference alone.
 
 
 class TableError(Exception):
@@ -37,8 +37,11 @@ TESTS = {
     "test_dataset": test("read/test_dataset"),
     "test_read": test("read/test_read"),
     "test_read_lenient": test("read/test_read_lenient"),
+    "test_nrrd_lenient": test("read/test_nrrd_lenient"),
     "test_vtk_xml": test("read/test_vtk_xml"),
     "test_vtk_legacy": test("read/test_vtk_legacy"),
+    "test_vtk_legacy_odd": test("read/test_vtk_legacy_odd"),
+    "test_vtk_legacy_hostile": test("read/test_vtk_legacy_hostile"),
     "test_plot3d": test("read/test_plot3d"),
     "test_vtk_xml_hostile": test("read/test_vtk_xml_hostile"),
     "test_read_hostile": test("read/test_read_hostile"),
@@ -46,7 +49,6 @@ TESTS = {
     "test_api, reference": test("library/test_api"),
     "test_patterns, reference": test("surface/test_patterns"),
     "test_random, reference": test("surface/test_random"),
-    "test_rare, reference": test("surface/test_rare"),
     "test_curvilinear, reference": test("surface/test_curvilinear"),
     "test_complex, reference": test("surface/test_complex"),
     "test_far, reference": test("surface/test_far"),
@@ -60,7 +62,6 @@ TESTS = {
     "test_rare, not finite": test("surface/test_rare", "not finite*", device=True),
     "test_again, u8": test("surface/test_again", "u8, 1 work-items", device=True),
     "test_again, u8 in slabs": test("surface/test_again", "u8, 1 work-items, slabs", device=True),
-    "test_again, f32 with missing": test("surface/test_again", "f32 with missing, 1 work-items", device=True),
     "test_device, tiles": test("surface/test_device", "1 work-items*division 0", device=True),
     "test_device, slabs": test("surface/test_device", "gentle waves", device=True),
     "test_device, copied slabs": test("surface/test_device", "gentle waves", ("always_copy",), device=True),
@@ -71,12 +72,10 @@ TESTS = {
     "test_random, f32": test("surface/test_random", "* f32, *normals 0", device=True),
     "test_random, f64": test("surface/test_random", "* f64, *", device=True),
     "test_random, i32": test("surface/test_random", "* i32, *nodata 0 *", device=True),
-    "test_random, i8": test("surface/test_random", "* i8, *nodata 0 *", device=True),
     "test_device, division 3": test("surface/test_device", "*division 3", device=True),
     "test_device, division 2": test("surface/test_device", "*division 2", device=True),
     "test_curvilinear, points": test("surface/test_curvilinear", "f32 points*, one work-item", device=True),
     "test_curvilinear, u8 points": test("surface/test_curvilinear", "u8 points*, one work-item", device=True),
-    "test_curvilinear, axes": test("surface/test_curvilinear", "f32 axes*, one work-item", device=True),
     "test_hybrid, u8": test("surface/test_hybrid", "* u8, *complete", device=True),
     "test_complex_slabs": test("surface/test_complex_slabs", device=True),
     "test_complex, u8": test("surface/test_complex", "*u8*, context [12]", device=True),
@@ -90,8 +89,9 @@ TESTS = {
     "test_complex, 64 work-items": test("surface/test_complex", "*u8*, context 4", device=True),
 
     "test_cli_grids, carry": test("tool/test_cli_grids.py", "*test_carry*", ("reference",)),
-    "test_cli": test("tool/test_cli.py", "", ("reference",)),
+    "test_cli_cells, carry": test("tool/test_cli_cells.py", "*test_carry*", ("reference",)),
     "test_results": test("tool/test_results.py", "", ("reference",)),
+    "test_dropped": test("tool/test_dropped.py", "", ("reference",)),
     "test_nodata": test("surface/test_nodata"),
     "test_cli_images": test("tool/test_cli_images.py"),
 }
@@ -100,7 +100,8 @@ TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
 DEVICE = ["test_random, u8", "test_rare, one sample"]
-READERS = ["test_read", "test_read_lenient", "test_dataset", "test_read_hostile"]
+READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
+LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
 # Tests for the faults of a file, or of all in a folder, in the order in which they are run.
 FILES = {
@@ -120,7 +121,7 @@ FILES = {
     "host/lib/grid/grid.c": ["test_api, reference", "test_random, reference", "test_curvilinear, reference"],
     "host/lib/grid/origin.c": ["test_far, reference"],
     "host/lib/grid/complex.c": ["test_far, reference"],
-    "host/lib/reference/carry_vertex.c": ["test_cli_grids, carry"],
+    "host/lib/reference/carry_vertex.c": ["test_cli_grids, carry", "test_cli_cells, carry"],
     "host/lib/grid/mesh.c": ["test_api, reference"],
     "host/lib/structured/slab_plan.c": ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
@@ -133,12 +134,12 @@ FILES = {
     "host/check/complex_check.c": ["test_complex_check"],
     "host/check/": ["test_check", "test_check_blocks"],
     "host/write/": ["test_write_vtk", "test_write"],
-    "host/read/number_text.c": ["test_vtk_xml_hostile", "test_vtk_legacy"],
-    "host/read/cell_faces.c": ["test_vtk_xml_hostile", "test_vtk_legacy"],
+    "host/read/number_text.c": ["test_vtk_xml_hostile", *LEGACY],
+    "host/read/cell_faces.c": ["test_vtk_xml_hostile", *LEGACY],
     "host/read/unpack_block.c": ["test_vtk_xml_hostile", "test_vtk_xml"],
     "host/read/unpack_lz": ["test_vtk_xml_hostile", "test_vtk_xml"],
     "host/read/vtk_xml": ["test_vtk_xml", "test_vtk_xml_hostile"],
-    "host/read/vtk_legacy": ["test_vtk_legacy"],
+    "host/read/vtk_legacy": LEGACY,
     "host/read/plot3d": ["test_plot3d"],
     "host/read/average.c": ["test_dataset", "test_vtk_legacy"],
     "host/read/": READERS,

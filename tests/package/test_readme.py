@@ -251,7 +251,7 @@ def test_kernels(source, text):
 
 
 def test_promises(text, build):
-    """Every test that a promise names is one of ctest's."""
+    """Every test that a promise names is one of ctest's, and every test is named, or is another run of one that is."""
     listed = run("ctest", "--test-dir", build, "-N").stdout
     known = set(re.findall(r"Test +#\d+: (\w+)", listed))
     cache = (Path(build) / "CMakeCache.txt").read_text(encoding="utf-8")
@@ -261,6 +261,9 @@ def test_promises(text, build):
     named = re.findall(r"`((?:test|fuzz|mutants|offline|bench)_\w+|oclgrind|memcheck|kernel_warnings)`", promises)
     expect(len(named) > 20, f"tests/README.md: only {len(named)} tests named")
     expect(set(named) <= known, f"tests/README.md: no tests of ctest: {sorted(set(named) - known)}")
+    lost = {name for name in known if name.startswith("test_") and not any(f"{name}_".startswith(f"{other}_")
+                                                                           for other in named)}
+    expect(not lost, f"tests/README.md: no promise names these tests: {sorted(lost)}")
 
 
 def test_map(source, text):

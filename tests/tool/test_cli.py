@@ -1,99 +1,21 @@
 #!/usr/bin/env python3
-"""test_cli.py TOOL [reference] [fault=LIBRARY] - the command line: options, reports, exit statuses, files
+"""test_cli.py TOOL [reference] - the command line: options, files, reports, exit statuses
 
 Runs every command through its contract: exit statuses 0 to 4, the keys of JSON reports, messages that name the culprit,
-no partial file after any failure, damaged meshes found (mesh_fault.c, preloaded from LIBRARY). With `reference` what
-needs an OpenCL device is left out; without it a device must be there. Standard library only.
+no partial file after any failure.
 """
 import json
 import os
-import pty
 import re
-import resource
-import select
-import signal
 import stat
 import struct
-import subprocess
 import sys
-import tempfile
-import unittest
 
-TOOL = None
-HAS_DEVICE = False
-FAULT_LIBRARY = None
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from tool_case import Case
 
-EXTRACT_KEYS = {"input", "device", "engine", "method", "dims", "cells", "tetrahedra", "timings_ms", "surfaces", "notices"}
-COUNT_KEYS = {"iso", "vertices", "triangles", "active_cells", "timings_ms"}
-SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
-CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges", "coarse_vertices",
-              "euler_characteristic", "components", "area", "volume"}
-INFO_KEYS = {"input", "format", "dims", "first", "type", "spacing", "matrix", "space", "notice", "range", "nonfinite",
-             "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
-DEVICE_KEYS = {"index", "spec", "name", "platform", "version", "driver", "type", "compute_units",
-               "max_work_group_size", "global_memory_bytes", "max_buffer_bytes", "local_memory_bytes",
-               "shares_host_memory", "has_fp64", "rounds_division"}
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "f64": 8}
-
-
-def chosen():
-    """Arguments for unittest, as expect.h has it: TEST_ONLY in the environment chooses tests, TEST_STOP ends with the
-    first failure."""
-    only = os.environ.get("TEST_ONLY")
-    return (["-k", only] if only else []) + (["-f"] if os.environ.get("TEST_STOP") else [])
-
-
-def signals_as_usual():
-    """Shells and nohup have what goes on in the background ignore some: the tool would as well."""
-    for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
-
-
-def tool(*arguments, env=None, stdout=subprocess.PIPE, cwd=None):
-    environment = dict(os.environ, **(env or {}))
-    return subprocess.run([TOOL, *map(str, arguments)], stdout=stdout, stderr=subprocess.PIPE, text=True,
-                          env=environment, cwd=cwd, timeout=1000)
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="tetracubes-cli-")
-        self.addCleanup(self.folder.cleanup)
-
-    def path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def files(self):
-        return sorted(os.listdir(self.folder.name))
-
-    def expect(self, status, *arguments, says=None, **how):
-        """Runs the tool; checks its exit status and, as a pattern, what it says on standard error."""
-        result = tool(*arguments, **how)
-        told = f"{arguments}: status {result.returncode}, {result.stdout!r}, {result.stderr!r}"
-        self.assertEqual(result.returncode, status, told)
-        if status and status != 3:
-            self.assertTrue(result.stderr.startswith("tetracubes: "), told)
-            self.assertEqual(result.stdout or "", "", told)
-        if says:
-            self.assertRegex(result.stderr, says, told)
-        return result
-
-    def refuses(self, status, *arguments, says=None, **how):
-        """As expect, and no file appears, vanishes or changes its size."""
-        before = [(name, os.path.getsize(self.path(name))) for name in self.files()]
-        result = self.expect(status, *arguments, says=says, **how)
-        self.assertEqual([(name, os.path.getsize(self.path(name))) for name in self.files()], before)
-        return result
-
-    def generate(self, field, name, dims="20,19,18", kind="u8", *more):
-        self.expect(0, "generate", field, "--dims", dims, "--type", kind, "-o", self.path(name), *more)
-        return self.path(name)
-
-    def report(self, *arguments, status=0, **how):
-        return json.loads(self.expect(status, *arguments, "--json", **how).stdout)
-
-    def engines(self):
-        return ["reference", "opencl"] if HAS_DEVICE else ["reference"]
 
 
 class Usage(Case):
@@ -116,7 +38,7 @@ class Usage(Case):
                 self.assertLessEqual(len(line), 100, line)
 
     def test_commands(self):
-        alone = tool()
+        alone = tool_case.tool()
         self.assertEqual((alone.returncode, alone.stdout), (2, ""))
         self.assertIn("tetracubes extract", alone.stderr)
         self.refuses(2, "extrct", says="did you mean extract")
@@ -293,7 +215,7 @@ class Files(Case):
 class Reports(Case):
     def test_info(self):
         info = self.report("info", self.generate("sphere", "a.nrrd", "21,21,21"))
-        self.assertEqual(set(info), INFO_KEYS)
+        self.assertEqual(set(info), tool_case.INFO_KEYS)
         self.assertEqual((info["dims"], info["type"], info["nonfinite"]), ([21, 21, 21], "u8", 0))
         self.assertEqual(info["range"], [0, 255])
         self.assertEqual(set(info["histogram"]), {"low", "width", "counts"})
@@ -334,13 +256,13 @@ class Reports(Case):
         for engine in self.engines():
             extract = ["extract", volume, "--iso", "127.5", "--engine", engine]
             report = self.report(*extract)
-            self.assertEqual(set(report), EXTRACT_KEYS)
+            self.assertEqual(set(report), tool_case.EXTRACT_KEYS)
             self.assertEqual((report["dims"], report["cells"], report["tetrahedra"]), ([33, 33, 33], 32768, 163840))
             self.assertEqual((report["input"], report["engine"], report["method"]), (volume, engine, "tetra"))
             self.assertEqual(report["device"] is None, engine == "reference")
             self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "upload", "write", "total"})
             [surface] = report["surfaces"]
-            self.assertEqual(set(surface), SURFACE_KEYS)
+            self.assertEqual(set(surface), tool_case.SURFACE_KEYS)
             self.assertEqual((surface["iso"], surface["vertices"], surface["triangles"]), (127.5, 5082, 10160))
             self.assertEqual(set(surface["timings_ms"]), {"classify", "emit", "readback"})
             self.assertRegex(surface["hash"], r"^[0-9a-f]{16}$")
@@ -348,12 +270,12 @@ class Reports(Case):
                 self.assertAlmostEqual(low, -2 / 3, delta=0.01)
                 self.assertAlmostEqual(high, 2 / 3, delta=0.01)
             [surface] = self.report(*extract, "--check")["surfaces"]
-            self.assertEqual(set(surface), SURFACE_KEYS | CHECK_KEYS)
+            self.assertEqual(set(surface), tool_case.SURFACE_KEYS | tool_case.CHECK_KEYS)
             self.assertEqual((surface["boundary_edges"], surface["euler_characteristic"], surface["components"]),
                              (0, 2, 1))
             self.assertAlmostEqual(surface["volume"], 1.24, delta=0.03)
             [surface] = self.report(*extract, "--count")["surfaces"]
-            self.assertEqual(set(surface), COUNT_KEYS)
+            self.assertEqual(set(surface), tool_case.COUNT_KEYS)
             self.assertEqual((surface["vertices"], surface["triangles"]), (5082, 10160))
             text = self.expect(0, *extract, "--check").stdout
             for fact in ("5082 vertices", "10160 triangles", "Euler characteristic 2", "closed"):
@@ -442,172 +364,5 @@ class Reports(Case):
                                        places=4)
 
 
-class Devices(Case):
-    def test_no_platform(self):
-        none = {"OCL_ICD_VENDORS": self.path("vendors")}
-        os.mkdir(self.path("vendors"))
-        volume = self.generate("sphere", "a.nrrd")
-        self.refuses(1, "extract", volume, "--iso", "127.5", "-o", self.path("a.ply"), env=none, says="(?i)install")
-        self.refuses(1, "devices", env=none, says="no OpenCL platform was found: none is installed, or .*does not load")
-        self.refuses(1, "devices", "--json", env=none, says="(?i)install")
-        self.refuses(1, "selftest", env=none, says="(?i)install")
-        self.expect(0, "extract", volume, "--iso", "127.5", "--engine", "reference", env=none)
-
-    def test_unknown_device(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        volume = self.generate("sphere", "a.nrrd")
-        for spec in ("no such device", "99", "99:0", "-1"):
-            self.refuses(1, "extract", volume, "--iso", "127.5", "--device", spec, "-o", self.path("a.ply"))
-            self.refuses(1, "selftest", "--device", spec)
-        self.refuses(1, "extract", volume, "--iso", "127.5", env={"TETRACUBES_DEVICE": "no such device"},
-                     says="TETRACUBES_DEVICE")
-
-    def test_devices(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        report = self.report("devices")
-        self.assertEqual(set(report), {"devices"})
-        self.assertTrue(report["devices"])
-        text = self.expect(0, "devices").stdout
-        for index, device in enumerate(report["devices"]):
-            self.assertEqual(set(device), DEVICE_KEYS)
-            self.assertEqual(device["index"], index)
-            self.assertIn(device["name"], text)
-        device = report["devices"][0]
-        volume = self.generate("sphere", "a.nrrd")
-        for spec in ("0", device["spec"], device["type"], device["name"]):
-            got = self.report("extract", volume, "--iso", "127.5", "--device", spec)
-            self.assertEqual(got["device"], device["name"])
-
-    def test_engines_agree(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        for field, dims, kind, iso in (("gyroid", "65,33,17", "u8", "127.5"), ("noise", "40,41,42", "f32", "127.5"),
-                                       ("tangle", "30,31,32", "f64", "127.5"), ("noise", "67,9,5", "i16", "128")):
-            volume = self.generate(field, "a.nrrd", dims, kind)
-            reference = self.report("extract", volume, "--iso", iso, "--engine", "reference")["surfaces"][0]
-            for more in ([], ["--max-memory", "16M"], ["--normals"]):
-                device = self.report("extract", volume, "--iso", iso, "--verify", "--check", *more)["surfaces"][0]
-                self.assertEqual(set(device), SURFACE_KEYS | CHECK_KEYS | {"verified"})
-                self.assertIs(device["verified"], True)
-                self.assertEqual(device["hash"], reference["hash"])
-
-    def test_selftest(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        # It launches groups of many sizes, whose kernels PoCL takes long to optimise: long_selftest is left to that.
-        plain = {"POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"} if "TEST_PLAIN_GROUPS" in os.environ else None
-        result = self.expect(0, "selftest", env=plain)
-        self.assertEqual(result.stdout.splitlines()[-1], "PASS", result.stdout)
-        report = self.report("selftest", "--quick")
-        self.assertEqual(set(report), {"device", "groups", "pass", "platform", "driver", "version", "tetracubes"})
-        self.assertIs(report["pass"], True)
-        for group in report["groups"]:
-            self.assertEqual((group["failed"], group["message"]), (0, ""))
-            self.assertGreater(group["trials"], 0)
-
-
-class Faults(Case):
-    def setUp(self):
-        super().setUp()
-        if not FAULT_LIBRARY:
-            self.skipTest("no library of faults given")
-        self.volume = self.generate("sphere", "a.nrrd", "21,22,23", "f32")
-
-    def damaged(self, fault, *more):
-        """Extracts with the fault in the mesh: status 3, and no file is written. Returns the report and the message."""
-        environment = {"LD_PRELOAD": FAULT_LIBRARY, "MESH_FAULT": fault}
-        result = self.refuses(3, "extract", self.volume, "--iso", "127.5", "--json", "-o", self.path("a.ply"), *more,
-                              env=environment)
-        return json.loads(result.stdout)["surfaces"][0], result.stderr
-
-    def test_verification_finds_one_bit(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        for fault, named in (("position", "vertex"), ("normal", "normal"), ("triangle", "triangle")):
-            surface, told = self.damaged(fault, "--verify", "--normals")
-            self.assertIs(surface["verified"], False)
-            self.assertRegex(told, rf"isovalue 127.5: verification failed: {named} \d+ is ")
-            self.assertIn("not written", told)
-
-    def test_check_finds_a_turned_triangle(self):
-        for engine in self.engines():
-            surface, told = self.damaged("winding", "--check", "--engine", engine)
-            self.assertEqual(surface["misoriented_edges"], 3)
-            self.assertRegex(told, "check failed: .* 3 misoriented edges")
-        if HAS_DEVICE:
-            self.assertIs(self.damaged("winding", "--check", "--verify")[0]["verified"], True)
-
-    def test_selftest_fails(self):
-        if not HAS_DEVICE:
-            self.skipTest("no OpenCL device")
-        environment = {"LD_PRELOAD": FAULT_LIBRARY, "MESH_FAULT": "position"}
-        lines = self.expect(3, "selftest", "--quick", env=environment, says="do not trust").stdout.splitlines()
-        self.assertEqual(lines[-1], "FAIL")
-        self.assertTrue(any(line.endswith("FAILED") for line in lines))
-
-
-class Interrupts(Case):
-    def interrupt(self, ready, *arguments, number=signal.SIGINT, before=signal.SIG_DFL, status=1, says="cancelled"):
-        """Starts the tool with a terminal for its messages, sends a signal once ready(text so far)."""
-        ours, theirs = pty.openpty()
-        process = subprocess.Popen([TOOL, *map(str, arguments)], stderr=theirs, stdout=subprocess.DEVNULL,
-                                   preexec_fn=lambda: signal.signal(number, before))
-        os.close(theirs)
-        text, sent = "", False
-        while True:
-            if select.select([ours], [], [], 0.01)[0]:
-                try:
-                    text += os.read(ours, 4096).decode()
-                except OSError:  # the tool has closed its side
-                    break
-            if not sent and ready(text):
-                process.send_signal(number)
-                sent = True
-        os.close(ours)
-        self.assertEqual(process.wait(60), status, text)
-        self.assertIn(says, text)
-        return text
-
-    def started(self, _):
-        return any(name.endswith(".tmp") for name in self.files())
-
-    def test_generate_leaves_nothing(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGXCPU):
-            self.interrupt(self.started, "generate", "noise", "--dims", "1024,1024,512", "--type", "u16", "-o",
-                           self.path("a.nrrd"), number=number)
-            self.assertEqual(self.files(), [], number)
-
-    def test_ignored_signals_stay_ignored(self):
-        self.interrupt(self.started, "generate", "noise", "--dims", "256,256,512", "--type", "u16", "-o",
-                       self.path("a.nrrd"), number=signal.SIGHUP, before=signal.SIG_IGN, status=0, says="")
-        self.assertEqual(self.files(), ["a.nrrd"])
-
-    def test_limit_on_file_sizes(self):
-        volume = self.generate("sphere", "a.nrrd", "40,40,40")
-        for command in (["extract", volume, "--iso", "127.5", "--engine", "reference", "-o", "big.stl"],
-                        ["tetrahedralize", volume, "-o", "big.vtu"],
-                        ["generate", "noise", "--dims", "64,64,64", "--type", "u8", "-o", "big.nrrd"]):
-            def limit():
-                resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-            result = subprocess.run([TOOL, *command], cwd=self.folder.name, stderr=subprocess.PIPE, text=True,
-                                    stdout=subprocess.DEVNULL, preexec_fn=limit, timeout=1000)
-            self.assertEqual(result.returncode, 1, result)
-            self.assertRegex(result.stderr, "^tetracubes: big.*too large.*ulimit -f")
-            self.assertEqual(self.files(), ["a.nrrd"])
-
-    def test_extract_leaves_nothing(self):
-        volume = self.generate("gyroid", "a.nrrd", "400,400,400")
-        text = self.interrupt(lambda text: "%" in text, "extract", volume, "--iso", "127.5", "--engine", "reference",
-                              "-o", self.path("a.ply"))
-        self.assertRegex(text, r"[a-z]+ +\d+%")
-        self.assertEqual(self.files(), ["a.nrrd"])
-
-
 if __name__ == "__main__":
-    TOOL = os.path.abspath(sys.argv[1])
-    HAS_DEVICE = "reference" not in sys.argv[2:]
-    FAULT_LIBRARY = next((os.path.abspath(word[6:]) for word in sys.argv[2:] if word.startswith("fault=")), None)
-    print("all checks" if HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
-    unittest.main(argv=[sys.argv[0], *chosen()])
+    tool_case.main()

@@ -12,11 +12,12 @@ import shutil
 import struct
 import subprocess
 import sys
-import unittest
 
-import test_cli
-from test_cli_grids import GridCase, HEXAHEDRON, hexahedra, lattice, vti_text, vtu_text
-from test_results import DataCase, ply_read
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from grid_files import HEXAHEDRON, hexahedra, lattice, vti_text, vtu_text
+from meshes import ply_read
+from tool_case import GridCase
 
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "host", "tool", "effects.c")
 RAW = ["--dims", "8,8,8", "--type", "u8"]
@@ -104,12 +105,12 @@ class Effects(GridCase):
             self.assertNotIn("--", self.expect(0, *words).stderr, words)
 
 
-class Reports(DataCase, GridCase):
+class Reports(GridCase):
     def test_vertices_of_a_soup(self):
         volume = [self.generate("sphere", "a.nrrd")]
         shared = self.extract(volume, "100")["surfaces"][0]
         soup = self.extract(volume, "100", "--soup", "--check", "-o", self.path("o.ply"))["surfaces"][0]
-        rows, triangles = ply_read(self.path("o.ply"))
+        _, _, rows, triangles = ply_read(self.path("o.ply"))
         self.assertEqual((soup["vertices"], soup["triangles"]), (len(rows), len(triangles)))
         self.assertEqual(soup["vertices"], 3 * shared["triangles"])
         self.assertEqual((soup["shared_vertices"], soup["hash"]), (shared["vertices"], shared["hash"]))
@@ -137,7 +138,7 @@ class Reports(DataCase, GridCase):
         folded = [(cell[4:] + cell[:4]) for cell in cells[:4]] + cells[4:]
         values = [10.0 if p == (1, 1, 1) or p == (1, 1, 2) else 0.0 for p in points]
         volume = [self.write("f.vtu", vtu_text(points, [*folded, cells[0]], [HEXAHEDRON] * 13, [("f", "f32", values)]))]
-        result = test_cli.tool("extract", *volume, "--iso", "5", *REFERENCE, "--check", "--json")
+        result = tool_case.tool("extract", *volume, "--iso", "5", *REFERENCE, "--check", "--json")
         surface = json.loads(result.stdout)["surfaces"][0]
         self.assertGreater(surface["boundary_edges"] + surface["misoriented_edges"] + surface["nonmanifold_edges"], 0)
         self.assertIsNone(surface["volume"])
@@ -161,7 +162,7 @@ class Reports(DataCase, GridCase):
         self.assertIn("format        NRRD", result.stdout)
 
 
-class Numbers(DataCase):
+class Numbers(GridCase):
     """What people may type back reads back as the same number."""
 
     def test_voxel_sizes_of_notices(self):
@@ -176,16 +177,15 @@ class Numbers(DataCase):
         self.assertEqual((given.split()[1], read), ("nan", expected))
 
     def test_isovalues_of_trials(self):
-        if not test_cli.HAS_DEVICE:
-            self.skipTest("needs a device")
+        self.needs_device()
         with open(self.path("v.txt"), "w") as file:
             file.write("sphere 16 16 16 f32 100.0000001 tetra - 1 1 0123456789abcdef\n")
-        result = test_cli.tool("selftest", "--vectors", self.path("v.txt"))
+        result = tool_case.tool("selftest", "--vectors", self.path("v.txt"))
         self.assertEqual(result.returncode, 3, result)
         self.assertIn("isovalue 100.0000001,", result.stdout)
 
 
-class Carried(DataCase, GridCase):
+class Carried(GridCase):
     def told(self, kind, values, components=1):
         count = 125
         ramp = [float(n % 5) for n in range(count)]
@@ -213,7 +213,7 @@ class Carried(DataCase, GridCase):
         self.assertEqual(self.told("u8", [n for n in range(125)]), [])
 
 
-class WideIntegers(DataCase, GridCase):
+class WideIntegers(GridCase):
     """64-bit integers become doubles: told where a field that is used, or the isovalue, is not the same any more."""
 
     def both(self, last):
@@ -251,9 +251,9 @@ class WideIntegers(DataCase, GridCase):
             self.assertEqual(told, [f"isovalue {typed} is taken as {taken}, the nearest double"] if taken else [])
 
 
-class StandardInput(DataCase, GridCase):
+class StandardInput(GridCase):
     def pipe(self, status, data, *words, says="^"):
-        run = subprocess.run([test_cli.TOOL, *words], input=data, capture_output=True, timeout=600, cwd=self.folder.name)
+        run = subprocess.run([tool_case.TOOL, *words], input=data, capture_output=True, timeout=600, cwd=self.folder.name)
         self.assertEqual(run.returncode, status, run)
         self.assertRegex(run.stderr.decode(), says)
         return run.stdout
@@ -265,9 +265,9 @@ class StandardInput(DataCase, GridCase):
         words = ["extract", "-", "--iso", iso, *REFERENCE, "--json", *more, "-o", "o.ply"]
         surface = json.loads(self.pipe(0, data, *words))["surfaces"][0]
         self.assertEqual(surface["hash"], expected["hash"])
-        self.assertEqual(len(ply_read(self.path("o.ply"))[0]), expected["vertices"])
+        self.assertEqual(len(ply_read(self.path("o.ply")).rows), expected["vertices"])
         with open(self.path(name), "rb") as file:  # a file that the shell has opened
-            run = subprocess.run([test_cli.TOOL, *words], stdin=file, capture_output=True, cwd=self.folder.name)
+            run = subprocess.run([tool_case.TOOL, *words], stdin=file, capture_output=True, cwd=self.folder.name)
         self.assertEqual(json.loads(run.stdout)["surfaces"][0]["hash"], expected["hash"], run)
 
     def test_formats(self):
@@ -320,7 +320,7 @@ class StandardInput(DataCase, GridCase):
         self.pipe(4, bytes(7), "info", "-", "--dims", "2,2,2", "--type", "u8", says="7 bytes")
         volume = self.generate("sphere", "a.nrrd")
         with open(volume, "rb") as file:
-            run = subprocess.run([test_cli.TOOL, "extract", "-", "--iso", "1", *REFERENCE, "-o", volume, "--format",
+            run = subprocess.run([tool_case.TOOL, "extract", "-", "--iso", "1", *REFERENCE, "-o", volume, "--format",
                                   "ply"], stdin=file, capture_output=True, text=True)
         self.assertEqual(run.returncode, 2, run)
         self.assertRegex(run.stderr, "name another file")
@@ -328,7 +328,7 @@ class StandardInput(DataCase, GridCase):
 
     def test_terminal(self):
         master, slave = os.openpty()
-        run = subprocess.run([test_cli.TOOL, "info", "-"], stdin=slave, capture_output=True, text=True)
+        run = subprocess.run([tool_case.TOOL, "info", "-"], stdin=slave, capture_output=True, text=True)
         os.close(master)
         os.close(slave)
         self.assertEqual(run.returncode, 2, run)
@@ -338,7 +338,7 @@ class StandardInput(DataCase, GridCase):
         """The words with a FIFO of that name, into which data is written."""
         os.mkfifo(self.path(name))
         with subprocess.Popen(["sh", "-c", f"cat > {name}"], cwd=self.folder.name, stdin=subprocess.PIPE) as writer, \
-                subprocess.Popen([test_cli.TOOL, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                subprocess.Popen([tool_case.TOOL, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                  cwd=self.folder.name) as run:
             writer.stdin.write(data)
             writer.stdin.close()
@@ -358,7 +358,7 @@ class StandardInput(DataCase, GridCase):
         for name in ("/dev/stdin", "/dev/fd/0"):
             runs.append(self.pipe(0, data, "extract", name, *words))
             with open(volume, "rb") as file:
-                run = subprocess.run([test_cli.TOOL, "extract", name, *words], stdin=file, capture_output=True)
+                run = subprocess.run([tool_case.TOOL, "extract", name, *words], stdin=file, capture_output=True)
             runs.append(run.stdout)
         for text in runs:
             self.assertEqual(json.loads(text)["surfaces"][0]["hash"], expected)
@@ -371,11 +371,11 @@ class StandardInput(DataCase, GridCase):
         for text in ("<(cat a.nrrd)", "<(sleep 0.3; cat a.nrrd)", "<(cat a.nrrd) --iso 100 < /dev/null",
                      "<(cat p.xyz) <(cat p.q) --field density"):
             arguments = text if "--iso" in text else f"{text} --iso {30 if 'density' in text else 100}"
-            run = subprocess.run(["bash", "-c", f'"$0" extract {arguments} --engine reference --json', test_cli.TOOL],
+            run = subprocess.run(["bash", "-c", f'"$0" extract {arguments} --engine reference --json', tool_case.TOOL],
                                  capture_output=True, cwd=self.folder.name, timeout=600)
             self.assertEqual(run.returncode, 0, run)
             self.assertGreater(json.loads(run.stdout)["surfaces"][0]["triangles"], 0, inputs)
-        run = subprocess.run(["bash", "-c", '"$0" info <(true)', test_cli.TOOL], capture_output=True, timeout=600)
+        run = subprocess.run(["bash", "-c", '"$0" info <(true)', tool_case.TOOL], capture_output=True, timeout=600)
         self.assertEqual(run.returncode, 4, run)
         self.assertIn(b"the pipe is empty", run.stderr)
 
@@ -393,7 +393,7 @@ class StandardInput(DataCase, GridCase):
 
     def test_pipe_interrupted(self):
         os.mkfifo(self.path("pipe"))
-        with subprocess.Popen([test_cli.TOOL, "info", self.path("pipe")], stderr=subprocess.PIPE) as run:
+        with subprocess.Popen([tool_case.TOOL, "info", self.path("pipe")], stderr=subprocess.PIPE) as run:
             with self.assertRaises(subprocess.TimeoutExpired):
                 run.wait(timeout=1)
             run.terminate()
@@ -401,7 +401,7 @@ class StandardInput(DataCase, GridCase):
             self.assertRegex(run.stderr.read().decode(), "cancelled|interrupted")
 
     def test_interrupted(self):
-        with subprocess.Popen([test_cli.TOOL, "info", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        with subprocess.Popen([tool_case.TOOL, "info", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE) as run:
             run.stdin.write(b"NRRD")
             run.stdin.flush()
             with self.assertRaises(subprocess.TimeoutExpired):
@@ -412,7 +412,4 @@ class StandardInput(DataCase, GridCase):
 
 
 if __name__ == "__main__":
-    test_cli.TOOL = os.path.abspath(sys.argv[1])
-    test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]
-    print("all checks" if test_cli.HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
-    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])
+    tool_case.main()

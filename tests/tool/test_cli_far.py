@@ -9,14 +9,13 @@ import itertools
 import json
 import math
 import os
-import re
-import struct
 import sys
-import unittest
 
-import test_cli
-from test_cli_grids import (GridCase, HEXAHEDRON, attributes, bump, data_array, hexahedra, lattice, structured_text,
-                            vtk_file)
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from grid_files import HEXAHEDRON, attributes, bump, data_array, hexahedra, lattice, structured_text, vtk_file
+from meshes import READERS, measures, read_ply, read_stl
+from tool_case import GridCase
 
 DIMS = (9, 8, 9)
 UTM = (500000.0, 4649776.0, 200.0)
@@ -89,78 +88,6 @@ def legacy(at):
 
 
 KINDS = {"far.vtu": vtu, "far.vts": vts, "far.vtr": vtr, "far.vti": vti, "far.vtk": legacy}
-
-
-def read_ply(path):
-    with open(path, "rb") as f:
-        content = f.read()
-    end = content.index(b"end_header\n") + 11
-    header = content[:end].decode()
-    count = int(re.search(r"element vertex (\d+)", header)[1])
-    faces = int(re.search(r"element face (\d+)", header)[1])
-    kinds = {"float": "f", "double": "d"}
-    layout = "<" + "".join(kinds[kind] for kind in re.findall(r"property (float|double) ", header))
-    size = struct.calcsize(layout)
-    points = [struct.unpack_from(layout, content, end + n * size)[:3] for n in range(count)]
-    at = end + count * size
-    assert len(content) == at + 13 * faces
-    return points, [struct.unpack_from("<3I", content, at + 13 * n + 1) for n in range(faces)], layout[1:4]
-
-
-def read_vtp(path):
-    with open(path, "rb") as f:
-        content = f.read()
-    appended = content.index(b"_", content.index(b"<AppendedData")) + 1
-    header = content[:appended].decode("latin-1")
-
-    def array(name):
-        element = next(e for e in re.findall(r"<DataArray[^>]*>", header) if f'Name="{name}"' in e)
-        at = appended + int(re.search(r'offset="(\d+)"', element)[1])
-        kind = re.search(r'type="(\w+)"', element)[1]
-        code = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q"}[kind]
-        size = struct.unpack_from("<Q", content, at)[0]
-        return struct.unpack_from(f"<{size // struct.calcsize(code)}{code}", content, at + 8), code
-    flat, code = array("Points")
-    corners = array("connectivity")[0]
-    return list(zip(*[iter(flat)] * 3)), list(zip(*[iter(corners)] * 3)), code * 3
-
-
-def read_obj(path):
-    points, faces = [], []
-    with open(path, encoding="ascii") as f:
-        for line in f:
-            word, *rest = line.split()
-            if word == "v":
-                points.append(tuple(map(float, rest)))
-            elif word == "f":
-                faces.append(tuple(int(corner.split("/")[0]) - 1 for corner in rest))
-    return points, faces, "ddd"
-
-
-def read_stl(path):
-    with open(path, "rb") as f:
-        content = f.read()
-    count = struct.unpack_from("<I", content, 80)[0]
-    points = []
-    for n in range(count):
-        values = struct.unpack_from("<12f", content, 84 + 50 * n)
-        points += [values[3:6], values[6:9], values[9:12]]
-    return points, [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(count)], "fff"
-
-
-READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
-
-
-def measures(points, faces, at=(0, 0, 0)):
-    """Area, and volume of the cone to `at`."""
-    area = volume = 0
-    for face in faces:
-        a, b, c = ([points[v][axis] - at[axis] for axis in range(3)] for v in face)
-        u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
-        n = [u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3] for k in range(3)]
-        area += math.hypot(*n) / 2
-        volume += sum(n[k] * a[k] for k in range(3)) / 6
-    return area, volume
 
 
 class Far(GridCase):
@@ -445,7 +372,4 @@ class Far(GridCase):
 
 
 if __name__ == "__main__":
-    test_cli.TOOL = os.path.abspath(sys.argv[1])
-    test_cli.HAS_DEVICE = "reference" not in sys.argv[2:]
-    print("all checks" if test_cli.HAS_DEVICE else "checks that need an OpenCL device are left out", flush=True)
-    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])
+    tool_case.main()

@@ -10,10 +10,11 @@ import math
 import os
 import struct
 import sys
-import unittest
 
-import test_cli
-from test_cli_grids import GridCase, lattice, numbers, structured_text, vti_text, vts_text
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from grid_files import lattice, numbers, structured_text, vti_text, vts_text
+from tool_case import GridCase
 
 DATA = os.environ.get("TETRACUBES_DATA")
 DIMS = (5, 4, 3)
@@ -369,6 +370,4 @@ class Reports(ImageCase):
 
 
 if __name__ == "__main__":
-    test_cli.TOOL = os.path.abspath(sys.argv[1])
-    test_cli.HAS_DEVICE = False
-    unittest.main(argv=[sys.argv[0], *test_cli.chosen()])
+    tool_case.main(device=False)
