@@ -6,6 +6,8 @@
  */
 #include "expect.h"
 #include "field.h"
+#include "random.h"
+#include "samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -78,27 +80,6 @@ static double converted(double value, tc_type type) {
     return fmin(fmax(trunc(value), low[type]), high[type]);
 }
 
-static double sample(const void *samples, tc_type type, size_t n) {
-    switch (type) {
-    case TC_U8:
-        return ((const uint8_t *)samples)[n];
-    case TC_I8:
-        return ((const int8_t *)samples)[n];
-    case TC_U16:
-        return ((const uint16_t *)samples)[n];
-    case TC_I16:
-        return ((const int16_t *)samples)[n];
-    case TC_U32:
-        return ((const uint32_t *)samples)[n];
-    case TC_I32:
-        return ((const int32_t *)samples)[n];
-    case TC_F32:
-        return (double)((const float *)samples)[n];
-    default:
-        return ((const double *)samples)[n];
-    }
-}
-
 static void types_truncate_and_saturate(const field *f) {
     static double exact[SAMPLE_COUNT], typed[SAMPLE_COUNT];
     field_sample(f, dims, TC_F64, 7, 0, dims[2], exact);
@@ -106,7 +87,7 @@ static void types_truncate_and_saturate(const field *f) {
         field_sample(f, dims, (tc_type)type, 7, 0, dims[2], typed);
         size_t wrong = 0;
         for (size_t n = 0; n < SAMPLE_COUNT; n++)
-            wrong += sample(typed, (tc_type)type, n) != converted(exact[n], (tc_type)type);
+            wrong += sample_get(typed, (tc_type)type, (int64_t)n) != converted(exact[n], (tc_type)type);
         EXPECT(wrong == 0, "%s, type %d: %zu samples wrong", f->name, type, wrong);
     }
 }
@@ -129,20 +110,13 @@ static void planes_fit_together(const field *f) {
 }
 
 /* The generator in its usual, sequential form. */
-static uint64_t splitmix64(uint64_t *state) {
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
 static void noise_is_splitmix64(uint64_t seed) {
     static double got[SAMPLE_COUNT];
-    uint64_t state = seed;
+    random_state = seed;
     field_sample(field_find("noise"), dims, TC_F64, seed, 0, dims[2], got);
     size_t wrong = 0, histogram[256] = {0};
     for (size_t n = 0; n < SAMPLE_COUNT; n++) {
-        double want = (double)(splitmix64(&state) >> 40) / 65536.0;
+        double want = (double)(random_u64() >> 40) / 65536.0;
         wrong += got[n] != want || want != (double)(float)want;
         histogram[(int)got[n] & 255]++;
     }

@@ -8,6 +8,7 @@
 #include "expect.h"
 #include "failure.h"
 #include "mesh_check.h"
+#include "random.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,18 +16,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-static uint64_t random_state;
-
-/* splitmix64 (Steele, Lea, Flood 2014) */
-static uint64_t random_u64(void) {
-    uint64_t z = (random_state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-static uint32_t random_below(uint64_t limit) { return (uint32_t)(random_u64() % limit); }
 
 static void expect_topology(const char *name, const mesh_topology *is, const mesh_topology *should) {
     EXPECT(is->boundary_edges == should->boundary_edges && is->nonmanifold_edges == should->nonmanifold_edges &&
