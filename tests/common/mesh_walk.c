@@ -1,118 +1,36 @@
 /*
- * Order: bricks of 64 x 8 x 4 samples in x, y, z order; within a brick rows of 64 samples in (y, z) order; within a row
- * vertices by edge type (x, y, z, xy, xz, yz), then x; triangles by x, then tetrahedron. Expected numbers are made in
- * long double, so that no halving is needed, and compared within the error that float arithmetic may have.
+ * Order of triangles: bricks of 64 x 8 x 4 samples in x, y, z order; within a brick rows of 64 samples in (y, z) order;
+ * within a row by x, then tetrahedron. Expected numbers are made in long double, so that no halving is needed, and
+ * compared within the error that float arithmetic may have.
  */
 #include "mesh_walk.h"
 
 #include "samples.h"
+#include "signs.h"
 #include "split.h"
-#include "topology.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { EDGE_TYPES = 6 };
-
-static const unsigned type_axes[EDGE_TYPES] = {1, 2, 4, 3, 5, 6}; /* bit n: the edge spans axis n */
-
 typedef struct walk {
     const tc_grid_options *grid;
     double isovalue;
     const tc_mesh_data *mesh;
-    unsigned parity; /* of i + j + k at the first sample */
+    signs signs;
+    expected should;
     bool mirrored;
-    uint8_t *inside, *present;
-    uint32_t *ids; /* [sample][edge type] */
-    uint64_t vertex_count, triangle_count;
+    uint64_t triangle_count;
     char fault[256];
 } walk;
 
-typedef const char *walk_row(walk *w, int64_t x0, int64_t x1, int64_t y, int64_t z);
-
-static int64_t least_of(int64_t a, int64_t b) { return a < b ? a : b; }
-
-static const char *rows_walk(walk *w, walk_row *visit) {
-    const int64_t *n = w->grid->dims;
-    const char *fault = NULL;
-    for (int64_t z0 = 0; z0 < n[2]; z0 += 4)
-        for (int64_t y0 = 0; y0 < n[1]; y0 += 8)
-            for (int64_t x0 = 0; x0 < n[0]; x0 += 64)
-                for (int64_t z = z0; z < least_of(z0 + 4, n[2]); z++)
-                    for (int64_t y = y0; y < least_of(y0 + 8, n[1]) && !fault; y++)
-                        fault = visit(w, x0, least_of(x0 + 64, n[0]), y, z);
-    return fault;
-}
-
-static int64_t index_of(const walk *w, const int64_t p[3]) {
-    return (p[2] * w->grid->dims[1] + p[1]) * w->grid->dims[0] + p[0];
-}
-
-static bool sample_is_odd(const walk *w, const int64_t p[3]) {
-    return (w->parity + (uint64_t)(p[0] + p[1] + p[2])) & 1;
-}
+static int64_t index_of(const walk *w, const int64_t p[3]) { return signs_index(&w->signs, p); }
 
 static const char *fault_of(walk *w, const char *what, uint64_t number, const int64_t p[3]) {
     snprintf(w->fault, sizeof w->fault, "%s %llu at sample %lld, %lld, %lld", what, (unsigned long long)number,
              (long long)p[0], (long long)p[1], (long long)p[2]);
     return w->fault;
-}
-
-/* --------------------------------------------------------------------------------------------------------- samples */
-
-static void samples_judge(walk *w) {
-    const tc_grid_options *g = w->grid;
-    int64_t count = g->dims[0] * g->dims[1] * g->dims[2];
-    for (int64_t n = 0; n < count; n++) {
-        double value = sample_get(g->samples, g->type, n);
-        w->inside[n] = value >= w->isovalue;
-        w->present[n] =
-            isfinite(value) && !(g->has_nodata && value == g->nodata) && !(g->blanked_samples && g->blanked_samples[n]);
-    }
-}
-
-static bool cube_is_present(const walk *w, const int64_t p[3]) {
-    bool present = true;
-    for (int axis = 0; axis < 3; axis++) present = present && p[axis] >= 0 && p[axis] + 1 < w->grid->dims[axis];
-    for (unsigned c = 0; c < 8 && present; c++) {
-        int64_t q[3] = {p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)};
-        present = w->present[index_of(w, q)];
-    }
-    const int64_t *n = w->grid->dims;
-    const uint8_t *blanked = w->grid->blanked_cells;
-    return present && !(blanked && blanked[(p[2] * (n[1] - 1) + p[1]) * (n[0] - 1) + p[0]]);
-}
-
-/* ----------------------------------------------------------------------------------------------------------- edges */
-
-/* The ends of the edge that a sample owns, lower sample index first; a diagonal joins even samples. */
-static void edge_ends(const walk *w, const int64_t owner[3], unsigned type, int64_t a[3], int64_t b[3]) {
-    bool turned = type > 2 && sample_is_odd(w, owner);
-    for (int axis = 0; axis < 3; axis++) {
-        a[axis] = owner[axis];
-        b[axis] = owner[axis] + (type_axes[type] >> axis & 1);
-    }
-    for (int axis = 0; axis < 3 && turned; axis++)
-        if (type_axes[type] >> axis & 1) {
-            a[axis]++, b[axis]--;
-            turned = false;
-        }
-}
-
-static bool edge_is_crossed(const walk *w, const int64_t owner[3], unsigned type) {
-    int64_t a[3], b[3];
-    bool contained = false;
-    for (int axis = 0; axis < 3; axis++)
-        if ((type_axes[type] >> axis & 1) && owner[axis] + 1 >= w->grid->dims[axis]) return false;
-    edge_ends(w, owner, type, a, b);
-    if (w->inside[index_of(w, a)] == w->inside[index_of(w, b)]) return false;
-    for (unsigned back = 0; back < 8; back++)
-        if (!(back & type_axes[type]))
-            contained = contained || cube_is_present(w, (int64_t[3]){owner[0] - (back & 1), owner[1] - (back >> 1 & 1),
-                                                                     owner[2] - (back >> 2)});
-    return contained;
 }
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
@@ -196,7 +114,7 @@ static long double derivative_at(const walk *w, const int64_t p[3], int axis, lo
     for (int n = 0; n < 2; n++) {
         memcpy(q[n], p, sizeof q[n]);
         q[n][axis] += 2 * n - 1;
-        bool there = q[n][axis] >= 0 && q[n][axis] < w->grid->dims[axis] && w->present[index_of(w, q[n])];
+        bool there = q[n][axis] >= 0 && q[n][axis] < w->grid->dims[axis] && w->signs.present[index_of(w, q[n])];
         values[n] = value_at(w, there ? q[n] : p);
         steps += there;
         *size = fmaxl(*size, fabsl(values[n]));
@@ -211,7 +129,7 @@ static void spacing_at(const walk *w, const int64_t p[3], int axis, long double 
     for (int n = 0; n < 2; n++) {
         memcpy(q[n], p, sizeof q[n]);
         q[n][axis] += 2 * n - 1;
-        bool there = q[n][axis] >= 0 && q[n][axis] < w->grid->dims[axis] && w->present[index_of(w, q[n])];
+        bool there = q[n][axis] >= 0 && q[n][axis] < w->grid->dims[axis] && w->signs.present[index_of(w, q[n])];
         if (!there) q[n][axis] = p[axis];
         steps += there;
     }
@@ -252,7 +170,7 @@ static long double cofactors_make(long double m[3][3], long double out[3][3], bo
 
 /* Unit length or zero; direction where cancellation and subnormals leave enough digits to tell. */
 static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
-    long double gradient[3], cofactors[3][3], expected[3], size = 0, largest = 0, length = 0, dot = 0, norm = 0;
+    long double gradient[3], cofactors[3][3], wanted[3], size = 0, largest = 0, length = 0, dot = 0, norm = 0;
     long double jacobian[3][3];
     bool blurred;
     for (int axis = 0; axis < 3; axis++) {
@@ -262,14 +180,14 @@ static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3
     jacobian_make(w, a, b, t, jacobian);
     const bool turned = cofactors_make(jacobian, cofactors, &blurred) < 0;
     for (int row = 0; row < 3; row++) {
-        expected[row] = 0;
+        wanted[row] = 0;
         for (int axis = 0; axis < 3; axis++) {
             long double term = (turned ? 1 : -1) * cofactors[row][axis];
-            expected[row] += term * gradient[axis];
+            wanted[row] += term * gradient[axis];
             largest = fmaxl(largest, fabsl(term));
         }
-        length = hypotl(length, expected[row]);
-        dot += expected[row] * (long double)is[row];
+        length = hypotl(length, wanted[row]);
+        dot += wanted[row] * (long double)is[row];
         norm += (long double)is[row] * (long double)is[row];
     }
     long double blur = largest * (size * 1e-3L + (w->grid->type == TC_F64 ? 0x1p-1050L : 0x1p-128L));
@@ -277,31 +195,27 @@ static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3
     return fabsl(norm - 1) <= 1e-5L && (blurred || length <= blur || dot >= length * (1 - 1e-4L));
 }
 
-static const char *vertices_row(walk *w, int64_t x0, int64_t x1, int64_t y, int64_t z) {
-    for (unsigned type = 0; type < EDGE_TYPES; type++)
-        for (int64_t x = x0; x < x1; x++) {
-            int64_t owner[3] = {x, y, z}, a[3], b[3];
-            if (!edge_is_crossed(w, owner, type)) continue;
-            uint64_t n = w->vertex_count++;
-            if (n >= w->mesh->vertex_count) return fault_of(w, "missing vertex", n, owner);
-            w->ids[index_of(w, owner) * EDGE_TYPES + type] = (uint32_t)n;
-            edge_ends(w, owner, type, a, b);
-            long double t = crossing_of(w, a, b);
-            if (!position_is_right(w, a, b, t, w->mesh->positions + 3 * n))
-                return fault_of(w, "wrong position of vertex", n, owner);
-            if (w->mesh->normals && !normal_is_right(w, a, b, t, w->mesh->normals + 3 * n))
-                return fault_of(w, "wrong normal of vertex", n, owner);
-        }
+/* Vertices are numbered as signs_expect does it. */
+static const char *vertices_walk(walk *w) {
+    for (uint32_t n = 0; n < w->should.vertex_count; n++) {
+        int64_t a[3], b[3];
+        grid_place(w->grid, w->should.ends[n][0], a);
+        grid_place(w->grid, w->should.ends[n][1], b);
+        const long double t = crossing_of(w, a, b);
+        if (!position_is_right(w, a, b, t, w->mesh->positions + 3 * (size_t)n))
+            return fault_of(w, "wrong position of vertex", n, a);
+        if (w->mesh->normals && !normal_is_right(w, a, b, t, w->mesh->normals + 3 * (size_t)n))
+            return fault_of(w, "wrong normal of vertex", n, a);
+    }
     return NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
+/* The vertex between two corners of a cube. */
 static uint32_t id_between(const walk *w, const int64_t cube[3], unsigned c, unsigned d) {
-    unsigned low = c & d, type = 0;
-    int64_t owner[3] = {cube[0] + (low & 1), cube[1] + (low >> 1 & 1), cube[2] + (low >> 2)};
-    while (type_axes[type] != (c ^ d)) type++;
-    return w->ids[index_of(w, owner) * EDGE_TYPES + type];
+    return expected_vertex(&w->should, (uint32_t)signs_corner(&w->signs, cube, c),
+                           (uint32_t)signs_corner(&w->signs, cube, d));
 }
 
 /* The tetrahedron's crossed edge that a vertex lies on; one that joins a corner with itself where there is none. */
@@ -328,53 +242,34 @@ static const char *tetrahedron_walk(walk *w, const int64_t cube[3], const unsign
     return fault ? fault_of(w, fault, w->triangle_count - 1, cube) : NULL;
 }
 
-static const char *triangles_row(walk *w, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+static const char *cube_walk(walk *w, const int64_t cube[3]) {
     const char *fault = NULL;
-    for (int64_t x = x0; x < x1 && !fault; x++) {
-        int64_t cube[3] = {x, y, z};
-        unsigned pattern = 0, corners[4];
-        if (!cube_is_present(w, cube)) continue;
-        for (unsigned c = 0; c < 8; c++) {
-            int64_t p[3] = {x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
-            pattern |= (unsigned)w->inside[index_of(w, p)] << c;
-        }
-        for (unsigned t = 0; t < 5 && !fault; t++) {
-            split_tetrahedron(sample_is_odd(w, cube), t, corners);
-            fault = tetrahedron_walk(w, cube, corners, pattern);
-        }
+    unsigned pattern = 0, corners[4];
+    if (!signs_cube(&w->signs, cube)) return NULL;
+    for (unsigned c = 0; c < 8; c++) pattern |= (unsigned)w->signs.inside[signs_corner(&w->signs, cube, c)] << c;
+    for (unsigned t = 0; t < 5 && !fault; t++) {
+        split_tetrahedron(signs_odd(&w->signs, cube), t, corners);
+        fault = tetrahedron_walk(w, cube, corners, pattern);
     }
     return fault;
 }
 
+static int64_t least_of(int64_t a, int64_t b) { return a < b ? a : b; }
+
+static const char *triangles_walk(walk *w) {
+    const int64_t *n = w->grid->dims;
+    const char *fault = NULL;
+    for (int64_t z0 = 0; z0 < n[2]; z0 += 4)
+        for (int64_t y0 = 0; y0 < n[1]; y0 += 8)
+            for (int64_t x0 = 0; x0 < n[0]; x0 += 64)
+                for (int64_t z = z0; z < least_of(z0 + 4, n[2]); z++)
+                    for (int64_t y = y0; y < least_of(y0 + 8, n[1]); y++)
+                        for (int64_t x = x0; x < least_of(x0 + 64, n[0]) && !fault; x++)
+                            fault = cube_walk(w, (int64_t[3]){x, y, z});
+    return fault;
+}
+
 /* ----------------------------------------------------------------------------------------------------------- whole */
-
-static const char *counts_compare(walk *w, const oracle_counts *should) {
-    const tc_mesh_data *m = w->mesh;
-    if (m->vertex_count == should->vertices && m->triangle_count == should->triangles &&
-        m->active_cell_count == should->active_cells)
-        return NULL;
-    snprintf(w->fault, sizeof w->fault, "%llu vertices, %llu triangles, %llu active cells; should be %llu, %llu, %llu",
-             (unsigned long long)m->vertex_count, (unsigned long long)m->triangle_count,
-             (unsigned long long)m->active_cell_count, (unsigned long long)should->vertices,
-             (unsigned long long)should->triangles, (unsigned long long)should->active_cells);
-    return w->fault;
-}
-
-static const char *topology_compare(walk *w, const oracle_counts *should, bool complete) {
-    topology is;
-    topology_of(w->mesh->positions, w->mesh->vertex_count, w->mesh->triangles, w->mesh->triangle_count, &is);
-    bool same = is.boundary_edges == should->boundary_edges && is.euler_characteristic == should->euler_characteristic;
-    bool fans = complete ? is.fans == w->mesh->vertex_count : is.fans >= w->mesh->vertex_count;
-    if (same && fans && !is.bad_edges && !is.bad_triangles && !is.orphans) return NULL;
-    snprintf(w->fault, sizeof w->fault,
-             "boundary edges %llu for %llu, Euler characteristic %lld for %lld, %llu vertices with %llu fans, %llu bad "
-             "edges, %llu bad triangles, %llu orphans",
-             (unsigned long long)is.boundary_edges, (unsigned long long)should->boundary_edges,
-             (long long)is.euler_characteristic, (long long)should->euler_characteristic,
-             (unsigned long long)w->mesh->vertex_count, (unsigned long long)is.fans, (unsigned long long)is.bad_edges,
-             (unsigned long long)is.bad_triangles, (unsigned long long)is.orphans);
-    return w->fault;
-}
 
 static bool matrix_mirrors(const double m[3][4]) {
     return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
@@ -427,39 +322,19 @@ static bool grid_mirrors(const walk *w) {
     return sum < 0;
 }
 
-/* Where cubes are blanked the oracle does not know them, and what was walked is all that is known. */
-static const char *walked_compare(walk *w) {
-    const int64_t none[3] = {-1, -1, -1};
-    if (w->mesh->vertex_count != w->vertex_count) return fault_of(w, "too many vertices, not", w->vertex_count, none);
-    if (w->mesh->triangle_count != w->triangle_count)
-        return fault_of(w, "too many triangles, not", w->triangle_count, none);
-    return NULL;
-}
-
-const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh, oracle_counts *counts) {
+const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh) {
     static _Thread_local char text[256];
-    uint64_t samples = (uint64_t)(grid->dims[0] * grid->dims[1] * grid->dims[2]);
     walk w = {.grid = grid, .isovalue = isovalue, .mesh = mesh};
-    oracle_counts should;
-    w.parity = (unsigned)(grid->first_index[0] + grid->first_index[1] + grid->first_index[2]) & 1;
-    w.inside = malloc(samples);
-    w.present = malloc(samples);
-    w.ids = malloc(samples * EDGE_TYPES * sizeof *w.ids);
-    if (!w.inside || !w.present || !w.ids) exit(EXIT_FAILURE);
-    memset(w.ids, 0xff, samples * EDGE_TYPES * sizeof *w.ids);
+    signs_make(&w.signs, grid, isovalue);
     w.mirrored = grid_mirrors(&w);
-    samples_judge(&w);
-    oracle_count(grid->dims, w.parity, w.inside, w.present, &should);
-    const char *fault = grid->blanked_cells ? NULL : counts_compare(&w, &should);
-    if (!fault) fault = rows_walk(&w, vertices_row);
-    if (!fault) fault = rows_walk(&w, triangles_row);
-    if (!fault && grid->blanked_cells) fault = walked_compare(&w);
-    if (!fault && !grid->blanked_cells) fault = topology_compare(&w, &should, !memchr(w.present, 0, samples));
+    signs_expect(&w.signs, TC_METHOD_TETRA, w.mirrored, &w.should);
+    const char *fault = counts_fault(&w.should, mesh);
+    if (!fault) fault = vertices_walk(&w);
+    if (!fault) fault = triangles_walk(&w);
+    if (!fault) fault = topology_fault(&w.should, w.signs.complete, mesh);
     if (fault) snprintf(text, sizeof text, "%s", fault);
-    if (counts) *counts = should;
-    free(w.inside);
-    free(w.present);
-    free(w.ids);
+    expected_free(&w.should);
+    signs_free(&w.signs);
     return fault ? text : NULL;
 }
 

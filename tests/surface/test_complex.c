@@ -6,6 +6,7 @@
 #include "engines.h"
 #include "random.h"
 #include "samples.h"
+#include "signs.h"
 #include "topology.h"
 
 #include <math.h>
@@ -17,68 +18,16 @@ enum { CONTEXTS = 4, CONTEXTS_FEW = 2 };
 static tc_context *reference, *devices[CONTEXTS];
 static int device_count;
 
-/* ---------------------------------------------------------------------------------------------------------- oracle */
-
-/* What a surface counts to: from the tetrahedra and the signs of their points. */
-typedef struct counts {
-    uint64_t vertices, triangles, active;
-} counts;
-
-static int edge_compare(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return x < y ? -1 : x > y;
-}
-
-static counts count_by_signs(const tc_tetrahedra_grid_options *o, double isovalue) {
-    counts c = {0};
-    uint64_t *edges = malloc(6 * 8 * (size_t)o->tetrahedron_count + 1), edge_count = 0;
-    for (uint64_t n = 0; n < o->tetrahedron_count; n++) {
-        const uint32_t *t = o->tetrahedra + 4 * n;
-        int inside = 0, finite = 0;
-        for (int v = 0; v < 4; v++) {
-            double value = sample_get(o->samples, o->type, t[v]);
-            finite += isfinite(value) != 0;
-            inside += value >= isovalue;
-        }
-        if (finite < 4 || inside % 4 == 0) continue;
-        c.active++;
-        c.triangles += inside == 2 ? 2 : 1;
-        for (int a = 0; a < 4; a++)
-            for (int b = 0; b < a; b++) {
-                uint64_t low = t[a] < t[b] ? t[a] : t[b], high = t[a] < t[b] ? t[b] : t[a];
-                if ((sample_get(o->samples, o->type, t[a]) >= isovalue) !=
-                    (sample_get(o->samples, o->type, t[b]) >= isovalue))
-                    edges[edge_count++] = low << 32 | high;
-            }
-    }
-    qsort(edges, edge_count, sizeof *edges, edge_compare);
-    for (uint64_t n = 0; n < edge_count; n++) c.vertices += n == 0 || edges[n] != edges[n - 1];
-    free(edges);
-    return c;
-}
-
 /* ------------------------------------------------------------------------------------------------------- comparison */
 
-static void expect_counts(tc_grid *grid, const tc_extract_options *options, const counts *wanted, const char *what) {
+static void expect_counts(tc_grid *grid, const tc_extract_options *options, const expected *wanted, const char *what) {
     tc_counts found = {.struct_size = sizeof found};
     EXPECT(tc_count(grid, options, &found) == TC_OK, "%s: %s", what, tc_message());
-    EXPECT(found.vertex_count == wanted->vertices && found.triangle_count == wanted->triangles &&
-               found.active_cell_count == wanted->active,
-           "%s: counted %llu %llu %llu, not %llu %llu %llu", what, (unsigned long long)found.vertex_count,
-           (unsigned long long)found.triangle_count, (unsigned long long)found.active_cell_count,
-           (unsigned long long)wanted->vertices, (unsigned long long)wanted->triangles,
-           (unsigned long long)wanted->active);
-}
-
-/* Closed but where the complex ends, oriented, with its fans whole where the complex has all its tetrahedra. */
-static void expect_manifold(const tc_mesh_data *data, bool complete, const char *what) {
-    topology t;
-    topology_of(data->positions, data->vertex_count, data->triangles, data->triangle_count, &t);
-    EXPECT(t.bad_edges + t.bad_triangles + t.orphans == 0, "%s: %llu bad edges, %llu bad triangles, %llu orphans", what,
-           (unsigned long long)t.bad_edges, (unsigned long long)t.bad_triangles, (unsigned long long)t.orphans);
-    if (complete)
-        EXPECT(t.fans == data->vertex_count, "%s: %llu fans around %llu vertices", what, (unsigned long long)t.fans,
-               (unsigned long long)data->vertex_count);
+    const tc_mesh_data sums = {.vertex_count = found.vertex_count,
+                               .triangle_count = found.triangle_count,
+                               .active_cell_count = found.active_cell_count};
+    const char *fault = counts_fault(wanted, &sums);
+    EXPECT(!fault, "%s: counted %s", what, fault);
 }
 
 /* Several isovalues, one after the other, on one grid of each engine. */
@@ -100,7 +49,8 @@ static void engines_compare(const tc_tetrahedra_grid_options *o, const double *i
         tc_mesh_data first = {.struct_size = sizeof first};
         tc_extract_options_init(&options);
         options.isovalue = isovalues[i];
-        counts wanted = count_by_signs(o, options.isovalue);
+        expected wanted;
+        complex_expect(o, options.isovalue, &wanted);
         for (int n = 0; n <= count; n++) {
             if (!grids[n]) continue;
             tc_mesh_data data = {.struct_size = sizeof data};
@@ -111,15 +61,15 @@ static void engines_compare(const tc_tetrahedra_grid_options *o, const double *i
             tc_mesh_get(meshes[n], &data);
             if (n == 0) {
                 first = data;
-                EXPECT(data.vertex_count == wanted.vertices && data.triangle_count == wanted.triangles &&
-                           data.active_cell_count == wanted.active,
-                       "%s: counts differ from those by signs", what);
-                expect_manifold(&data, complete, what);
+                const char *fault = counts_fault(&wanted, &data);
+                if (!fault) fault = topology_fault(&wanted, complete, &data);
+                EXPECT(!fault, "%s: %s", what, fault);
             } else {
                 const char *difference = mesh_difference(&first, &data);
                 EXPECT(!difference, "%s, isovalue %g, context %d: %s", what, options.isovalue, n, difference);
             }
         }
+        expected_free(&wanted);
     }
     for (int n = 0; n <= count; n++) {
         tc_mesh_destroy(meshes[n]);

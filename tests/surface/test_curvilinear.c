@@ -129,7 +129,7 @@ static void subject_compare(const subject *s, unsigned which) {
     tc_mesh_data expected;
     describe(s, text, sizeof text);
     if (!extract(reference, &s->grid, &s->how, &mesh, &expected)) return;
-    const char *fault = mesh_fault(&s->grid, s->how.isovalue, &expected, NULL);
+    const char *fault = mesh_fault(&s->grid, s->how.isovalue, &expected);
     EXPECT(!fault, "%s: reference: %s", text, fault);
     EXPECT(expected.triangle_count > 0, "%s: no surface", text);
     for (int n = 0; n < CONTEXTS; n++)

@@ -32,7 +32,7 @@ static tc_method method;
 
 /* What is wrong with a mesh of the tetrahedra. */
 static const char *walk_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh) {
-    return method == TC_METHOD_TETRA ? mesh_fault(grid, isovalue, mesh, NULL) : NULL;
+    return method == TC_METHOD_TETRA ? mesh_fault(grid, isovalue, mesh) : NULL;
 }
 
 /* -------------------------------------------------------------------------------------------------------- subjects */
@@ -378,7 +378,8 @@ static void test_description(const tc_context *device) {
             EXPECT(!memcmp(&real, &told, sizeof real), "%s is described in two ways", told.name);
 }
 
-/* What host/include/README.md promises of a device's memory beyond samples and mesh, with what small buffers come to beside it. */
+/* What host/include/README.md promises of a device's memory beyond samples and mesh, with what small buffers come to
+ * beside it. */
 static void test_memory_per_sample(void) {
     const int64_t dims[3] = {256, 160, 160};
     const double promised[2] = {0.285, 0.41}, fixed = 200e3;

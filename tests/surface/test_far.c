@@ -177,7 +177,7 @@ static void compare_places(enum kind kind, tc_context *context, surface *far) {
         EXPECT(!moved(&near), "%s: moved though near zero", kind_names[kind]);
         EXPECT(moved(far) == (kind != INDEXED), "%s: origin %g, %g, %g", kind_names[kind], far->data.origin[0],
                far->data.origin[1], far->data.origin[2]);
-        const char *fault = kind == COMPLEX ? NULL : mesh_fault(&there.grid, there.how.isovalue, &far->data, NULL);
+        const char *fault = kind == COMPLEX ? NULL : mesh_fault(&there.grid, there.how.isovalue, &far->data);
         EXPECT(!fault, "%s: %s", kind_names[kind], fault);
         expect_same_shape(kind_names[kind], far, &near);
     }

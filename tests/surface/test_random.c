@@ -152,12 +152,12 @@ static void run(uint64_t seed) {
             printf("%s\n", name);
             return;
         }
-    const char *fault = mesh_fault(&grid, how.isovalue, &data[0], NULL);
+    const char *fault = mesh_fault(&grid, how.isovalue, &data[0]);
     EXPECT(!fault, "%s: reference: %s", name, fault);
     if (!contexts[1]) return;
     const char *difference = mesh_difference(&data[0], &data[1]);
     EXPECT(!difference, "%s: device and reference: %s", name, difference);
-    fault = difference ? mesh_fault(&grid, how.isovalue, &data[1], NULL) : NULL;
+    fault = difference ? mesh_fault(&grid, how.isovalue, &data[1]) : NULL;
     EXPECT(!fault, "%s: device: %s", name, fault);
 }
 

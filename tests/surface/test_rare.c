@@ -38,7 +38,7 @@ static void expect_same(const tc_grid_options *options, const double *isovalues,
             if (!status) status = tc_mesh_get(meshes[n], &data[n]);
             EXPECT(!status, "%s, isovalue %g: %s", name, how.isovalue, tc_message());
         }
-        const char *fault = mesh_fault(options, how.isovalue, &data[0], NULL);
+        const char *fault = mesh_fault(options, how.isovalue, &data[0]);
         EXPECT(!fault, "%s, isovalue %g: reference: %s", name, how.isovalue, fault);
         for (int n = 1; n < CONTEXTS && grids[n]; n++) {
             const char *difference = mesh_difference(&data[0], &data[n]);

@@ -50,6 +50,9 @@ void expected_begin(expected *e, uint64_t most_bodies, int corner_count);
  * 01 02 03 12 13 23. active_cells is the caller's to count. */
 void expected_add(expected *e, const body *b, bool mirrored);
 
+/* The vertex between two samples, UINT32_MAX where there is none. */
+uint32_t expected_vertex(const expected *e, uint32_t a, uint32_t b);
+
 /* Numbers the vertices anew, by rising keys, one per vertex. */
 void expected_renumber(expected *e, const uint64_t *keys);
 

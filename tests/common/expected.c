@@ -32,13 +32,24 @@ void expected_free(expected *e) {
 
 /* ------------------------------------------------------------------------------------------------------------ arcs */
 
-static uint32_t vertex_between(expected *e, uint32_t a, uint32_t b) {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    const uint64_t key = ((uint64_t)low << 32 | high) + 1;
+static uint64_t key_of(uint32_t a, uint32_t b) { return ((uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a)) + 1; }
+
+/* Where the key is, or goes. */
+static uint32_t place_of(const expected *e, uint64_t key) {
     uint32_t place = (uint32_t)(key * 0x9e3779b97f4a7c15u >> 32) & e->place_mask;
     while (e->keys[place] && e->keys[place] != key) place = (place + 1) & e->place_mask;
+    return place;
+}
+
+uint32_t expected_vertex(const expected *e, uint32_t a, uint32_t b) {
+    const uint32_t place = place_of(e, key_of(a, b));
+    return e->keys[place] ? e->vertices[place] : UINT32_MAX;
+}
+
+static uint32_t vertex_between(expected *e, uint32_t a, uint32_t b) {
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a, place = place_of(e, key_of(a, b));
     if (!e->keys[place]) {
-        e->keys[place] = key;
+        e->keys[place] = key_of(a, b);
         e->vertices[place] = e->vertex_count;
         e->ends[e->vertex_count][0] = low, e->ends[e->vertex_count][1] = high;
         e->vertex_count++;
@@ -162,6 +173,8 @@ void expected_renumber(expected *e, const uint64_t *keys) {
         e->arcs[n].from = rank[e->arcs[n].from];
         e->arcs[n].to = rank[e->arcs[n].to];
     }
+    for (uint32_t n = 0; n <= e->place_mask; n++)
+        if (e->keys[n]) e->vertices[n] = rank[e->vertices[n]];
     free(order);
     free(rank);
     free(e->ends);
