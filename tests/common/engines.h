@@ -14,6 +14,13 @@
 
 enum { SKIPPED = 77 };
 
+/* Both with their defaults, the one behind the other. */
+static inline void options_init(tc_context_options *options, tc_expert_options *expert) {
+    tc_context_options_init(options);
+    tc_expert_options_init(expert);
+    options->expert = expert;
+}
+
 /* A context that has to come about. */
 static inline tc_context *context_open(const tc_context_options *options) {
     tc_context *context = NULL;
@@ -56,6 +63,13 @@ static inline bool extract(tc_context *context, const tc_grid_options *grid_opti
     tc_grid_destroy(grid);
     EXPECT(status == TC_OK, "extraction fails with status %d: %s", (int)status, tc_message());
     return status == TC_OK;
+}
+
+/* The budget that the sentence of a refusal says would do. */
+static inline uint64_t bytes_advised(const char *name) {
+    const char *allow = strstr(tc_message(), "allow ");
+    EXPECT(allow != NULL, "%s: the refusal does not say what would do: %s", name, tc_message());
+    return allow ? strtoull(allow + 6, NULL, 10) : 0;
 }
 
 /* What differs between two meshes; NULL where nothing does. */

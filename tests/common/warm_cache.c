@@ -54,9 +54,7 @@ static tc_context *context_for(size_t n) {
     static tc_division division;
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     if (context && n < PROGRAMS && work_items == programs[n].work_items && division == programs[n].division)
         return context;
     tc_context_destroy(context);
@@ -115,9 +113,7 @@ static void complex_build(size_t n) {
     tc_extract_options how;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     tc_tetrahedra_grid_options_init(&complex);
     tc_extract_options_init(&how);
     complex.type = n <= TC_F64 ? (tc_type)n : others[n - 1 - TC_F64].type;

@@ -144,9 +144,7 @@ static void test_context_options(void) {
         tc_context_options options;
         tc_expert_options expert;
         tc_context *context = NULL;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.work_items = cases[n].work_items;
         expert.division = (tc_division)cases[n].division;
         options.engine = (tc_engine)cases[n].engine;

@@ -74,9 +74,7 @@ static bool budget_does(const subject *s, uint64_t budget, bool normals, const t
     tc_mesh_data data = {.struct_size = sizeof data};
     const tc_extract_options how = surface_of(s, normals);
     uint64_t peak;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     options.max_memory_bytes = budget;
     expert.always_copy = always_copy;
     tc_context *context = context_open(&options);
@@ -96,12 +94,6 @@ static bool budget_does(const subject *s, uint64_t budget, bool normals, const t
     tc_grid_destroy(grid);
     tc_context_destroy(context);
     return !status;
-}
-
-static uint64_t bytes_advised(const char *name) {
-    const char *allow = strstr(tc_message(), "allow ");
-    EXPECT(allow != NULL, "%s: the refusal does not say what would do: %s", name, tc_message());
-    return allow ? strtoull(allow + 6, NULL, 10) : 0;
 }
 
 static void subject_test(const subject *s, tc_context *reference) {

@@ -108,9 +108,7 @@ int main(void) {
     bool made = extract(reference, &grid, &how, &mesh, &expected);
     EXPECT(made && expected.triangle_count > 1000, "the reference has a mesh too small to tell");
 
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     options.cl_context = theirs;
     options.cl_queue = queue;
     for (int n = 0; n < 2 && made; n++) test_extraction(&options, &grid, &expected);

@@ -21,9 +21,7 @@ static tc_tuning tuning_of(const tc_context *context) {
 static tc_context *open_with(uint32_t work_items, uint32_t work_groups, uint32_t tile_bricks) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.work_items = work_items;
     expert.work_groups = work_groups;
     expert.tile_bricks = tile_bricks;

@@ -65,9 +65,7 @@ static void test_isovalues(tc_type type, bool missing, uint32_t work_items, bool
     snprintf(name, sizeof name, "%s%s, %u work-items%s", tc_type_name(type), missing ? " with missing" : "", work_items,
              slabs ? ", slabs" : "");
     if (!test_chosen(name)) return;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.always_copy = always_copy;
     expert.work_items = work_items;
     if (slabs) options.max_memory_bytes = (missing ? 240000 : 150000) + 300000 * tc_type_bytes(type);
@@ -102,9 +100,7 @@ static void test_unread(void) {
     tc_mesh *mesh = NULL;
     tc_device_info info = {.struct_size = sizeof info};
     tc_extract_options how;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.always_copy = always_copy;
     tc_context *context = context_open(&options);
     uint8_t *samples = mmap(NULL, 128 * plane, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -2,7 +2,7 @@
  * Complexes: the kernels against the reference byte for byte, both against counts made from signs alone and, where the
  * complex was a structured grid, against the structured path.
  */
-#include "complex.h"
+#include "cut.h"
 #include "engines.h"
 #include "random.h"
 #include "samples.h"
@@ -103,8 +103,7 @@ static void mixed_block_compare(tc_type type, uint32_t size, bool few, bool hole
              holes ? ", holes" : "");
     cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_tetrahedra complex = {.struct_size = sizeof complex};
-    EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
+    tc_tetrahedra complex = cut(&cells, what);
     void *values = malloc(8 * list.point_count);
     for (uint64_t n = 0; n < list.point_count; n++) {
         double value = random_value(type, few);
@@ -128,8 +127,7 @@ static void faceted_block_compare(tc_type type, uint32_t size, bool columns) {
              tc_type_name(type));
     cell_list list = columns ? honeycomb_make(size, random_u64()) : kelvin_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_tetrahedra complex = {.struct_size = sizeof complex};
-    EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", what, tc_message());
+    tc_tetrahedra complex = cut(&cells, what);
     void *values = malloc(8 * list.point_count);
     for (uint64_t n = 0; n < list.point_count; n++) sample_set(values, type, (int64_t)n, random_value(type, true));
     const double isovalues[2] = {1, 2};
@@ -376,9 +374,7 @@ static void devices_open(bool always_copy) {
     for (int n = 0; n < CONTEXTS; n++) {
         tc_context_options how;
         tc_expert_options expert;
-        tc_context_options_init(&how);
-        tc_expert_options_init(&expert);
-        how.expert = &expert;
+        options_init(&how, &expert);
         expert.work_items = work_items[n], expert.work_groups = work_groups[n];
         expert.tile_bricks = tile_bricks[n], expert.spin_limit = spin_limit[n];
         expert.always_copy = always_copy;

@@ -3,7 +3,7 @@
  * allowed, and a refusal that says what would do. With "always_copy" as on a device with memory of its own; with
  * "large" complexes of millions of tetrahedra.
  */
-#include "complex.h"
+#include "cut.h"
 #include "engines.h"
 #include "random.h"
 #include "samples.h"
@@ -62,8 +62,7 @@ static subject block_make(tc_type type, uint32_t size, bool holes, bool shuffled
              shuffled ? ", shuffled" : "");
     cell_list list = mixed_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
-    tc_tetrahedra complex = {.struct_size = sizeof complex};
-    EXPECT(tc_tetrahedralize(&cells, &complex) == TC_OK, "%s: %s", name, tc_message());
+    tc_tetrahedra complex = cut(&cells, name);
     subject s = subject_make(name, type, list.point_count, complex.tetrahedron_count);
     memcpy(s.points, list.points, 12 * list.point_count);
     memcpy(s.tetrahedra, complex.tetrahedra, 16 * complex.tetrahedron_count);
@@ -108,9 +107,7 @@ static subject hub_make(uint32_t count) {
 static tc_context *bounded_open(uint64_t budget, unsigned variant) {
     tc_context_options how;
     tc_expert_options expert;
-    tc_context_options_init(&how);
-    tc_expert_options_init(&expert);
-    how.expert = &expert;
+    options_init(&how, &expert);
     how.max_memory_bytes = budget;
     expert.always_copy = always_copy;
     if (variant) expert.work_items = 32, expert.work_groups = 3, expert.tile_bricks = 1, expert.spin_limit = 1;
@@ -177,13 +174,6 @@ static bool budget_compare(const subject *s, uint64_t budget, unsigned variant, 
     return !status;
 }
 
-/* What the sentence of a refusal says would do. */
-static uint64_t bytes_wanted(void) {
-    const char *allow = strstr(tc_message(), "allow ");
-    EXPECT(allow != NULL, "the refusal does not say what would do: %s", tc_message());
-    return allow ? strtoull(allow + 6, NULL, 10) : 0;
-}
-
 /* From more than enough down to the least that does. */
 static void budgets_compare(subject s) {
     tc_mesh *wanted[3];
@@ -192,7 +182,7 @@ static void budgets_compare(subject s) {
     surfaces_of_reference(&s, wanted);
     for (unsigned variant = 0; budget_compare(&s, budget, variant, wanted, &slabs); variant = !variant)
         budget = budget / 20 * (slabs > 1 ? 11 : 17);
-    const uint64_t least = bytes_wanted();
+    const uint64_t least = bytes_advised(s.name);
     EXPECT(least > budget && slabs > s.options.tetrahedron_count / 200, "%s: refused at %llu bytes after %u slabs",
            s.name, (unsigned long long)budget, slabs);
     slabs = 0;
@@ -280,9 +270,7 @@ static void cancelled(uint64_t budget) {
     surfaces_of_reference(&s, wanted);
     tc_extract_options_init(&options);
     options.isovalue = s.isovalues[0];
-    tc_context_options_init(&how);
-    tc_expert_options_init(&expert);
-    how.expert = &expert;
+    options_init(&how, &expert);
     how.max_memory_bytes = budget, expert.always_copy = always_copy, how.progress = cancel;
     tc_context *context = context_open(&how);
     EXPECT(!tc_tetrahedra_grid_create(context, &s.options, &grid), "%s", tc_message());

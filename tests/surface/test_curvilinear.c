@@ -170,9 +170,7 @@ static void test_budgets(subject *s, int kind, int always_copy) {
     tc_mesh *mesh = NULL;
     tc_mesh_data expected;
     unsigned most = 0, done = 0, refused = 0;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.always_copy = always_copy;
     subject_begin(s, TC_F32, (int64_t[3]){35, 21, 50});
     samples_fill(s, 1);
@@ -220,9 +218,7 @@ static void test_divisions(subject *s) {
         tc_context_options options;
         tc_expert_options expert;
         tc_context *context = NULL;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.division = (tc_division)division;
         tc_status status = tc_context_create(&options, &context);
         EXPECT(!status || (division < 3 && status == TC_ERROR_ARGUMENT), "division %d: %s", division, tc_message());
@@ -503,9 +499,7 @@ int main(int argc, char **argv) {
             if (n == IN_ROWS ? alone : groups) continue;
             tc_context_options options;
             tc_expert_options expert;
-            tc_context_options_init(&options);
-            tc_expert_options_init(&expert);
-            options.expert = &expert;
+            options_init(&options, &expert);
             expert.work_items = n == IN_ROWS ? 32 : 1;
             expert.always_copy = n == COPIED;
             contexts[n] = context_open(&options);

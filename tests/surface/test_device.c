@@ -138,9 +138,7 @@ static void test_work_shapes(int first, int end) {
     for (int i = first; i < end; i++) {
         const subject *s = &subjects[i & 1 ? MISSING : WAVES];
         for (int n = 0; n < 4; n++) {
-            tc_context_options_init(&options);
-            tc_expert_options_init(&expert);
-            options.expert = &expert;
+            options_init(&options, &expert);
             expert.always_copy = always_copy;
             expert.work_items = items[i];
             expert.work_groups = groups[n];
@@ -159,9 +157,7 @@ static void test_divisions(void) {
         tc_context_options options;
         tc_expert_options expert;
         tc_context *context = NULL;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.always_copy = always_copy;
         expert.division = (tc_division)division;
         tc_status status = tc_context_create(&options, &context);
@@ -182,9 +178,7 @@ static void test_memory_budgets(const subject *s) {
     tc_context_options options;
     tc_expert_options expert;
     if (!test_chosen("memory budgets") && !test_chosen(s->name)) return;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.always_copy = always_copy;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
                      24 * s->expected.vertex_count + 12 * s->expected.triangle_count;
@@ -394,9 +388,7 @@ static void test_memory_per_sample(void) {
         tc_mesh *mesh = NULL;
         tc_mesh_data data;
         uint64_t peak = 0;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.always_copy = always_copy;
         tc_grid_options_init(&grid);
         tc_extract_options_init(&how);
@@ -433,9 +425,7 @@ int main(int argc, char **argv) {
     subject_open(HALVES, "crossings half way between floats", TC_F32, (int64_t[3]){2, 9, 9}, 0x93p-149, 1);
     subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, 46, 97}, 127.5, 0);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32, (int64_t[3]){65, 31, 58}, 0.1, 1);
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.always_copy = always_copy;
     tc_context *reference = reference_open(), *device = context_open(&options);
     test_work_shapes(0, 1);

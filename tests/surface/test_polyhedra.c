@@ -3,32 +3,18 @@
  * winding, beside each other and beside other types, divided faces, cells that do not close, surplus points
  */
 #include "api.h"
-#include "complex.h"
+#include "cut.h"
 #include "random.h"
 
 #include <string.h>
 
 enum { ROUNDS = 400 };
 
-static tc_tetrahedra cut(const tc_cells *cells, const char *what) {
-    tc_tetrahedra complex = {.struct_size = sizeof complex};
-    tc_status status = tc_tetrahedralize(cells, &complex);
-    EXPECT(status == TC_OK, "%s: status %d: %s", what, (int)status, tc_message());
-    return complex;
-}
-
-/* volume: six times it. */
-static void expect_conforming(const tc_tetrahedra *complex, const cell_list *list, uint64_t boundary_faces,
-                              double volume, const char *what) {
-    complex_facts f = complex_facts_of(complex, list->points, list->point_count);
-    EXPECT(!f.bad_tetrahedra && !f.bad_faces && !f.not_positive,
-           "%s: %llu bad tetrahedra, %llu not positive, %llu bad "
-           "faces",
-           what, (unsigned long long)f.bad_tetrahedra, (unsigned long long)f.not_positive,
-           (unsigned long long)f.bad_faces);
-    EXPECT(f.boundary_faces == boundary_faces, "%s: %llu faces at the boundary, not %llu", what,
-           (unsigned long long)f.boundary_faces, (unsigned long long)boundary_faces);
-    EXPECT(f.volume == volume, "%s: volume %g, not %g", what, f.volume, volume);
+/* As expect_conforming; and the cells that were put in inverted are counted, and no others. */
+static void expect_cut(const tc_tetrahedra *complex, const cell_list *list, uint64_t boundary_faces, double volume,
+                       const char *what) {
+    const tc_cells cells = cell_list_view(list);
+    expect_conforming(complex, &cells, boundary_faces, volume, what);
     EXPECT(complex->inverted_cell_count == list->inverted_count && !complex->folded_cell_count,
            "%s: %llu cells inverted, not %llu, and %llu folded", what, (unsigned long long)complex->inverted_cell_count,
            (unsigned long long)list->inverted_count, (unsigned long long)complex->folded_cell_count);
@@ -98,7 +84,7 @@ static void prism_check(int sides, bool as_polyhedron) {
     }
     EXPECT(complex.tetrahedron_count == (unsigned)(3 * (sides - 2)), "%s: %llu tetrahedra", what,
            (unsigned long long)complex.tetrahedron_count);
-    expect_conforming(&complex, &list, (unsigned)(4 * sides - 4), 6.0 * twice_area, what);
+    expect_cut(&complex, &list, (unsigned)(4 * sides - 4), 6.0 * twice_area, what);
     expect_smallest(&complex, &list, what);
     tc_tetrahedra_release(&complex);
     cell_list_free(&list);
@@ -134,7 +120,7 @@ static void kelvin_check(uint32_t size) {
     cell_list list = kelvin_block_make(size, random_u64());
     tc_cells cells = cell_list_view(&list);
     tc_tetrahedra complex = cut(&cells, what);
-    expect_conforming(&complex, &list, kelvin_boundary(size), 6.0 * 32 * (double)list.cell_count, what);
+    expect_cut(&complex, &list, kelvin_boundary(size), 6.0 * 32 * (double)list.cell_count, what);
     tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }
@@ -146,7 +132,7 @@ static void honeycomb_check(uint32_t size) {
     tc_cells cells = cell_list_view(&list);
     tc_tetrahedra complex = cut(&cells, what);
     const uint64_t n = size, sides = 6 * n * n - 2 * (n * (n - 1) * 2 + (n - 1) * (n - 1));
-    expect_conforming(&complex, &list, 2 * sides * n + 2 * 4 * n * n, 6.0 * 3 * (double)(n * n * n), what);
+    expect_cut(&complex, &list, 2 * sides * n + 2 * 4 * n * n, 6.0 * 3 * (double)(n * n * n), what);
     tc_tetrahedra_release(&complex);
     cell_list_free(&list);
 }

@@ -171,9 +171,7 @@ static void test_one_not_finite(void) {
 int main(void) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     contexts[0] = reference_open();
     if (device_exists()) {
         contexts[1] = context_open(&options);

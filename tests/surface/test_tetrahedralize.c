@@ -3,29 +3,11 @@
  * curved cells, structured grids, and what has to be refused.
  */
 #include "api.h"
-#include "complex.h"
+#include "cut.h"
 #include "random.h"
 
 #include <float.h>
 #include <string.h>
-
-static tc_tetrahedra cut(const tc_cells *cells, const char *what) {
-    tc_tetrahedra complex = {.struct_size = sizeof complex};
-    tc_status status = tc_tetrahedralize(cells, &complex);
-    EXPECT(status == TC_OK, "%s: status %d: %s", what, (int)status, tc_message());
-    return complex;
-}
-
-static void expect_conforming(const tc_tetrahedra *complex, const tc_cells *cells, uint64_t boundary_faces,
-                              double volume, const char *what) {
-    complex_facts f = complex_facts_of(complex, cells->points, cells->point_count);
-    EXPECT(f.bad_tetrahedra == 0, "%s: %llu tetrahedra with bad points", what, (unsigned long long)f.bad_tetrahedra);
-    EXPECT(f.not_positive == 0, "%s: %llu tetrahedra not positive", what, (unsigned long long)f.not_positive);
-    EXPECT(f.bad_faces == 0, "%s: %llu bad faces", what, (unsigned long long)f.bad_faces);
-    EXPECT(f.boundary_faces == boundary_faces, "%s: %llu faces at the boundary, not %llu", what,
-           (unsigned long long)f.boundary_faces, (unsigned long long)boundary_faces);
-    EXPECT(f.volume == volume, "%s: volume %g, not %g", what, f.volume, volume);
-}
 
 /* --------------------------------------------------------------------------------------------------- orders of points
  */
