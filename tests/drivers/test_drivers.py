@@ -14,6 +14,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
+from part import part_write
 
 LAYER = None
 IS_LONG = False
@@ -177,19 +178,14 @@ class Lost(DriverCase):
 
 
 def write_figures(seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder or not IS_LONG:
+    if not IS_LONG:
         return
     version = tool_case.tool("devices", "--json", env={"OPENCL_LAYERS": ""})
     devices = json.loads(version.stdout)["devices"] if not version.returncode else []
     names = {"planted": "corrupting devices planted", "caught": "corrupting devices refused by extract",
              "selftests": "corrupting devices that failed the self-test", "lost": "devices that went away"}
-    with open(os.path.join(folder, "drivers.json"), "w") as file:
-        json.dump({"part": "drivers", "date": time.strftime("%Y-%m-%d"),
-                   "versions": {device["platform"]: device["driver"] for device in devices},
-                   "seconds": round(seconds),
-                   "figures": [{"what": names[key], "value": FIGURES[key]} for key in names]}, file, indent=1)
-        file.write("\n")
+    part_write("drivers", {device["platform"]: device["driver"] for device in devices},
+               [(what, FIGURES[key]) for key, what in names.items()], seconds)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
+from part import part_write
 
 LAYER = None
 FIGURES = {"planted": 0, "told": 0, "reference": 0}
@@ -276,18 +277,13 @@ class Interrupted(TrialCase):
 
 
 def write_figures(seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder or "long" not in sys.argv[3:]:
+    if "long" not in sys.argv[3:]:
         return
     devices = json.loads(tool_case.tool("devices", "--json", env={"OPENCL_LAYERS": ""}).stdout)["devices"]
     names = {"planted": "drivers planted that crash, hang, refuse or compute wrongly",
              "told": "of these ended in a sentence", "reference": "of these done by the reference, --engine auto"}
-    with open(os.path.join(folder, "trials.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "trials", "date": time.strftime("%Y-%m-%d"),
-                   "versions": {device["platform"]: device["driver"] for device in devices},
-                   "seconds": round(seconds),
-                   "figures": [{"what": names[key], "value": FIGURES[key]} for key in names]}, file, indent=1)
-        file.write("\n")
+    part_write("trials", {device["platform"]: device["driver"] for device in devices},
+               [(what, FIGURES[key]) for key, what in names.items()], seconds)
 
 
 if __name__ == "__main__":

@@ -7,25 +7,14 @@ zsh and shellcheck are used where they are installed.
 """
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from expect import expect, finish, run
+
 TOOL = sys.argv[1]
-failures = 0
-
-
-def expect(condition, text):
-    global failures
-    if not condition:
-        failures += 1
-        print(f"FAILED: {text}")
-
-
-def run(*command, **more):
-    return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, **more)
 
 
 def printed(shell):
@@ -130,8 +119,7 @@ def main():
     for arguments in (["--completion", "fish"], ["--completion"]):
         done = run(TOOL, *arguments)
         expect(done.returncode == 2 and not done.stdout and "zsh" in done.stderr, f"{arguments}: {done}")
-    print(f"{failures} failed")
-    return failures > 0
+    return finish()
 
 
 if __name__ == "__main__":

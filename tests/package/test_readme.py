@@ -16,18 +16,13 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from expect import expect, finish, run
+
 PAGES = ["README.md", "host/README.md", "host/include/README.md", "host/read/README.md", "host/tool/README.md",
          "host/tool/DRIVERS.md", "kernels/README.md", "tests/README.md", "bench/README.md", ".github/CONTRIBUTING.md",
          ".github/CHANGELOG.md"]
 README_BYTES = 10240
-failures = 0
-
-
-def expect(condition, text):
-    global failures
-    if not condition:
-        failures += 1
-        print(f"FAILED: {text}")
 
 
 def section(page, text, begin, end):
@@ -35,11 +30,6 @@ def section(page, text, begin, end):
     found = re.search(re.escape(begin) + "(.*?)" + (re.escape(end) if end else r"\Z"), text, re.DOTALL)
     expect(found, f"{page}: no text between '{begin}' and '{end}'")
     return found.group(1) if found else ""
-
-
-def run(*command, **more):
-    return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          check=False, **more)
 
 
 def help_of(tool, command):
@@ -299,8 +289,7 @@ def main():
     test_promises(pages["tests/README.md"], build)
     test_map(source, pages["tests/README.md"])
     test_figures(source)
-    print(f"{failures} failed")
-    return failures > 0
+    return finish()
 
 
 if __name__ == "__main__":

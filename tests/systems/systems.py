@@ -11,7 +11,6 @@ of this run. Needs root, debootstrap and a mirror of Debian: the one that apt us
 status 77 where that is missing. Chroots are made in TETRACUBES_CHROOTS, left out the folder for temporary files, about
 4 GB each, and removed.
 """
-import datetime
 import glob
 import json
 import os
@@ -21,6 +20,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SUITES = {"bookworm": "Debian 12", "trixie": "Debian 13", "sid": "Debian unstable"}
@@ -162,9 +164,6 @@ def differences(seen):
 
 
 def results_write(seen, seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder:
-        return
     lines = [dict(line, system=one["system"]) for one in seen for line in one["drivers"]]
     for line in lines:
         del line["hashes"]
@@ -176,12 +175,8 @@ def results_write(seen, seconds):
                ("of them tried", len(lines))]
     versions_of = {f"{one['system']}, {name}": version for one in seen for name, version in one["versions"].items()
                    if name in ("gcc", "libexpat1")}
-    with open(os.path.join(folder, "systems.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "systems", "date": datetime.date.today().isoformat(), "versions": versions_of,
-                   "seconds": round(seconds), "figures": [{"what": what, "value": value} for what, value in figures],
-                   "systems": [{key: one[key] for key in ("system", "commands", "versions")} for one in bare],
-                   "drivers": lines}, file, indent=1)
-        file.write("\n")
+    part_write("systems", versions_of, figures, seconds, drivers=lines,
+               systems=[{key: one[key] for key in ("system", "commands", "versions")} for one in bare])
 
 
 def main():
