@@ -1,5 +1,5 @@
 /*
- * api.h - what the tests of the public functions share: a small volume, and a call that has to be refused
+ * api.h - a small volume for the tests of the public functions
  */
 #ifndef API_H
 #define API_H

@@ -27,15 +27,16 @@ uint32_t cell_list_point(cell_list *list, double x, double y, double z);
 /* A cell with positive volume in VTK's order of corners, or turned over. */
 void cell_list_add(cell_list *list, int type, int corner_count, const uint32_t *corners, bool inverted);
 
-/* A polyhedron: counts[n] points of face n, one face after the other. They are put in in any order, each from any of
- * its points on, either way round. */
+/* A polyhedron: counts[n] points of face n, one face after the other. Faces go in in random order, each from a random
+ * point on, in a random direction. */
 void cell_list_add_polyhedron(cell_list *list, int face_count, const int *counts, const uint32_t *points);
 
 /* Gives the points other numbers, at random. */
 void cell_list_renumber(cell_list *list);
 
 /* A block of size^3 unit cubes, columns of them cut into wedges, others into hexahedra, voxels, pyramids around their
- * middle and tetrahedra at random, of either orientation; points numbered at random. A seed makes one and the same. */
+ * middle and tetrahedra at random, of either orientation; points numbered at random. The same seed makes the same
+ * block. */
 cell_list mixed_block_make(uint32_t size, uint64_t seed);
 
 /* The truncated octahedra around the points of a body-centred lattice of size^3 cells of side 4, with 6 squares and 8

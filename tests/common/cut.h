@@ -15,7 +15,8 @@ static inline tc_tetrahedra cut(const tc_cells *cells, const char *what) {
     return complex;
 }
 
-/* Neighbours agree on every face, so many faces are the border, and all tetrahedra fill the volume, six times taken. */
+/* Tetrahedra that meet agree on the face between them, boundary_faces faces have one alone, and together they fill the
+ * volume. volume: six times it. */
 static inline void expect_conforming(const tc_tetrahedra *complex, const tc_cells *cells, uint64_t boundary_faces,
                                      double volume, const char *what) {
     complex_facts f = complex_facts_of(complex, cells->points, cells->point_count);

@@ -14,14 +14,14 @@
 
 enum { SKIPPED = 77 };
 
-/* Both with their defaults, the one behind the other. */
+/* Defaults for both, with the options for experts behind those of the context. */
 static inline void options_init(tc_context_options *options, tc_expert_options *expert) {
     tc_context_options_init(options);
     tc_expert_options_init(expert);
     options->expert = expert;
 }
 
-/* A context that has to come about. */
+/* A new context; without one the test ends. */
 static inline tc_context *context_open(const tc_context_options *options) {
     tc_context *context = NULL;
     EXPECT(tc_context_create(options, &context) == TC_OK, "no context: %s", tc_message());
@@ -65,7 +65,7 @@ static inline bool extract(tc_context *context, const tc_grid_options *grid_opti
     return status == TC_OK;
 }
 
-/* The budget that the sentence of a refusal says would do. */
+/* The bytes that the message of a refusal advises to allow. */
 static inline uint64_t bytes_advised(const char *name) {
     const char *allow = strstr(tc_message(), "allow ");
     EXPECT(allow != NULL, "%s: the refusal does not say what would do: %s", name, tc_message());
@@ -86,7 +86,7 @@ static inline const char *mesh_difference(const tc_mesh_data *a, const tc_mesh_d
     return NULL;
 }
 
-/* The status, and a message that says something of it. */
+/* The call has to end in the status, with a message. */
 #define EXPECT_REFUSED(call, wanted, what)                                                                             \
     do {                                                                                                               \
         tc_status status_ = (call);                                                                                    \

@@ -3,7 +3,7 @@
  *
  * EXPECT(condition, format, ...) prints file, line and text where the condition does not hold, and goes on. Tests of
  * many cases ask test_chosen(name) for each: TEST_ONLY in the environment, a pattern as of the shell's, leaves others
- * out. With TEST_STOP there the first failure is the last.
+ * out. With TEST_STOP there the test ends at its first failure.
  */
 #ifndef EXPECT_H
 #define EXPECT_H

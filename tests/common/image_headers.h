@@ -11,7 +11,7 @@ enum { COUNT = 60 }; /* samples of 5 x 4 x 3 */
 #define NRRD_U8 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n"
 
 typedef struct header_case {
-    const char *header, *notice; /* notice: a part of it; NULL: there must be none */
+    const char *header, *notice; /* as for expect_noticed */
     double matrix[12];
 } header_case;
 
@@ -19,7 +19,7 @@ static inline expected plain(int type, const double *matrix) {
     return (expected){.stored = type, .dims = {5, 4, 3}, .matrix = matrix};
 }
 
-/* notice: a part of it; NULL: there must be none. */
+/* The volume is read as expected, with a notice that has this in it; NULL: without any. */
 static inline void expect_noticed(const char *what, const read_request *request, const expected *e,
                                   const char *notice) {
     read_image v;

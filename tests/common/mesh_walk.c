@@ -151,8 +151,8 @@ static void jacobian_make(const walk *w, const int64_t a[3], const int64_t b[3],
     }
 }
 
-/* Inverse transpose of the Jacobian, times its determinant, which is returned; *blurred: that may be 0, or of the other
- * sign. */
+/* Inverse transpose of the Jacobian, times its determinant, which is returned; *blurred: rounding may hide that the
+ * determinant is 0 or of the other sign. */
 static long double cofactors_make(long double m[3][3], long double out[3][3], bool *blurred) {
     long double room = 1e-3L, determinant = 0;
     for (int r = 0; r < 3; r++)
@@ -168,7 +168,8 @@ static long double cofactors_make(long double m[3][3], long double out[3][3], bo
     return determinant;
 }
 
-/* Unit length or zero; direction where cancellation and subnormals leave enough digits to tell. */
+/* The normal has unit length, or is zero; its direction is compared where cancellation and subnormals leave enough
+ * digits. */
 static bool normal_is_right(const walk *w, const int64_t a[3], const int64_t b[3], long double t, const float *is) {
     long double gradient[3], cofactors[3][3], wanted[3], size = 0, largest = 0, length = 0, dot = 0, norm = 0;
     long double jacobian[3][3];

@@ -70,7 +70,7 @@ bool signs_cube(const signs *s, const int64_t p[3]) {
 
 /* --------------------------------------------------------------------------------------------------------- surfaces */
 
-/* Whether the cube from p on is there and has corners inside and outside. */
+/* Whether a surface goes through the cube that begins at p. */
 static bool cube_is_active(const signs *s, const int64_t p[3]) {
     int inside = 0;
     for (unsigned c = 0; c < 8; c++) inside += s->inside[signs_corner(s, p, c)];

@@ -1,5 +1,5 @@
 /*
- * signs.h - a structured grid sample by sample: which are inside, which are there; and the surface that must be
+ * signs.h - which samples of a structured grid are inside and which are missing, and the surface that follows
  *
  * Knows the contract alone: inside is `sample >= isovalue`; a sample is missing where it is not finite, is the missing
  * value or is blanked; a cube is there with all its samples, unless it is blanked.
@@ -13,22 +13,22 @@
 typedef struct signs {
     const tc_grid_options *grid;
     bool *inside, *present; /* by sample */
-    bool complete;          /* nothing is missing */
+    bool complete;          /* no sample is missing, no cube is blanked */
 } signs;
 
 /* Exits where memory runs out. */
 void signs_make(signs *s, const tc_grid_options *grid, double isovalue);
 void signs_free(signs *s);
 
-/* Where sample n lies, and the number of the sample that lies somewhere, or at corner x + 2 y + 4 z of the cube from
- * there on. */
+/* From the number of a sample to its indices, and back; the last: of corner x + 2 y + 4 z of the cube that begins at p.
+ */
 void grid_place(const tc_grid_options *grid, int64_t n, int64_t p[3]);
 int64_t signs_index(const signs *s, const int64_t p[3]);
 int64_t signs_corner(const signs *s, const int64_t p[3], unsigned corner);
 
 bool signs_odd(const signs *s, const int64_t p[3]); /* of i + j + k */
 
-/* Whether the cube from p on lies in the grid and is there; p may lie outside. */
+/* Whether the cube that begins at p, which may lie outside the grid, has all its samples and is not blanked. */
 bool signs_cube(const signs *s, const int64_t p[3]);
 
 /* The surface of either method, its vertices numbered in the documented order; to be freed by expected_free. mirrored:
@@ -38,11 +38,12 @@ void signs_expect(const signs *s, tc_method method, bool mirrored, expected *e);
 /* The same of a complex, its vertices in any order. */
 void complex_expect(const tc_tetrahedra_grid_options *complex, double isovalue, expected *e);
 
-/* What of a mesh's sums is not as expected, in words that stay valid until the next call; NULL where nothing is. */
+/* The first difference between the mesh's counts and the expected ones, in words that stay valid until the next call;
+ * NULL where there is none. */
 const char *counts_fault(const expected *e, const tc_mesh_data *mesh);
 
-/* Edges, fans, boundary and Euler characteristic, from the indices alone (topology.h). complete: of a complete grid, of
- * which every vertex has one fan. */
+/* The same of edges, fans, boundary and Euler characteristic, from the indices alone (topology.h). complete: nothing of
+ * the grid is missing, so that every vertex has one fan. */
 const char *topology_fault(const expected *e, bool complete, const tc_mesh_data *mesh);
 
 #endif

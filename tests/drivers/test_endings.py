@@ -313,7 +313,7 @@ class Inputs(EndCase):
                     file.write(whole)
 
     def test_input_changes(self):
-        """Written to when it has been mapped: no surface of samples that were never there together passes for one."""
+        """The input is written to after it was mapped: samples that were never there together make no surface."""
         whole = self.content(self.volume)
         for at in (2000, len(whole) - 1):
             for arguments, name in self.commands(self.volume):

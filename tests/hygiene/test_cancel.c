@@ -87,8 +87,8 @@ static void expect_usable(const subject *s) {
     }
 }
 
-/* A count that was cancelled, or overtaken by a call that was, is none: tc_emit tells so by asking for a count, and one
- * that stands by asking for buffers. */
+/* After a cancelled count, or a call that was cancelled since the count, tc_emit asks for a count; where the count
+ * stands, it asks for buffers. */
 static void expect_count_stands(const subject *s, bool stands) {
     const tc_device_mesh no_buffers = {.struct_size = sizeof no_buffers};
     tc_extract_options how;

@@ -140,7 +140,7 @@ class Failures(unittest.TestCase):
         return result.returncode, result.stderr, files
 
     def judge(self, command, what, outcome, expected, pattern):
-        """Nothing but done without, or a failure as it should be."""
+        """The run did without what failed, or it failed as it should."""
         status, messages, files = outcome
         told = f"{command}, {what}: status {status}, {messages!r}"
         self.assertIn(status, (0, 1), told)

@@ -98,7 +98,7 @@ static void test_struct_sizes(tc_context *context, tc_grid *grid) {
     tc_mesh_destroy(mesh);
 }
 
-/* They are read by tc_context_create alone. */
+/* Options for experts, which tc_context_create alone reads. */
 static void test_expert_options(void) {
     tc_context_options options;
     tc_expert_options expert = {0};

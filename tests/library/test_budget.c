@@ -122,7 +122,7 @@ static void subject_test(const subject *s, tc_context *reference) {
                (unsigned long long)advised);
     }
     EXPECT(refusals > 1 && advised >= enough / 50 * 49, "%s: %d refusals", s->name, refusals);
-    for (int step = 0; step < 12; step++) { /* up to where all is whole */
+    for (int step = 0; step < 12; step++) { /* up to budgets that need no slabs */
         const uint64_t budget = advised + advised * (uint64_t)(step * step) / 12;
         EXPECT(budget_does(s, budget, step % 2, &expected[step % 2]), "%s: advised %llu, given %llu: %s", s->name,
                (unsigned long long)advised, (unsigned long long)budget, tc_message());

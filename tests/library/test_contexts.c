@@ -110,7 +110,7 @@ static void test_progress(tc_engine engine, const tc_mesh_data *expected) {
     how.isovalue = 127.5;
     tc_context *context = context_open(&options);
     EXPECT(tc_grid_create(context, &grid_options, &grid) == TC_OK, "%s", tc_message());
-    for (int n = 0; n < 2; n++) { /* the first builds kernels, and tells */
+    for (int n = 0; n < 2; n++) { /* the first call builds kernels, and reports that as progress */
         w.calls = 0;
         EXPECT(tc_extract(grid, &how, &mesh) == TC_OK, "%s", tc_message());
         tc_mesh_destroy(mesh);

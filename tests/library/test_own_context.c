@@ -112,7 +112,7 @@ int main(void) {
     options.cl_context = theirs;
     options.cl_queue = queue;
     for (int n = 0; n < 2 && made; n++) test_extraction(&options, &grid, &expected);
-    expert.always_copy = 1; /* and slabs: another queue, beside the caller's */
+    expert.always_copy = 1; /* and slabs, which take a queue of the library's beside the caller's */
     options.max_memory_bytes = sizeof samples + 12 * (expected.vertex_count + expected.triangle_count);
     if (made) test_extraction(&options, &grid, &expected);
     for (int n = 0; n < 100 && (context_references(theirs) > context_before || queue_references(queue) > queue_before);

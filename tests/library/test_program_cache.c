@@ -231,7 +231,7 @@ static void test_foreign_files(void) {
     }
 }
 
-/* In folders of that kind nothing is looked at: what is damaged stays so. */
+/* Files in a folder that others may write to are not used: damaged ones stay as they are. */
 static void test_foreign_folders(void) {
     static char bytes[TEXT_MOST + 1];
     const char *cache = cache_folder("deep/down/cache");

@@ -13,7 +13,7 @@ typedef struct expected {
 static const expected devices[] = {
     {"Portable Computing Language", "cpu", "3.1+debian", TEXT_ALONE, true, true},
     {"Portable Computing Language", "cpu", "9.9", TEXT_ALONE, true, false},
-    {"Portable Computing Language", "gpu", "3.1", TEXT_GROUPS, true, false}, /* it drives GPUs, too */
+    {"Portable Computing Language", "gpu", "3.1", TEXT_GROUPS, true, false}, /* PoCL drives GPUs, too */
     {"Intel(R) OpenCL", "cpu", "2026.22.10.0.01_160000", TEXT_ALONE, true, true},
     {"Intel(R) OpenCL Graphics", "gpu", "24.13.29138.7", TEXT_GROUPS, true, false},
     {"rusticl", "cpu", "22.3.6", TEXT_GROUPS, false, true},

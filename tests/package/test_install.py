@@ -85,7 +85,7 @@ WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 
 class Failure(Exception):
-    """Something that was to hold does not."""
+    """A promise that does not hold."""
 
 
 def run(*command, **more):

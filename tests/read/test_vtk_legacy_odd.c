@@ -112,7 +112,7 @@ static void test_blanking(void) {
     }
 }
 
-/* What of a name would steer a terminal stays as the file has it, or becomes that. */
+/* Characters of a name that would steer a terminal stay encoded as the file has them, or are encoded. */
 static void test_names(void) {
     static const char *const names[][2] = {{"a%20b%25", "a b%"},
                                            {"a%09%0a%1B%7f", "a%09%0A%1B%7F"},

@@ -184,7 +184,7 @@ static void expect_dataset(const char *what, const dataset *d, enum grid_kind ki
     }
 }
 
-/* Native, aligned, raw: used where it lies, but what has another type than is needed. */
+/* Values that are native, aligned and raw are used where they lie in the file, unless their type has to change. */
 static void expect_in_place(const char *what, const dataset *d) {
     const unsigned char *begin = d->mapping, *end = begin + d->mapping_bytes;
     int inside = 0;

@@ -15,7 +15,7 @@
 #include <sys/mman.h>
 
 static uint32_t slab_count_most;
-static int always_copy; /* of all contexts on the device */
+static int always_copy; /* whether contexts on the device copy samples and meshes */
 
 /* Calm in most bricks, waves in some, so that both kinds occur and isovalues fall between. */
 static double sample_value(tc_type type, const int64_t p[3], bool missing) {

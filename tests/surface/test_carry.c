@@ -49,7 +49,7 @@ static void value_set(void *values, tc_type type, int n, double value) {
     }
 }
 
-/* In the range of a type. */
+/* A value of 0 to 255 taken to the range of the type. */
 static double isovalue_of(tc_type type, double value) {
     static const double scale[TYPES] = {1, 1, 200, 200, 16e6, 16e6, 1, 1};
     static const double shift[TYPES] = {0, -128, 0, -25000, 0, -2e9, 0, 0};

@@ -1,6 +1,8 @@
 /*
- * Complexes: the kernels against the reference byte for byte, both against counts made from signs alone and, where the
- * complex was a structured grid, against the structured path.
+ * test_complex.c - surfaces of tetrahedral complexes: the kernels against the reference, byte for byte
+ *
+ * Both are compared with the surface that the signs of the samples call for (signs.h). Where the complex was a
+ * structured grid, the surface has to be that of the structured path.
  */
 #include "cut.h"
 #include "engines.h"
@@ -329,7 +331,7 @@ static void refusals(tc_context *context) {
     tc_mesh_destroy(mesh);
 }
 
-/* As in the middle of an extraction, every time later. */
+/* Cancels at the call of that number: one later every time. */
 static int cancel_after, cancel_calls;
 
 static int cancel(void *user, const char *stage, double fraction) {

@@ -1,7 +1,9 @@
 /*
- * Complexes under bounds on memory, slab by slab: the same bytes as the reference, never more device memory than
- * allowed, and a refusal that says what would do. With "always_copy" as on a device with memory of its own; with
- * "large" complexes of millions of tetrahedra.
+ * test_complex_slabs.c - complexes under bounds on memory, slab by slab: the same bytes as the reference, never more
+ * device memory than allowed, and a refusal that says what would do
+ *
+ * Usage: test_complex_slabs [always_copy|large]: as on a device with memory of its own; complexes of millions of
+ * tetrahedra.
  */
 #include "cut.h"
 #include "engines.h"

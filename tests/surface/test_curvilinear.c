@@ -348,7 +348,7 @@ static void test_degenerate(subject *s) {
             subject_compare(s, 1u << WHOLE | 1u << IN_ROWS);
             if (kind == 2) expect_outward(s, "folded cells");
         }
-    for (int64_t n = 0; n < 3 * s->count; n++) s->points[n] = 1; /* all in one place: order of indices */
+    for (int64_t n = 0; n < 3 * s->count; n++) s->points[n] = 1; /* all in one place: turned as the indices are */
     tc_mesh *here = NULL, *uniform = NULL;
     tc_mesh_data a, b;
     bool made = reference_mesh(s, &here, &a);

@@ -27,7 +27,7 @@ typedef struct subject {
 enum { WAVES, MISSING, EXTREMES, HALVES, GENTLE, GENTLE_MISSING, SUBJECTS };
 
 static subject subjects[SUBJECTS];
-static int always_copy; /* of all contexts on the device */
+static int always_copy; /* whether contexts on the device copy samples and meshes */
 static tc_method method;
 
 /* What is wrong with a mesh of the tetrahedra. */

@@ -167,7 +167,7 @@ static void compare_places(enum kind kind, tc_context *context, surface *far) {
         there.grid.first_index[axis] = far_first[axis];
         there.grid.matrix[axis][3] = -0.25 * (double)far_first[axis];
     }
-    if (kind == RECTILINEAR || kind == CURVILINEAR) { /* nothing but the parity comes of it */
+    if (kind == RECTILINEAR || kind == CURVILINEAR) { /* of these the first index tells the parity alone */
         here.grid.first_index[0] = here.grid.first_index[1] = 1;
         there.grid.first_index[0] = INT32_MAX - NX + 1;
         there.grid.first_index[1] = INT32_MIN + 1;

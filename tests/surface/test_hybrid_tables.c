@@ -206,7 +206,7 @@ static void chords_count(const patch *p, unsigned *in_faces, unsigned *in_high) 
         }
 }
 
-/* What is counted of a chord. */
+/* What a chord costs, of the costs that triangulations are compared by. */
 typedef unsigned chord_cost(unsigned p, unsigned q);
 
 static unsigned cost_in_face(unsigned p, unsigned q) { return common_face(p, q) < 6; }

@@ -59,7 +59,7 @@ static bool pattern_is_inside(tc_type type, inside_range range, uint64_t pattern
     return ((pattern - range.low) & type_mask(type)) <= (range.span & type_mask(type));
 }
 
-/* The upper 32 bits of a key, likewise. */
+/* The upper 32 bits of a sample's key, made as the kernels do it. */
 static uint32_t key_of(tc_type type, inside_range range, uint64_t pattern) {
     uint64_t sign = UINT64_C(1) << (type_bits(type) - 1);
     uint64_t key = type < TC_F32 ? pattern ^ range.key_flip : pattern & sign ? ~pattern : pattern | sign;

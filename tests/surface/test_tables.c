@@ -163,7 +163,7 @@ static unsigned face_of(unsigned e, unsigned f) {
     return 4;
 }
 
-/* Sides that no other triangle of the case passes back lie in the faces that are crossed, one in each. */
+/* A side that one triangle of the case alone has lies in a crossed face; every crossed face has one such side. */
 static void test_cases_end_in_faces(void) {
     for (unsigned pattern = 0; pattern < 16; pattern++) {
         const tetrahedron_case *c = &tetrahedron_cases[pattern];

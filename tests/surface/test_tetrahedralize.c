@@ -1,6 +1,6 @@
 /*
- * The converter: every order of point numbers in every type of cell, random complexes of all types, collapsed and
- * curved cells, structured grids, and what has to be refused.
+ * test_tetrahedralize.c - the converter: every order of point numbers in every type of cell, random complexes of all
+ * types, collapsed and curved cells, structured grids, and what has to be refused
  */
 #include "api.h"
 #include "cut.h"

@@ -148,7 +148,7 @@ def suite_try(tier, suite, folder):
 
 
 def machine_try(program, folder):
-    """What is no package of a release."""
+    """Drivers that no release has as a package, tried on this machine."""
     out = os.path.join(folder, "drivers.json")
     subprocess.run([sys.executable, os.path.join(ROOT, "tests", "systems", "drivers.py"), program, "--out", out,
                     "--folder", os.path.join(folder, "second"), "--only", "Intel"], check=False)

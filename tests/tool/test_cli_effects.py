@@ -214,7 +214,7 @@ class Carried(GridCase):
 
 
 class WideIntegers(GridCase):
-    """64-bit integers become doubles: told where a field that is used, or the isovalue, is not the same any more."""
+    """64-bit integers become doubles: a notice tells where that changes a field that is used, or the isovalue."""
 
     def both(self, last):
         """An image as VTK XML and as VTK legacy, with a plain field and one of 64-bit integers."""

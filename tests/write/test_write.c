@@ -271,7 +271,7 @@ static void test_bad_targets(const tc_mesh_data *mesh) {
     EXPECT(count_files() == 0, "%d files", count_files());
 }
 
-/* Gives up root, who may write, and break, everything. For children. */
+/* Gives up the rights of root, whose writes never fail. For child processes. */
 static void drop_privileges(void) {
     if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(100);
 }

@@ -105,7 +105,7 @@ static void test_ply_fields(const tc_mesh_data *mesh, const mesh_field *fields, 
     free(text);
 }
 
-/* Names that meet those of the format or each other. */
+/* Names of fields that the format uses itself, or that are given twice. */
 static void test_ply_names(void) {
     tc_mesh_data mesh = make_mesh(1, 0, 0);
     float values[4] = {1, 2, 3, 4};
