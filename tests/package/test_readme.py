@@ -162,7 +162,7 @@ def test_keys(text, tool):
 # ------------------------------------------------------------------------------------------------------- host/read
 
 def test_endings(text, tool):
-    """An empty file of every ending is taken for its format, but for the endings of bare data, which many formats have."""
+    """An empty file of every ending is taken for its format; endings of bare data, which many formats have, apart."""
     table = section("host/read/README.md", text, "| format | endings |", "\n\n")
     endings = set(re.findall(r"`(\.\w+)`", table)) - {".raw", ".img", ".gz"}
     expect(len(endings) > 12, f"host/read/README.md: only {sorted(endings)} found")

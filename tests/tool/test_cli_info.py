@@ -198,7 +198,7 @@ class Used(GridCase):
     """Range, histogram and isovalues are of the samples that a surface can depend on."""
 
     def check(self, inputs, low, high, count, *more):
-        """Range and count are so; every advised isovalue gives a surface; one above the range is told with the range."""
+        """Range and count are so; advised isovalues give surfaces; one above the range is told with the range."""
         info = self.report("info", *inputs, *more)
         self.assertEqual((info["range"], sum(info["histogram"]["counts"])), ([low, high], count))
         self.assertEqual((info["missing"], info["nonfinite"]), (0, 0))
