@@ -30,7 +30,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
     local uint shared[1];
     local emit_room room;
     brick_work work;
-    mesh_buffers mesh = {positions + s.position_offset, normals + s.position_offset, triangles + s.triangle_offset};
+    mesh_buffers mesh = {positions + s.vertex_offset, normals + s.vertex_offset, triangles + s.triangle_offset};
     grid_arrays in = {samples, coordinates, blanked};
     row_results k1 = {words + UNIFORM_BRICKS * BRICK_WORDS, offsets, cells, triangle_offsets, bricks};
     global uint *head = state + s.head_offset;

@@ -18,7 +18,7 @@
 #include "vertex.cl"
 
 #define CASE_BITS  9
-#define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
+#define CASE_STEP  (3 * OF_METHOD(triangles_usual)) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
 /* The signs of a cube's corners, corner n in bit n. */

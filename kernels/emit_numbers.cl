@@ -16,12 +16,12 @@
 #include "mesh.cl"
 #include "tetrahedra.cl"
 
-#define NUMBER_STEP NUMBER_TYPES(HYBRID)
+#define NUMBER_STEP NUMBER_TYPES(EDGE_TYPES)
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
 #define LIST_MORE   16 /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
-#define CASE_ITEMS  (HYBRID ? 18 : 30) /* indices that a cube has at the most */
+#define CASE_ITEMS  (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
 
 /* Sign words of the brick's rows [0] and of the next brick in y [1], in the brick's planes and the next plane. */
 typedef struct brick_signs {
@@ -168,7 +168,7 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
         owner o = owner_of(s, c.y + y, z, w, k1);
         row_number(number, crossed[0][y], number_of(o, 0));
         row_number(number + 1, crossed[1][y], number_of(o, 1));
-        if (!HYBRID) row_number(number + 3, crossed[2][y], number_of(o, 3));
+        if (DIAGONALS) row_number(number + 3, crossed[2][y], number_of(o, 3));
     }
 }
 
@@ -184,7 +184,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         const sample_rows *here = &signs->rows[1][n], *behind = last ? here : here + 1;
         const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = behind->at.s0, c1 = behind->next.s0;
         ulong x = (a0 ^ a1) & has_x, z = (a0 ^ c0) & has_z;
-        ulong xz = HYBRID ? 0 : ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z;
+        ulong xz = DIAGONALS ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z : 0;
 #if MISSING
         crossings k = {{x, 0, z, 0, xz, 0}};
         crossings_keep(s, k1.cells, y, c.z + n, w, &k);
@@ -195,7 +195,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         uint *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, BRICK_ROWS, n);
         row_number(number, x, number_of(o, 0));
         row_number(number + 2, z, number_of(o, 2));
-        if (!HYBRID) row_number(number + 4, xz, number_of(o, 4));
+        if (DIAGONALS) row_number(number + 4, xz, number_of(o, 4));
     }
 }
 
@@ -226,7 +226,7 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (n < BRICK_PLANES && z + 1 < s->nz) {
             const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
             k.type[2] = a ^ behind;
-            if (!HYBRID) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
+            if (DIAGONALS) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
             up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
         }
 #if MISSING

@@ -48,7 +48,7 @@ enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
  * make their number a power of two. */
-#define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
+#define NUMBER_TYPES(edge_types) ((edge_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* The index of a sample in that table, in samples. */
@@ -56,7 +56,7 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 
 /* For that kernel the table of cases names lanes. A cube has four rows of samples; from its first sample on,
  * NUMBER_LANES numbers of each row make a vector. A lane is an index into the four vectors, one after another. */
-#define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
+#define NUMBER_LANE(x, y, z, type, edge_types) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(edge_types) + (type))
 
 /* The most local memory that a group takes for every 32 of its work-items: kernel 2's table of a brick's rows. */
 enum { LOCAL_BYTES_PER_BRICK = 2816 };
@@ -115,9 +115,9 @@ typedef struct slab {
     slab_u32 has_blanked_samples, has_blanked_cells;
     slab_u32 vertex_base;             /* number of the slab's first vertex */
     slab_u32 vertex_base_next;        /* of the next slab's first vertex */
-    slab_u32 vertex_window;           /* number of the vertex that the position buffer starts with */
+    slab_u32 vertex_window;           /* number of the vertex that the buffers of channels start with */
     slab_u32 triangle_window;         /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
-    slab_u32 position_offset;         /* floats in the position buffer before that vertex */
+    slab_u32 vertex_offset;           /* floats in the buffers of channels before that vertex */
     slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
     slab_u32 brick_first, brick_last; /* kernel 2 emits the active bricks among these */
     slab_f32 isovalue32;

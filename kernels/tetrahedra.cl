@@ -9,6 +9,7 @@
 #ifndef TETRAHEDRA_CL
 #define TETRAHEDRA_CL
 
+#include "methods.h"
 #include "words.cl"
 
 /* Sign words of LANES rows, and the same shifted to x + 1. */
@@ -60,8 +61,15 @@ inline_always lanes cubes_active(const cube_rows *r) {
     return any & ~all & r->has_x & r->has_y & r->has_z;
 }
 
-/* Types of edges that have vertices. */
-#define EDGE_TYPES (HYBRID ? 3 : 6)
+/* A constant or function of the method that the program is built for. */
+#define OF_METHOD(what) PASTE(METHOD, _##what)
+
+#define METHOD_CONSTANTS(name, types, most, usual)                                                                     \
+    name##_edge_types = (types), name##_triangles_most = (most), name##_triangles_usual = (usual),
+enum { METHODS(METHOD_CONSTANTS) };
+
+#define EDGE_TYPES OF_METHOD(edge_types) /* that have vertices */
+#define DIAGONALS  (EDGE_TYPES > 3)      /* whether those across faces are among them */
 
 /* Edges owned by the samples of rows a whose ends differ, where both ends are in the grid. */
 typedef struct crossings {
@@ -74,7 +82,7 @@ inline_always crossings crossings_owned(const cube_rows *r) {
     k.type[1] = (r->a0 ^ r->b0) & r->has_y;
     k.type[2] = (r->a0 ^ r->c0) & r->has_z;
     k.type[3] = k.type[4] = k.type[5] = 0;
-    if (HYBRID) return k;
+    if (!DIAGONALS) return k;
     k.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
     k.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
     k.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
@@ -98,41 +106,58 @@ inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, la
     return odd & cubes;
 }
 
-/* Corner n of an even cube, corner n ^ 1 of an odd one. Ones and twos of the five tetrahedra are added bit by bit, so
- * that four words are counted and not ten.
- *
- * In the hybrid method a loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks
- * with all vertices on their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals.
- * These are the edges of the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where
- * two, four. So hybrid triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0.
- * Below, two[0] adds 2 where the central one emits none, and at the end 2 is subtracted for every cube. */
-inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
+/* Cubes in which each of the five tetrahedra emits one triangle, and two; [0] is the central one. */
+typedef struct tetrahedra_counts {
+    lanes one[5], two[5];
+} tetrahedra_counts;
+
+/* Below, p0 is corner 0 of an even cube and corner 1 of an odd one: p with n is corner n, or n ^ 1. */
+inline_always tetrahedra_counts tetrahedra_count(const cube_rows *r, lanes cubes) {
     lanes e = r->even;
     lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
     lanes p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
     lanes p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
     lanes p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
-    lanes one[5], two[5], ones, twos, fours;
-    one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &two[1]);
-    one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &two[2]);
-    one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &two[3]);
-    one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &two[4]);
-#if HYBRID
-    one[0] = 0;
-    two[0] = (~(p0 | p3 | p5 | p6) | (p0 & p3 & p5 & p6)) & cubes;
-#else
-    one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &two[0]);
-#endif
-    lanes carry0 = add_carry(one[0], one[1], one[2], &ones);
-    lanes carry1 = add_carry(ones, one[3], one[4], &ones);
-    lanes carry2 = add_carry(carry0, carry1, two[0], &twos);
-    lanes carry3 = add_carry(twos, two[1], two[2], &twos);
-    lanes carry4 = add_carry(twos, two[3], two[4], &twos);
-    lanes eights = add_carry(carry2, carry3, carry4, &fours);
-    lanes count = lanes_popcount(ones) +
-                  2 * (lanes_popcount(twos) + 2 * (lanes_popcount(fours | eights) + lanes_popcount(eights)));
-    return HYBRID ? count - 2 * lanes_popcount(cubes) : count;
+    tetrahedra_counts t;
+    t.one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &t.two[0]);
+    t.one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &t.two[1]);
+    t.one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &t.two[2]);
+    t.one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &t.two[3]);
+    t.one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &t.two[4]);
+    return t;
 }
+
+/* Triangles of the 64 cubes of each row. They are added bit by bit, so that four words are counted and not ten. */
+inline_always lanes tetrahedra_sum(const tetrahedra_counts *t) {
+    lanes ones, twos, fours;
+    lanes carry0 = add_carry(t->one[0], t->one[1], t->one[2], &ones);
+    lanes carry1 = add_carry(ones, t->one[3], t->one[4], &ones);
+    lanes carry2 = add_carry(carry0, carry1, t->two[0], &twos);
+    lanes carry3 = add_carry(twos, t->two[1], t->two[2], &twos);
+    lanes carry4 = add_carry(twos, t->two[3], t->two[4], &twos);
+    lanes eights = add_carry(carry2, carry3, carry4, &fours);
+    return lanes_popcount(ones) +
+           2 * (lanes_popcount(twos) + 2 * (lanes_popcount(fours | eights) + lanes_popcount(eights)));
+}
+
+inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
+    tetrahedra_counts t = tetrahedra_count(r, cubes);
+    return tetrahedra_sum(&t);
+}
+
+/* A loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks with all vertices on
+ * their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals. These are the edges of
+ * the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where two, four. So hybrid
+ * triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0. Below, two is added
+ * where it emits none, and subtracted for every cube. */
+inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
+    tetrahedra_counts t = tetrahedra_count(r, cubes);
+    t.two[0] = cubes & ~(t.one[0] | t.two[0]);
+    t.one[0] = 0;
+    return tetrahedra_sum(&t) - 2 * lanes_popcount(cubes);
+}
+
+inline_always lanes triangles_count(const cube_rows *r, lanes cubes) { return OF_METHOD(triangles)(r, cubes); }
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
  * vertex in its brick: 14 bits, here 0, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */

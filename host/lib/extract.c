@@ -24,7 +24,7 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     tc_status status = options_take(o, sizeof *o, options, "extract options");
     if (!status && !isfinite(o->isovalue))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
-    if (!status && o->method != TC_METHOD_TETRA && o->method != TC_METHOD_HYBRID)
+    if (!status && !tc_method_name(o->method))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
     return status;
 }
@@ -59,8 +59,7 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     if (!status) status = surface_count_vetted(grid, &o, 1, &found);
     if (status) return status;
     if (grid->device) grid->context->counted = grid; /* for tc_emit */
-    found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
-                       found.triangle_count * MESH_BYTES_PER_TRIANGLE;
+    found.mesh_bytes = channels_mesh_bytes(channels_asked(&o), found.vertex_count, found.triangle_count);
     result_give(counts, &found);
     return TC_OK;
 }

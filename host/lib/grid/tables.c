@@ -67,8 +67,9 @@ static void cube_case_derive(cube_case *out, unsigned parity, unsigned pattern, 
     }
 }
 
-void cube_cases_derive(cube_case cases[2][256], int mirrored) {
+void tetra_cases_derive(cube_case cases[2][256], int mirrored) {
     for (unsigned parity = 0; parity < 2; parity++)
         for (unsigned pattern = 0; pattern < 256; pattern++)
             cube_case_derive(&cases[parity][pattern], parity, pattern, mirrored);
 }
+

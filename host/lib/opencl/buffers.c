@@ -55,6 +55,11 @@ void buffer_release(tc_context *context, device_buffer *buffer) {
     *buffer = (device_buffer){0};
 }
 
+void mesh_buffers_release(tc_context *context, mesh_buffers *buffers) {
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) buffer_release(context, &buffers->channels[channel]);
+    buffer_release(context, &buffers->triangles);
+}
+
 tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name,
                          size_t *bytes) {
     char what[96];

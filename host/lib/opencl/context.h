@@ -42,7 +42,7 @@ typedef struct word_buffers {
 } word_buffers;
 
 typedef struct mesh_buffers {
-    device_buffer positions, normals, triangles;
+    device_buffer channels[CHANNEL_COUNT], triangles;
 } mesh_buffers;
 
 /* The arrays of a grid, with one or more values per sample or cube. */
@@ -63,7 +63,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
-    device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
+    device_buffer cases[METHOD_COUNT][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {
@@ -119,6 +119,7 @@ tc_status copies_queue_provide(tc_context *context);
 /* Makes the buffer at least `bytes` large; its content is lost where it has to grow. name is for the error. */
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);
 void buffer_release(tc_context *context, device_buffer *buffer);
+void mesh_buffers_release(tc_context *context, mesh_buffers *buffers);
 
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,

@@ -72,7 +72,7 @@ static float edge_crossing(const reference *r, uint32_t low, uint32_t high) {
 static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
     const float t = edge_crossing(r, low, high);
     const float *p0 = r->grid->complex->points + 3 * (uint64_t)low, *p1 = r->grid->complex->points + 3 * (uint64_t)high;
-    float *out = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
+    float *out = (float *)r->mesh->channels[CHANNEL_POSITIONS].memory + 3 * r->vertex_count;
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
 }
 
@@ -184,7 +184,7 @@ tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mes
     tc_status status = reference_begin(&r, grid, isovalue);
     if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
     const double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, POSITIONS_ALONE);
     r.mesh = mesh;
     if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);
     if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))

@@ -116,9 +116,9 @@ void structured_reshape(tc_grid *grid) { slab_plan_reshape(grid->context, grid, 
 kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const kernel_kind kind = {.grid = (unsigned)grid->kind,
                               .type = grid->type,
-                              .hybrid = options->method == TC_METHOD_HYBRID,
+                              .method = options->method,
                               .missing = grid->device && grid->device->missing,
-                              .normals = options->normals != 0,
+                              .made = channels_asked(options),
                               .emits = true};
     return emits ? kind : kind_of_classify(kind);
 }
@@ -128,7 +128,7 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
                .context = grid->context,
                .plan = &grid->device->plan,
                .method = options->method,
-               .normals = options->normals != 0};
+               .made = channels_asked(options)};
     r->copies = r->context->queue;
     base_fill(r, inside, options->isovalue);
     tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
@@ -145,9 +145,7 @@ void run_end(run *r, tc_status status) {
     cl->Finish(r->context->queue);
     if (status) workspace_release(r->context); /* its state is undefined after a failure */
     if (r->context->in_place) {                /* windows in memory of the caller */
-        mesh_buffers *mesh = &w->mesh[0];
-        device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
-        for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
+        mesh_buffers_release(r->context, &w->mesh[0]);
         for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[0][array]);
     }
     slab_store_release(&r->store);
@@ -284,7 +282,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     if (inside.uniform) return TC_OK;
     tc_status status = classify(&r, grid, options, inside, true, 0.5);
     classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
     if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
     if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
     mesh->active_cell_count = r.active_cell_count;

@@ -10,7 +10,7 @@
 
 #include "failure.h"
 #include "grid/carry.h"
-#include "grid/tables.h"
+#include "grid/method.h"
 #include "parallel.h"
 #include "structured/structured_run.h"
 
@@ -368,7 +368,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
-    j.edge_types = options->method == TC_METHOD_HYBRID ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    j.edge_types = methods[options->method].edge_types;
     ends_fill(&j);
     if (!j.plan->words_whole) {
         const slab_store *s = &device->store;

@@ -10,14 +10,10 @@
 
 static const uint64_t page_bytes = 4096;
 
-static uint64_t window_bytes(const run *r, uint64_t vertices, uint64_t triangles) {
-    return vertices * MESH_BYTES_PER_VERTEX * (r->normals ? 2 : 1) + triangles * MESH_BYTES_PER_TRIANGLE;
-}
-
 bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows) {
     uint64_t most = r->context->info.max_buffer_bytes - page_bytes;
-    return vertices * MESH_BYTES_PER_VERTEX <= most && triangles * MESH_BYTES_PER_TRIANGLE <= most &&
-           triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes / windows;
+    return vertices * CHANNEL_BYTES <= most && triangles * TRIANGLE_BYTES <= most && triangles <= UINT32_MAX &&
+           channels_mesh_bytes(r->made, vertices, triangles) <= r->plan->mesh_bytes / windows;
 }
 
 void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles) {
@@ -115,7 +111,8 @@ static tc_status row_refuse(const run *r, const mesh_window *part) {
         "a row of bricks of this surface has %llu bytes, more than the memory budget leaves (%llu) or a buffer may "
         "have "
         "(%llu): allow %llu or more",
-        (unsigned long long)window_bytes(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0),
+        (unsigned long long)channels_mesh_bytes(r->made, part->vertex1 - part->vertex0,
+                                                part->triangle1 - part->triangle0),
         (unsigned long long)r->plan->mesh_bytes, (unsigned long long)r->context->info.max_buffer_bytes,
         (unsigned long long)plan_budget(r->context, r->grid));
 }

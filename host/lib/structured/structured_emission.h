@@ -9,7 +9,7 @@
 /* Vertices [vertex0, vertex1) and triangles [triangle0, triangle1) of the mesh. */
 typedef struct mesh_window {
     uint64_t vertex0, vertex1, triangle0, triangle1;
-    uint32_t position_offset, triangle_offset; /* 32-bit items before them in the buffers */
+    uint32_t vertex_offset, triangle_offset; /* 32-bit items before them in the buffers */
     mesh_buffers *buffers;
 } mesh_window;
 

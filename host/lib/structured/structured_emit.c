@@ -7,7 +7,7 @@
 #include "structured/structured_emission.h"
 
 #include "failure.h"
-#include "grid/tables.h"
+#include "grid/method.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,11 +27,12 @@ static tc_status part_open(run *r, device_buffer *buffer, const host_block *bloc
 
 static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     mesh_buffers *b = w->buffers;
-    uint64_t v0 = w->vertex0 * MESH_BYTES_PER_VERTEX, v1 = w->vertex1 * MESH_BYTES_PER_VERTEX;
-    uint64_t t0 = w->triangle0 * MESH_BYTES_PER_TRIANGLE, t1 = w->triangle1 * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = part_open(r, &b->positions, &mesh->positions, v0, v1, &w->position_offset, "vertices");
-    if (!status && r->normals)
-        status = part_open(r, &b->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
+    uint64_t v0 = w->vertex0 * CHANNEL_BYTES, v1 = w->vertex1 * CHANNEL_BYTES;
+    uint64_t t0 = w->triangle0 * TRIANGLE_BYTES, t1 = w->triangle1 * TRIANGLE_BYTES;
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && !status; n++)
+        if (channel_in(r->made, n))
+            status = part_open(r, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset, channel_names[n]);
     if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
@@ -49,8 +50,9 @@ static tc_status part_sync(run *r, device_buffer *buffer) {
 
 static tc_status window_sync(run *r, const mesh_window *w) {
     mesh_buffers *b = w->buffers;
-    tc_status status = w->vertex0 < w->vertex1 ? part_sync(r, &b->positions) : TC_OK;
-    if (!status && r->normals && w->vertex0 < w->vertex1) status = part_sync(r, &b->normals);
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && w->vertex0 < w->vertex1 && !status; n++)
+        if (channel_in(r->made, n)) status = part_sync(r, &b->channels[n]);
     if (!status && w->triangle0 < w->triangle1) status = part_sync(r, &b->triangles);
     return status;
 }
@@ -66,13 +68,14 @@ static tc_status part_read(run *r, const device_buffer *buffer, const host_block
 
 /* Copies a part of the mesh from the window that it is in. */
 static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, const mesh_window *part) {
-    const uint64_t bytes = MESH_BYTES_PER_VERTEX, start = w->vertex0 * bytes;
+    const uint64_t bytes = CHANNEL_BYTES, start = w->vertex0 * bytes;
     const uint64_t v0 = part->vertex0 * bytes, v1 = part->vertex1 * bytes;
-    tc_status status = part_read(r, &w->buffers->positions, &mesh->positions, start, v0, v1);
-    if (!status && r->normals) status = part_read(r, &w->buffers->normals, &mesh->normals, start, v0, v1);
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && !status; n++)
+        if (channel_in(r->made, n)) status = part_read(r, &w->buffers->channels[n], &mesh->channels[n], start, v0, v1);
     if (!status)
-        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * MESH_BYTES_PER_TRIANGLE,
-                           part->triangle0 * MESH_BYTES_PER_TRIANGLE, part->triangle1 * MESH_BYTES_PER_TRIANGLE);
+        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * TRIANGLE_BYTES,
+                           part->triangle0 * TRIANGLE_BYTES, part->triangle1 * TRIANGLE_BYTES);
     return status;
 }
 
@@ -81,16 +84,13 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
 static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
-    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
+    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, methods[r->method].edge_types);
 }
 
 /* Writes the cube table of the run's method, with edges as kernel 2 names them (edge_item). */
 static void cases_write(const run *r, cube_case cases[2][256]) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
-    if (r->method == TC_METHOD_HYBRID)
-        hybrid_cases_derive(cases, r->grid->mirrored);
-    else
-        cube_cases_derive(cases, r->grid->mirrored);
+    methods[r->method].derive(cases, r->grid->mirrored);
     for (int n = 0; n < 2 * 256; n++)
         for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
             for (int corner = 0; corner < 3; corner++) {
@@ -129,7 +129,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     if (error) return context_fail(r->context, "clearing the ticket of kernel 2", error);
     s.vertex_window = (uint32_t)w->vertex0;
     s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
-    s.position_offset = w->position_offset;
+    s.vertex_offset = w->vertex_offset;
     s.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
                                          ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
@@ -141,8 +141,8 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(words->active.memory),
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(cases->memory),
-                                         ARGUMENT(w->buffers->positions.memory),
-                                         ARGUMENT(w->buffers->normals.memory),
+                                         ARGUMENT(w->buffers->channels[CHANNEL_POSITIONS].memory),
+                                         ARGUMENT(w->buffers->channels[CHANNEL_NORMALS].memory),
                                          ARGUMENT(w->buffers->triangles.memory),
                                          ARGUMENT(coordinates->memory),
                                          ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
@@ -150,12 +150,6 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
 }
 
 /* -------------------------------------------------------------------------------------------------------- emission */
-
-static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
-    buffer_release(context, &b->positions);
-    buffer_release(context, &b->normals);
-    buffer_release(context, &b->triangles);
-}
 
 /* Reserves windows for the largest step at once, as a window must not grow while copies from it run. */
 static tc_status windows_reserve(run *r, emission *e) {

@@ -37,7 +37,7 @@ typedef struct run {
     const slab_plan *plan;
     kernels kernels;
     tc_method method;
-    bool normals;
+    channel_set made;
     slab base;       /* the fields that all slabs share */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;

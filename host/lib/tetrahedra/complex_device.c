@@ -102,13 +102,15 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
 
 static tc_status emit(complex_run *r, tc_mesh *mesh) {
     mesh_buffers *m = &r->context->work.mesh[0];
-    const uint64_t vertex_bytes = mesh->vertex_count * MESH_BYTES_PER_VERTEX;
-    const uint64_t triangle_bytes = mesh->triangle_count * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = mesh_open(r, &m->positions, &mesh->positions, vertex_bytes, "vertices");
+    const uint64_t vertex_bytes = mesh->vertex_count * CHANNEL_BYTES;
+    const uint64_t triangle_bytes = mesh->triangle_count * TRIANGLE_BYTES;
+    tc_status status =
+        mesh_open(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
-    if (!status) status = surface_emit(r, &m->positions, &m->triangles);
+    if (!status) status = surface_emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
-    if (!status) status = mesh_close(r, &m->positions, &mesh->positions, vertex_bytes);
+    if (!status)
+        status = mesh_close(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes);
     if (!status) status = mesh_close(r, &m->triangles, &mesh->triangles, triangle_bytes);
     if (!r->context->in_place) mesh->timings.readback_ms = clock_ms() - emitted;
     return status;
@@ -119,7 +121,7 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, 0, mesh);
     tc_status status = whole_count(&r, grid, isovalue, 0.8);
     double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], false);
+    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
     if (!status && r.head[HEAD_TRIANGLES]) status = emit(&r, mesh);
     if (r.too_large) {
         status = cut_later(&r);

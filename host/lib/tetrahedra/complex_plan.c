@@ -69,8 +69,8 @@ static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *n
     need_add(need, 16 * tetrahedra); /* entries of its edges */
     need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
     need_add(need, 4 * entries);
-    need_add(need, 4 * MESH_BYTES_PER_VERTEX * tetrahedra);
-    need_add(need, 2 * MESH_BYTES_PER_TRIANGLE * tetrahedra);
+    need_add(need, 4 * CHANNEL_BYTES * tetrahedra);
+    need_add(need, 2 * TRIANGLE_BYTES * tetrahedra);
 }
 
 static bool need_fits(const tc_context *context, device_need need) {
