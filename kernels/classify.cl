@@ -24,13 +24,13 @@
  * 1 the tile before is always recounted: a test reaches the fallback so. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 global uint *tiles, local uint *shared) {
-    bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
+    bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
     while (!complete) {
         group_barrier();
         if (leader) {
-            bool done = look && scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->spin_limit);
-            shared[0] = done && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->spin_limit);
+            bool done = look && scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->tiling.spin_limit);
+            shared[0] = done && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->tiling.spin_limit);
             shared[1] = done ? back[1] : back[0];
             shared[2] = shared[3] = 0;
         }
@@ -92,7 +92,7 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
         uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);
         scan_post_prefix(tiles, number, TILE_VERTICES, vertices);
         scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
-        if (number + 1 == s->tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
+        if (number + 1 == s->tiling.tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
     }
     tile_finish(s, tile_locate(s, number), prefix, emitting, bricks, active, head, shared);
 }
@@ -106,18 +106,18 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
     local sign_room for_sign;
     local count_room for_count;
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
+    global uint *head = state + s.results.head_offset, *tiles = state + s.results.tiles_offset;
     tile_words k = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
-    active += s.active_offset;
+    active += s.results.active_offset;
     uint number = 0, cell_count = 0, nonfinite = 0;
     own_tiles own = {NO_TILE, NO_TILE};
-    while (number < s.tile_count) {
+    while (number < s.tiling.tile_count) {
         group_barrier();
         if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
         group_barrier();
         number = shared[0];
         group_barrier();
-        if (number < s.tile_count) {
+        if (number < s.tiling.tile_count) {
             tile t = tile_locate(&s, number);
             emission sums = {0, 0, 0};
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)

@@ -22,12 +22,12 @@ inline_always void cluster_tile_settle(tile_tools k, uint number, cluster_arrays
 }
 
 /* state: head and tiles, cleared. active receives the clusters that have active tetrahedra. */
-kernel void complex_classify(slab s, complex_job c, global const BITS *samples, global const uint *tetrahedra,
+kernel void complex_classify(complex_job c, global const BITS *samples, global const uint *tetrahedra,
                              global brick_range *ranges, global cluster_state *clusters, global uint *active,
                              global uint *state) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools k = {&s, &c, state + HEAD_WORDS, shared, sums};
+    tile_tools k = {&c, state + HEAD_WORDS, shared, sums};
     cluster_arrays a = {
         {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset}, ranges, clusters, active, state};
     cluster_sums found = {0};

@@ -45,12 +45,12 @@ inline_always void active_tile_settle(tile_tools k, uint number, global const ac
 }
 
 /* Numbers the vertices in the order of their owners. `tiles` has to be cleared. */
-kernel void complex_number(slab s, complex_job c, global active_tetrahedron *active, global const uchar *cases,
+kernel void complex_number(complex_job c, global active_tetrahedron *active, global const uchar *cases,
                            global uint *state, global uint *tiles, global const uint *table,
                            global const uint *entries) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools k = {&s, &c, tiles, shared, sums};
+    tile_tools k = {&c, tiles, shared, sums};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
     if (WORK_ITEMS == 1 && state[HEAD_FULL]) return; /* entries are incomplete */

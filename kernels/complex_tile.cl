@@ -11,7 +11,6 @@
 #include "scan.cl"
 
 typedef struct tile_tools {
-    const slab *s;
     const complex_job *c;
     global uint *tiles;
     local uint *shared; /* 4 words */
@@ -70,7 +69,7 @@ inline_always void tile_post(tile_tools k, uint number, uint2 sums) {
  * whose sum is missing. */
 inline_always bool tile_look_back(tile_tools k, uint number, uint channel, uint *prefix) {
     uint back = number;
-    bool done = scan_look_back(k.tiles, channel, &back, prefix, k.s->spin_limit);
+    bool done = scan_look_back(k.tiles, channel, &back, prefix, k.c->spin_limit);
     k.shared[1] = back;
     return done;
 }
@@ -84,7 +83,7 @@ inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missi
     if (get_local_id(0) == 0) {
         uint vertices = 0, triangles = 0; /* in kernel 1 `vertices` counts active tetrahedra */
         k.shared[1] = number;
-        done = (look || k.s->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
+        done = (look || k.c->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
                tile_look_back(k, number, TILE_TRIANGLES, &triangles);
         if (done) {
             vertices += scan_own_sum(k.tiles, number, TILE_VERTICES);

@@ -18,11 +18,11 @@ typedef struct tile {
 
 inline_always tile tile_locate(const slab *s, uint n) {
     tile t;
-    uint groups_y = (s->bricks_y + s->tile_rows - 1) / s->tile_rows;
-    t.y0 = n % groups_y * s->tile_rows * BRICK_ROWS;
-    t.y1 = min(t.y0 + s->tile_rows * BRICK_ROWS, s->ny);
-    t.z0 = s->z0 + n / groups_y * s->tile_layers * BRICK_PLANES;
-    t.z1 = min(t.z0 + s->tile_layers * BRICK_PLANES, s->z1);
+    uint groups_y = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows;
+    t.y0 = n % groups_y * s->tiling.tile_rows * BRICK_ROWS;
+    t.y1 = min(t.y0 + s->tiling.tile_rows * BRICK_ROWS, s->ny);
+    t.z0 = s->z0 + n / groups_y * s->tiling.tile_layers * BRICK_PLANES;
+    t.z1 = min(t.z0 + s->tiling.tile_layers * BRICK_PLANES, s->z1);
     return t;
 }
 
@@ -38,7 +38,7 @@ inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
 }
 
 inline_always ulong halo_row(const slab *s, tile t, uint z, uint w) {
-    return BRICK_ROWS * (ulong)(s->tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
+    return BRICK_ROWS * (ulong)(s->tiling.tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
 }
 
 /* The word of a row in the grid. The words of the next rows of its brick follow it, except in row y1. */

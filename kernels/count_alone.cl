@@ -141,13 +141,13 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
     const uint deep = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
     const uint across = w + count < s->words_x ? count : count - 1;
     if (z + BRICK_PLANES >= s->z1 && s->z1 < s->nz) return false;
-    if (!s->ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
-    global const brick_range *here = ranges + s->range_offset + brick_index(s, y, z, w);
-    uint sign = run_sign(s, here, count);
-    return sign != SIGN_MIXED && run_sign(s, here + up, count) == sign && run_sign(s, here + deep, count) == sign &&
-           run_sign(s, here + up + deep, count) == sign && range_sign(s, here[across]) == sign &&
-           range_sign(s, here[up + across]) == sign && range_sign(s, here[deep + across]) == sign &&
-           range_sign(s, here[up + deep + across]) == sign;
+    if (!s->results.ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
+    global const brick_range *here = ranges + s->results.range_offset + brick_index(s, y, z, w);
+    uint sign = run_sign(&s->test, here, count);
+    return sign != SIGN_MIXED && run_sign(&s->test, here + up, count) == sign &&
+           run_sign(&s->test, here + deep, count) == sign && run_sign(&s->test, here + up + deep, count) == sign &&
+           range_sign(&s->test, here[across]) == sign && range_sign(&s->test, here[up + across]) == sign &&
+           range_sign(&s->test, here[deep + across]) == sign && range_sign(&s->test, here[up + deep + across]) == sign;
 }
 
 /* A group needs no local memory here. */

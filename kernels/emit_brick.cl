@@ -53,7 +53,7 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
         work->a[n] = *from;
         work->b[n] = from[step];
 #if GRID == 2
-        global const float *p0 = in.coordinates + (3 * place + s->point_offset);
+        global const float *p0 = in.coordinates + (3 * place + s->arrays.point_offset);
         line_prefetch(p0);
         line_prefetch(p0 + 3 * step);
 #endif
@@ -70,7 +70,7 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
         uint left = min(count - first, (uint)BATCH_STEP);
 #endif
         for (uint n = 0; n < BATCH_STEP; n++) {
-            t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
+            t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(&s->test));
 #if GRID == 0
             position_make(s, brick, list[first + n], t[n], positions + 3 * n);
 #endif
@@ -255,19 +255,19 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     brick_signs signs;
     const corner c = brick_corner(s, number);
     const brick_state state = k1.bricks[number];
-    uint first = s->vertex_base + state.vertices;
+    uint first = s->mesh.vertex_base + state.vertices;
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
     uint count = edges_list(s, state.rows, first, work);
 #ifdef REAL
-    vertices_emit(s, c, count, first - s->vertex_window, in, mesh, work);
+    vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif
     plane_number(s, c, &signs, k1, work);
     next_rows_number(s, c, &signs, k1, work);
     column_number(s, c, &signs, k1, work);
     count = cubes_list(s, state.rows, work);
-    triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
+    triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->mesh.triangle_window), work);
 }
 
 #endif

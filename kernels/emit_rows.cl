@@ -100,7 +100,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
                                 const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
     const uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
-    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->vertex_window);
+    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < EDGE_TYPES; type++) {
 #pragma unroll 1
@@ -110,7 +110,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
             ulong from = row_start(s, brick.y + (place >> 7 & 0xf), z) + brick.x + (place & 0x7f);
             long step = place_step(s, place);
             BITS a = in.samples[from], b = in.samples[from + step];
-            float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
+            float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
 #if GRID
             position_between(s, in, brick, place, from, step, t, position);
 #else
@@ -175,7 +175,7 @@ inline_always void row_emit(const slab *s, uint number, uint place, grid_arrays 
 #ifdef REAL
     row_vertices(s, brick, y, z, n, in, table, mesh);
 #endif
-    row_triangles(s, y, z, brick.x / 64, n, before - s->triangle_window, k1, table, cases, mesh);
+    row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }
 
 /* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group. No variable lives

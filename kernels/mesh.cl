@@ -26,12 +26,12 @@ typedef struct row_results {
 
 inline_always corner brick_corner(const slab *s, uint number) {
     corner c = {number % s->words_x * 64, number / s->words_x % s->bricks_y * BRICK_ROWS,
-                s->word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
+                s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
     return c;
 }
 
 inline_always uint brick_vertices(const slab *s, uint z, uint number, row_results k1) {
-    return (z < s->z1 ? s->vertex_base : s->vertex_base_next) + k1.bricks[number].vertices;
+    return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[number].vertices;
 }
 
 /* Where the numbers of the vertices that a row of 64 samples owns begin. */

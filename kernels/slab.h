@@ -80,50 +80,80 @@ enum {
  * the next tile of the same group. */
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
-typedef struct slab {
-    slab_u64 sample_offset;  /* of plane sample_z in the buffer, in samples */
-    slab_u64 sample_count;   /* samples in the buffer from there on */
-    slab_u64 point_offset;   /* in floats: sample n of the buffer has its point at 3 n + point_offset, modulo 2^64 */
-    slab_u64 blanked_offset; /* sample n has its byte of blanked samples at n + blanked_offset */
-    slab_u64 blanked_cell_offset; /* of plane sample_z in the buffer of blanked cells */
-    slab_u64 blanked_cell_count;  /* in that buffer from there on */
-    slab_u64 inside_low;          /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
+/* The side of the isovalue that a sample is on, by its bits. */
+typedef struct isovalue_test {
+    slab_u64 inside_low; /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
     slab_u64 inside_span;
     slab_u64 key_flip;       /* integers: key = bits ^ key_flip */
-    slab_u32 key_inside;     /* keys from here on are surely inside */
-    slab_u32 key_outside;    /* keys below are surely outside */
     slab_u64 nodata_bits[2]; /* bits of the missing value: two patterns, equal where it has only one */
-    slab_u32 nx, ny, nz;     /* samples of the whole grid */
-    slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
-    slab_u32 bricks_y;
-    slab_u32 parity;   /* of the cube at the grid's first sample */
-    slab_i32 first[3]; /* index of the grid's first sample */
-    slab_u32 z0, z1;
+    slab_u64 isovalue64;     /* bits of the double */
+    slab_f32 isovalue32;
+    slab_u32 key_inside;  /* keys from here on are surely inside */
+    slab_u32 key_outside; /* keys below are surely outside */
+    slab_u32 has_nodata;
+} isovalue_test;
+
+/* Where the slab's samples, and what the caller has for each of them or for each cube, are in their buffers. */
+typedef struct slab_arrays {
+    slab_u64 sample_offset;       /* of plane sample_z, in samples */
+    slab_u64 sample_count;        /* samples in the buffer from there on */
+    slab_u64 point_offset;        /* in floats: sample n has its point at 3 n + point_offset, modulo 2^64 */
+    slab_u64 blanked_offset;      /* sample n has its byte of blanked samples at n + blanked_offset */
+    slab_u64 blanked_cell_offset; /* of plane sample_z */
+    slab_u64 blanked_cell_count;  /* in that buffer from there on */
     slab_u32 sample_z;
-    slab_u32 word_z;
-    slab_u32 cell_z;      /* first plane of the cells buffer (grids with missing samples) */
-    slab_u32 tile_rows;   /* rows of bricks per tile and layer */
-    slab_u32 tile_layers; /* more than 1 only where tile_rows covers a layer */
-    slab_u32 tile_count;
-    slab_u32 spin_limit;
+    slab_u32 has_blanked_samples, has_blanked_cells;
+} slab_arrays;
+
+/* Where the results of kernel 1 are in their buffers. */
+typedef struct slab_results {
+    slab_u32 word_z;        /* first plane of the sign words */
+    slab_u32 cell_z;        /* first plane of the cells (grids with missing samples) */
     slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
     slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset; /* of its list of active bricks */
     slab_u32 range_offset;  /* of brick 0 of the slab's window in the buffer of ranges */
     slab_u32 ranges_known;
-    slab_u32 has_nodata;
-    slab_u32 has_blanked_samples, has_blanked_cells;
+} slab_results;
+
+/* How kernel 1 cuts the slab into tiles. */
+typedef struct slab_tiling {
+    slab_u32 tile_rows;   /* rows of bricks per tile and layer */
+    slab_u32 tile_layers; /* more than 1 only where tile_rows covers a layer */
+    slab_u32 tile_count;
+    slab_u32 spin_limit; /* of the scan */
+} slab_tiling;
+
+/* What a launch of kernel 2 emits, and where that goes. */
+typedef struct slab_mesh {
     slab_u32 vertex_base;             /* number of the slab's first vertex */
     slab_u32 vertex_base_next;        /* of the next slab's first vertex */
     slab_u32 vertex_window;           /* number of the vertex that the buffers of channels start with */
     slab_u32 triangle_window;         /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
     slab_u32 vertex_offset;           /* floats in the buffers of channels before that vertex */
     slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
-    slab_u32 brick_first, brick_last; /* kernel 2 emits the active bricks among these */
-    slab_f32 isovalue32;
+    slab_u32 brick_first, brick_last; /* the active bricks among these are emitted */
+} slab_mesh;
+
+/* From the indices of a uniform grid to positions, and from gradients to normals: rows of matrices. */
+typedef struct slab_space {
     slab_f32 matrix[12];
     slab_f32 normal_matrix[9];
-    slab_u64 isovalue64; /* bits of the double */
+} slab_space;
+
+typedef struct slab {
+    isovalue_test test;
+    slab_arrays arrays;
+    slab_u32 nx, ny, nz; /* samples of the whole grid */
+    slab_u32 words_x;    /* sign words per row of the grid = bricks per row */
+    slab_u32 bricks_y;
+    slab_u32 parity;   /* of the cube at the grid's first sample */
+    slab_i32 first[3]; /* index of the grid's first sample */
+    slab_u32 z0, z1;
+    slab_results results;
+    slab_tiling tiling;
+    slab_mesh mesh;
+    slab_space space;
 } slab;
 
 #endif

@@ -106,25 +106,30 @@ inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, la
     return odd & cubes;
 }
 
+/* Corners of the cubes of a row. In an odd cube, p[n] is corner n ^ 1: it is the mirror in x of an even one. */
+typedef struct cube_corners {
+    lanes p[8];
+} cube_corners;
+
+inline_always cube_corners corners_of(const cube_rows *r) {
+    lanes e = r->even;
+    cube_corners c = {{choose(e, r->a0, r->a1), choose(e, r->a1, r->a0), choose(e, r->b0, r->b1),
+                       choose(e, r->b1, r->b0), choose(e, r->c0, r->c1), choose(e, r->c1, r->c0),
+                       choose(e, r->d0, r->d1), choose(e, r->d1, r->d0)}};
+    return c;
+}
+
 /* Cubes in which each of the five tetrahedra emits one triangle, and two; [0] is the central one. */
 typedef struct tetrahedra_counts {
     lanes one[5], two[5];
 } tetrahedra_counts;
 
-/* Below, p0 is corner 0 of an even cube and corner 1 of an odd one: p with n is corner n, or n ^ 1. */
-inline_always tetrahedra_counts tetrahedra_count(const cube_rows *r, lanes cubes) {
-    lanes e = r->even;
-    lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
-    lanes p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
-    lanes p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
-    lanes p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
-    tetrahedra_counts t;
-    t.one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &t.two[0]);
-    t.one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &t.two[1]);
-    t.one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &t.two[2]);
-    t.one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &t.two[3]);
-    t.one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &t.two[4]);
-    return t;
+/* The four tetrahedra around the central one. */
+inline_always void outer_count(const lanes p[8], lanes cubes, tetrahedra_counts *t) {
+    t->one[1] = tetrahedron_triangles(p[1], p[0], p[3], p[5], cubes, &t->two[1]);
+    t->one[2] = tetrahedron_triangles(p[2], p[0], p[3], p[6], cubes, &t->two[2]);
+    t->one[3] = tetrahedron_triangles(p[4], p[0], p[5], p[6], cubes, &t->two[3]);
+    t->one[4] = tetrahedron_triangles(p[7], p[3], p[5], p[6], cubes, &t->two[4]);
 }
 
 /* Triangles of the 64 cubes of each row. They are added bit by bit, so that four words are counted and not ten. */
@@ -141,7 +146,10 @@ inline_always lanes tetrahedra_sum(const tetrahedra_counts *t) {
 }
 
 inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
-    tetrahedra_counts t = tetrahedra_count(r, cubes);
+    cube_corners c = corners_of(r);
+    tetrahedra_counts t;
+    outer_count(c.p, cubes, &t);
+    t.one[0] = tetrahedron_triangles(c.p[0], c.p[3], c.p[5], c.p[6], cubes, &t.two[0]);
     return tetrahedra_sum(&t);
 }
 
@@ -151,9 +159,12 @@ inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
  * triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0. Below, two is added
  * where it emits none, and subtracted for every cube. */
 inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
-    tetrahedra_counts t = tetrahedra_count(r, cubes);
-    t.two[0] = cubes & ~(t.one[0] | t.two[0]);
+    cube_corners c = corners_of(r);
+    lanes any = c.p[0] | c.p[3] | c.p[5] | c.p[6], all = c.p[0] & c.p[3] & c.p[5] & c.p[6];
+    tetrahedra_counts t;
+    outer_count(c.p, cubes, &t);
     t.one[0] = 0;
+    t.two[0] = (~any | all) & cubes;
     return tetrahedra_sum(&t) - 2 * lanes_popcount(cubes);
 }
 

@@ -36,7 +36,7 @@ inline_always void position_make(const slab *s, corner c, uint place, float t, f
     float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
     float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
     float z = (float)(s->first[2] + (int)(c.z + (place >> 11 & 7))) + (float)step_z * t;
-    const float *m = s->matrix;
+    const float *m = s->space.matrix;
     out[0] = ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
     out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
@@ -52,7 +52,7 @@ inline_always void position_between(const slab *s, grid_arrays in, corner c, uin
     float3 p0 = (float3)(*x, *y, *z);
     float3 p1 = (float3)(x[(int)(place >> 14 & 3) - 1], y[(int)(place >> 16 & 3) - 1], z[(int)(place >> 18 & 3) - 1]);
 #else
-    global const float *points = in.coordinates + (3 * from + s->point_offset);
+    global const float *points = in.coordinates + (3 * from + s->arrays.point_offset);
     float3 p0 = vload3(0, points), p1 = vload3(step, points);
 #endif
     vstore3(t == 1 ? p1 : p0 + t * (p1 - p0), 0, out);
@@ -111,7 +111,8 @@ inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbou
     return weight * (REAL)positions[n.last] - weight * (REAL)positions[n.first];
 #else
     global const float *points = in.coordinates + row;
-    return weight * (REAL)points[3 * n.after + s->point_offset] - weight * (REAL)points[3 * n.before + s->point_offset];
+    return weight * (REAL)points[3 * n.after + s->arrays.point_offset] -
+           weight * (REAL)points[3 * n.before + s->arrays.point_offset];
 #endif
 }
 
@@ -179,7 +180,7 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
 #if GRID
     gradient_map(j, g, n);
 #else
-    const float *m = s->normal_matrix;
+    const float *m = s->space.normal_matrix;
 #pragma unroll
     for (uint row = 0; row < 3; row++)
         n[row] = -(((REAL)m[3 * row] * g[0] + (REAL)m[3 * row + 1] * g[1]) + (REAL)m[3 * row + 2] * g[2]);

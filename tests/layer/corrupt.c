@@ -45,7 +45,7 @@ static const mistake mistakes[] = {
     {"starved", "uint2 prefix = tile_prefix(",
      "for (uint c = 0; number && c < 2; c++) atomic_xchg(scan_at(tiles, number - 1, c), scan_word(SCAN_EMPTY, 0));\n"
      "uint2 prefix = tile_prefix("},
-    {"comparison", "<= (samples64)(BITS)s->inside_span", "< (samples64)(BITS)s->inside_span"},
+    {"comparison", "<= (samples64)(BITS)test->inside_span", "< (samples64)(BITS)test->inside_span"},
 };
 enum { MISTAKES = sizeof mistakes / sizeof *mistakes };
 static const mistake *made;

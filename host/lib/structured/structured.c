@@ -11,32 +11,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void base_fill(run *r, inside_range inside, double isovalue) {
-    const tc_grid *grid = r->grid;
-    slab *s = &r->base;
-    s->inside_low = inside.low;
-    s->inside_span = inside.span;
-    s->key_flip = inside.key_flip;
-    s->key_inside = inside.key_inside;
-    s->key_outside = inside.key_outside;
-    s->ranges_known = grid->device->ranges_known;
-    s->has_blanked_samples = grid->blanked_samples != NULL;
-    s->has_blanked_cells = grid->blanked_cells != NULL;
-    s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
-    s->nx = (uint32_t)grid->dims[0];
-    s->ny = (uint32_t)grid->dims[1];
-    s->nz = (uint32_t)grid->dims[2];
-    s->words_x = r->plan->words_x;
-    s->bricks_y = r->plan->bricks_y;
-    s->parity = grid_parity(grid);
-    for (int axis = 0; axis < 3; axis++) s->first[axis] = (int32_t)grid->first[axis];
-    s->tile_rows = r->plan->tile_rows;
-    s->tile_layers = r->plan->tile_layers;
-    s->spin_limit = r->grid->scan.spin_limit;
-    s->isovalue32 = (float)isovalue;
-    memcpy(&s->isovalue64, &isovalue, sizeof isovalue);
-    memcpy(s->matrix, grid->matrix, sizeof s->matrix);
-    memcpy(s->normal_matrix, grid->normal_matrix, sizeof s->normal_matrix);
+/* The fields that all slabs share. */
+static slab base_of(const tc_grid *grid, inside_range inside, double isovalue) {
+    const slab_plan *plan = &grid->device->plan;
+    slab s = {.test = isovalue_test_of(inside, isovalue),
+              .arrays = {.has_blanked_samples = grid->blanked_samples != NULL,
+                         .has_blanked_cells = grid->blanked_cells != NULL},
+              .nx = (uint32_t)grid->dims[0],
+              .ny = (uint32_t)grid->dims[1],
+              .nz = (uint32_t)grid->dims[2],
+              .words_x = plan->words_x,
+              .bricks_y = plan->bricks_y,
+              .parity = grid_parity(grid),
+              .first = {(int32_t)grid->first[0], (int32_t)grid->first[1], (int32_t)grid->first[2]},
+              .results = {.ranges_known = grid->device->ranges_known},
+              .tiling = {
+                  .tile_rows = plan->tile_rows, .tile_layers = plan->tile_layers, .spin_limit = grid->scan.spin_limit}};
+    s.test.has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s.test.nodata_bits);
+    memcpy(s.space.matrix, grid->matrix, sizeof s.space.matrix);
+    memcpy(s.space.normal_matrix, grid->normal_matrix, sizeof s.space.normal_matrix);
+    return s;
 }
 
 static uint64_t state_bytes(const run *r) {
@@ -128,9 +122,9 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
                .context = grid->context,
                .plan = &grid->device->plan,
                .method = options->method,
-               .made = channels_asked(options)};
+               .made = channels_asked(options),
+               .base = base_of(grid, inside, options->isovalue)};
     r->copies = r->context->queue;
-    base_fill(r, inside, options->isovalue);
     tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);

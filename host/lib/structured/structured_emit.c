@@ -124,13 +124,14 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
     const cl_uint zero = 0;
-    cl_int error = cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
-                                         (s.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
+    cl_int error =
+        cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
+                              (s.results.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
     if (error) return context_fail(r->context, "clearing the ticket of kernel 2", error);
-    s.vertex_window = (uint32_t)w->vertex0;
-    s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
-    s.vertex_offset = w->vertex_offset;
-    s.triangle_offset = w->triangle_offset;
+    s.mesh.vertex_window = (uint32_t)w->vertex0;
+    s.mesh.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
+    s.mesh.vertex_offset = w->vertex_offset;
+    s.mesh.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
                                          ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
@@ -185,10 +186,10 @@ static tc_status emit_load(run *r, uint32_t n) {
 static void step_describe(const run *r, const emit_step *step, slab *s) {
     const uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
     slab_describe(r, step->place, s);
-    s->vertex_base = (uint32_t)step->slab_vertex;
-    s->vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->head_offset + STATE_VERTICES]);
-    s->brick_first = (s->z0 - s->word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
-    s->brick_last = s->brick_first + (step->row1 - step->row0) * r->plan->words_x;
+    s->mesh.vertex_base = (uint32_t)step->slab_vertex;
+    s->mesh.vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->results.head_offset + STATE_VERTICES]);
+    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
+    s->mesh.brick_last = s->mesh.brick_first + (step->row1 - step->row0) * r->plan->words_x;
 }
 
 static tc_status step_emit(run *r, uint32_t n) {

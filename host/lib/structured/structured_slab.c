@@ -144,7 +144,7 @@ word_buffers *place_words(const run *r, slab_place place) {
 tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
-    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
+    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->results.cell_z;
     const kernel_argument arguments[] = {ARGUMENT(*s),
                                          ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory),
@@ -169,14 +169,14 @@ tc_status slab_load(run *r, slab_place place, bool emits) {
 /* Where the slab's first planes are in their buffers. */
 static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
     const tc_grid *grid = r->grid;
-    uint64_t begin = s->sample_z, end = slab_samples_end(r->plan, grid, slab_index);
+    uint64_t begin = s->arrays.sample_z, end = slab_samples_end(r->plan, grid, slab_index);
     uint64_t cell_end = end < s->nz ? end : s->nz - 1;
-    s->sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
-    s->sample_count = (end - begin) * s->nx * s->ny;
-    s->point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->sample_offset;
-    s->blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->sample_offset;
-    s->blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
-    s->blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
+    s->arrays.sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
+    s->arrays.sample_count = (end - begin) * s->nx * s->ny;
+    s->arrays.point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->arrays.sample_offset;
+    s->arrays.blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->arrays.sample_offset;
+    s->arrays.blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
+    s->arrays.blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
 }
 
 void slab_describe(const run *r, slab_place place, slab *out) {
@@ -185,15 +185,16 @@ void slab_describe(const run *r, slab_place place, slab *out) {
     *s = r->base;
     s->z0 = slab_begin(r->plan, slab_index);
     s->z1 = slab_end(r->plan, r->grid, slab_index);
-    s->word_z = r->plan->words_whole ? 0 : s->z0;
-    s->range_offset = (uint32_t)(s->word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    s->cell_z = s->z0 ? s->z0 - 1 : 0;
-    s->sample_z = slab_samples_begin(r->plan, slab_index);
-    s->head_offset = slab_index * STATE_WORDS;
-    s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
-    s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->results.word_z = r->plan->words_whole ? 0 : s->z0;
+    s->results.range_offset = (uint32_t)(s->results.word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->results.cell_z = s->z0 ? s->z0 - 1 : 0;
+    s->arrays.sample_z = slab_samples_begin(r->plan, slab_index);
+    s->results.head_offset = slab_index * STATE_WORDS;
+    s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
+    s->results.active_offset = (uint32_t)((s->z0 - s->results.word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
-    s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
+    s->tiling.tile_count = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows *
+                           ((layers + s->tiling.tile_layers - 1) / s->tiling.tile_layers);
     slab_offsets(r, slab_index, s);
 }
 

@@ -78,7 +78,7 @@ typedef struct complex_run {
     tc_context *context;
     complex_buffers *work;
     sized_kernel kernels[COMPLEX_KERNELS];
-    slab s; /* the isovalue's part */
+    isovalue_test test;
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool too_large;  /* the surface of a complex that is not cut does not fit */

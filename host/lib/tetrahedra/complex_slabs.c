@@ -111,10 +111,10 @@ static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known
 
 /* Whether the slab may have a surface, by the ranges of its clusters. */
 static bool slab_possible(const slabs_run *t, uint32_t slab_index) {
-    const slab *s = &t->r.s;
+    const isovalue_test *test = &t->r.test;
     const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
     for (uint32_t n = 0; n < slab_cluster_count(t, slab_index); n++)
-        if (ranges[n].low < s->key_inside && ranges[n].high >= s->key_outside) return true;
+        if (ranges[n].low < test->key_inside && ranges[n].high >= test->key_outside) return true;
     return !t->slabs->ranges_known;
 }
 

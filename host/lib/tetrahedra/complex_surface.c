@@ -79,22 +79,12 @@ static tc_status head_read(complex_run *r) {
 
 /* --------------------------------------------------------------------------------------------------- classification */
 
-static void isovalue_describe(complex_run *r, double isovalue) {
-    const inside_range inside = inside_range_of(r->grid->type, isovalue);
-    r->s.inside_low = inside.low;
-    r->s.inside_span = inside.span;
-    r->s.key_flip = inside.key_flip;
-    r->s.key_inside = inside.key_inside;
-    r->s.key_outside = inside.key_outside;
-    r->s.spin_limit = r->grid->scan.spin_limit;
-    r->s.isovalue32 = (float)isovalue;
-    memcpy(&r->s.isovalue64, &isovalue, sizeof isovalue);
-}
-
 static void part_describe(complex_run *r) {
     const complex_part *part = r->part;
-    r->s.ranges_known = part->ranges_known;
-    r->job = (complex_job){.sample_offset = part->sample_offset,
+    r->job = (complex_job){.test = r->test,
+                           .ranges_known = part->ranges_known,
+                           .spin_limit = r->grid->scan.spin_limit,
+                           .sample_offset = part->sample_offset,
                            .point_offset = part->point_offset,
                            .tetrahedron_offset = part->tetrahedron_offset,
                            .point_count = part->point_count,
@@ -109,7 +99,7 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     tc_context *context = grid->context;
     *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
     r->work = &context->work.complex;
-    isovalue_describe(r, isovalue);
+    r->test = isovalue_test_of(inside_range_of(grid->type, isovalue), isovalue);
     context->counted = context->classified = NULL;
     if (grid->complex->slabs) edge_numbers_release(&grid->complex->slabs->edges);
     tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
@@ -143,15 +133,15 @@ tc_status surface_classify(complex_run *r) {
     part_describe(r);
     tc_status status = clusters_reserve(r);
     if (status) return status;
-    const kernel_argument arguments[] = {ARGUMENT(r->s),
-                                         ARGUMENT(r->job),
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->part->samples.memory),
                                          ARGUMENT(r->part->tetrahedra.memory),
                                          ARGUMENT(r->part->ranges.memory),
                                          ARGUMENT(w->clusters.memory),
                                          ARGUMENT(w->active_clusters.memory),
                                          ARGUMENT(w->state.memory)};
-    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments, 8);
+    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments,
+                           sizeof arguments / sizeof *arguments);
     if (!status) status = head_read(r);
     if (!status && r->head[HEAD_INVALID]) status = complex_point_fail(r->complex);
     if (status) return status;
@@ -177,7 +167,9 @@ static tc_status active_list(complex_run *r) {
                                          ARGUMENT(w->active.memory),
                                          ARGUMENT(w->table.memory),
                                          ARGUMENT(w->tiles.memory)};
-    return status ? status : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments, 9);
+    return status ? status
+                  : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments,
+                                  sizeof arguments / sizeof *arguments);
 }
 
 static tc_status table_reserve(complex_run *r, uint64_t entries) {
@@ -200,16 +192,14 @@ static tc_status edges_join(complex_run *r) {
     complex_buffers *w = r->work;
     const kernel_argument join[] = {ARGUMENT(r->job),          ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
                                     ARGUMENT(w->state.memory), ARGUMENT(w->table.memory),  ARGUMENT(w->entries.memory)};
-    const kernel_argument number[] = {ARGUMENT(r->s),
-                                      ARGUMENT(r->job),
-                                      ARGUMENT(w->active.memory),
-                                      ARGUMENT(w->cases.memory),
-                                      ARGUMENT(w->state.memory),
-                                      ARGUMENT(w->tiles.memory),
-                                      ARGUMENT(w->table.memory),
+    const kernel_argument number[] = {ARGUMENT(r->job),           ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
+                                      ARGUMENT(w->state.memory),  ARGUMENT(w->tiles.memory),  ARGUMENT(w->table.memory),
                                       ARGUMENT(w->entries.memory)};
-    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, 6);
-    if (!status) status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number, 8);
+    tc_status status =
+        kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, sizeof join / sizeof *join);
+    if (!status)
+        status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number,
+                               sizeof number / sizeof *number);
     return status ? status : head_read(r);
 }
 
@@ -235,8 +225,7 @@ tc_status surface_number(complex_run *r) {
 
 tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles) {
     const complex_buffers *w = r->work;
-    const kernel_argument arguments[] = {ARGUMENT(r->s),
-                                         ARGUMENT(r->job),
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->part->samples.memory),
                                          ARGUMENT(r->part->points.memory),
                                          ARGUMENT(w->active.memory),
@@ -247,7 +236,8 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
                                          ARGUMENT(w->entries.memory),
                                          ARGUMENT(positions->memory),
                                          ARGUMENT(triangles->memory)};
-    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments, 12);
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments,
+                                     sizeof arguments / sizeof *arguments);
     cl_int error = cl->Finish(r->context->queue);
     return !status && error ? context_fail(r->context, "kernel complex_emit", error) : status;
 }
