@@ -88,7 +88,7 @@ TESTS = {
     "test_device, 64 work-items": test("surface/test_device", "64 work-items*", device=True),
     "test_complex, 64 work-items": test("surface/test_complex", "*u8*, context 4", device=True),
 
-    "test_cli_grids, carry": test("tool/test_cli_grids.py", "*test_carry*", ("reference",)),
+    "test_cli_blocks, carry": test("tool/test_cli_blocks.py", "*test_carry*", ("reference",)),
     "test_cli_cells, carry": test("tool/test_cli_cells.py", "*test_carry*", ("reference",)),
     "test_results": test("tool/test_results.py", "", ("reference",)),
     "test_dropped": test("tool/test_dropped.py", "", ("reference",)),
@@ -121,7 +121,7 @@ FILES = {
     "host/lib/grid/grid.c": ["test_api, reference", "test_random, reference", "test_curvilinear, reference"],
     "host/lib/grid/origin.c": ["test_far, reference"],
     "host/lib/grid/complex.c": ["test_far, reference"],
-    "host/lib/reference/carry_vertex.c": ["test_cli_grids, carry", "test_cli_cells, carry"],
+    "host/lib/reference/carry_vertex.c": ["test_cli_blocks, carry", "test_cli_cells, carry"],
     "host/lib/grid/mesh.c": ["test_api, reference"],
     "host/lib/structured/slab_plan.c": ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
