@@ -72,6 +72,14 @@ static inline uint64_t bytes_advised(const char *name) {
     return allow ? strtoull(allow + 6, NULL, 10) : 0;
 }
 
+/* Buffers of the context have never taken more than the budget. */
+static inline void expect_within(const tc_context *context, uint64_t budget, const char *name) {
+    uint64_t peak = 0;
+    tc_context_device_bytes(context, &peak);
+    EXPECT(peak <= budget, "%s: %llu bytes of buffers, and %llu were allowed", name, (unsigned long long)peak,
+           (unsigned long long)budget);
+}
+
 /* What differs between two meshes; NULL where nothing does. */
 static inline const char *mesh_difference(const tc_mesh_data *a, const tc_mesh_data *b) {
     size_t vertices = 3 * sizeof(float) * (size_t)a->vertex_count;

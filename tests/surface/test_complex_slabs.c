@@ -160,16 +160,13 @@ static bool budget_compare(const subject *s, uint64_t budget, unsigned variant, 
     tc_context *context = bounded_open(budget, variant);
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
-    uint64_t peak;
     tc_status status = tc_tetrahedra_grid_create(context, &s->options, &grid);
     EXPECT(status == TC_OK || status == TC_ERROR_MEMORY, "%s: %s", s->name, tc_message());
     for (int n = 0; n < 3 && !status; n++) {
         uint32_t count = surface_compare(s, grid, &mesh, n, wanted[n], budget);
         if (count > *slabs) *slabs = count;
     }
-    tc_context_device_bytes(context, &peak);
-    EXPECT(peak <= budget, "%s: %llu bytes of buffers, and %llu were allowed", s->name, (unsigned long long)peak,
-           (unsigned long long)budget);
+    expect_within(context, budget, s->name);
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
     tc_context_destroy(context);

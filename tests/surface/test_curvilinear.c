@@ -184,13 +184,10 @@ static void test_budgets(subject *s, int kind, int always_copy) {
         tc_grid *grid = NULL;
         tc_mesh *slabs = NULL;
         tc_mesh_data data = {.struct_size = sizeof data};
-        uint64_t peak;
         tc_status status = tc_grid_create(context, &s->grid, &grid);
         if (!status) status = tc_extract(grid, &s->how, &slabs);
         if (!status) status = tc_mesh_get(slabs, &data);
-        tc_context_device_bytes(context, &peak);
-        EXPECT(peak <= options.max_memory_bytes, "%llu bytes of buffers at a budget of %llu", (unsigned long long)peak,
-               (unsigned long long)options.max_memory_bytes);
+        expect_within(context, options.max_memory_bytes, "budgets");
         const char *difference = status ? NULL : mesh_difference(&expected, &data);
         EXPECT(!difference, "kind %d, copied buffers %d, budget %llu: %s", kind, always_copy,
                (unsigned long long)options.max_memory_bytes, difference);

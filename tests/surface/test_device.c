@@ -188,13 +188,10 @@ static void test_memory_budgets(const subject *s) {
         tc_grid *grid = NULL;
         tc_mesh *mesh = NULL;
         tc_mesh_data data = {.struct_size = sizeof data};
-        uint64_t peak;
         tc_status status = tc_grid_create(context, &s->grid, &grid);
         if (!status) status = tc_extract(grid, &s->how, &mesh);
         if (!status) status = tc_mesh_get(mesh, &data);
-        tc_context_device_bytes(context, &peak);
-        EXPECT(peak <= options.max_memory_bytes, "%s: %llu bytes of buffers at a budget of %llu", s->name,
-               (unsigned long long)peak, (unsigned long long)options.max_memory_bytes);
+        expect_within(context, options.max_memory_bytes, s->name);
         if (status) {
             refused++;
             EXPECT(status == TC_ERROR_MEMORY && !mesh && strstr(tc_message(), "byte"), "%s, budget %llu: status %d, %s",
