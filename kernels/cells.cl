@@ -70,16 +70,16 @@ inline_always lanes cells_before(const slab *s, global const ulong *cells, uint 
 }
 
 /* Keeps the crossings of edges that a present cube contains. */
-inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
+inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *edges) {
     lanes here = cells_rows(s, cells, y, z, w), low_y = cells_rows(s, cells, y - 1, z, w);
     lanes low_z = cells_rows(s, cells, y, z - 1, w), low_yz = cells_rows(s, cells, y - 1, z - 1, w);
     lanes before = cells_before(s, cells, y, z, w);
-    k->type[0] &= here | low_y | low_z | low_yz;
-    k->type[1] &= before | cells_before(s, cells, y, z - 1, w);
-    k->type[2] &= before | cells_before(s, cells, y - 1, z, w);
-    k->type[3] &= here | low_z;
-    k->type[4] &= here | low_y;
-    k->type[5] &= before;
+    edges->type[0] &= here | low_y | low_z | low_yz;
+    edges->type[1] &= before | cells_before(s, cells, y, z - 1, w);
+    edges->type[2] &= before | cells_before(s, cells, y - 1, z, w);
+    edges->type[3] &= here | low_z;
+    edges->type[4] &= here | low_y;
+    edges->type[5] &= before;
 }
 
 #endif

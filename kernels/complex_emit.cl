@@ -7,7 +7,7 @@
 #include "complex_number.cl"
 #include "crossing.cl"
 
-/* The number of the vertex at place `owner`, whose tetrahedron owns it. */
+/* The number of the vertex in slot `owner`, whose tetrahedron owns it. */
 inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
                                  global const uint *tiles) {
     global const active_tetrahedron *t = active + owner / 4;

@@ -16,8 +16,8 @@ typedef struct cluster_state {
     slab_u32 triangles_before;
 } cluster_state;
 
-/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have places 0 to 3 in the order of
- * edges; place n of active tetrahedron a is known as 4 a + n. */
+/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have slots 0 to 3 in the order of
+ * edges; slot n of active tetrahedron a is slot 4 a + n of all. */
 typedef struct active_tetrahedron {
     slab_u32 points[4];
     slab_u32 pattern;  /* bit n: point n is inside */
@@ -27,7 +27,7 @@ typedef struct active_tetrahedron {
 } active_tetrahedron;
 
 /* The table of the 16 cases. For each: the number of crossed edges and of triangles; the two ends of each edge; the
- * triangles' corners, as places of edges. Derived from the tables of host/lib/grid/tables.h. */
+ * triangles' corners, as slots of edges. Derived from the tables of host/lib/grid/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
 /* The head of the state buffer, before the tiles of kernel 1. */

@@ -41,11 +41,11 @@ typedef union keys_parts {
 } keys_parts;
 
 inline_always void line_widen(samples64 keys, line_keys *low, line_keys *high) {
-    keys_parts k = {keys};
+    keys_parts parts = {keys};
     line_keys least = *low, most = *high;
     loop_unrolled for (uint n = 0; n < 64 / LINE_KEYS; n++) {
-        least = k.line[n] < least ? k.line[n] : least;
-        most = k.line[n] > most ? k.line[n] : most;
+        least = parts.line[n] < least ? parts.line[n] : least;
+        most = parts.line[n] > most ? parts.line[n] : most;
     }
     *low = least, *high = most;
 }
@@ -63,10 +63,10 @@ inline_always brick_range line_range(line_keys low, line_keys high) {
 inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, global const BITS *samples,
                                     global ulong *out) {
     ulong valid = word_valid(s, w);
-    for (uint place = 0; place < BRICK_WORDS; place++) {
-        uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+    for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++) {
+        uint y = y0 + brick_row % BRICK_ROWS, z = z0 + brick_row / BRICK_ROWS;
         bool exists = y < s->ny && z < s->z1;
-        out[place] = exists ? word_make(samples_load64(samples, s, y, z, w), &s->test) & valid : 0;
+        out[brick_row] = exists ? word_make(samples_load64(samples, s, y, z, w), &s->test) & valid : 0;
     }
 }
 
@@ -102,16 +102,16 @@ inline_always void strip_visit(const slab *s, strip p, global const BITS *sample
         const bool last = plane + 1 == BRICK_PLANES;
         global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + later * (ulong)s->nx;
         for (uint row = 0; row < rows; row++, ahead += s->nx) {
-            const uint first = row / BRICK_ROWS * p.count, place = BRICK_ROWS * plane + row % BRICK_ROWS;
+            const uint first = row / BRICK_ROWS * p.count, brick_row = BRICK_ROWS * plane + row % BRICK_ROWS;
             if (row + later == rows)
                 ahead = samples + row_start(s, last ? p.y + rows : p.y, last ? p.z : z + 1) + 64ul * p.w;
             for (uint n = 0; n < p.count && row < have; n++) {
                 loop_unrolled for (uint m = 0; m < 64; m += 64 / sizeof(BITS)) line_prefetch(ahead + 64 * n + m);
                 samples64 bits = samples_load64(samples, s, p.y + row, z, p.w + n);
-                word[first + n][place] = word_make(bits, &s->test);
+                word[first + n][brick_row] = word_make(bits, &s->test);
                 line_widen(keys64(bits, &s->test), &low[first + n], &high[first + n]);
             }
-            for (uint n = 0; n < p.count && row >= have; n++) word[first + n][place] = 0;
+            for (uint n = 0; n < p.count && row >= have; n++) word[first + n][brick_row] = 0;
         }
     }
     for (uint n = 0; n < p.rows * p.count; n++) {
@@ -125,8 +125,8 @@ inline_always void strip_visit(const slab *s, strip p, global const BITS *sample
 #endif
         if (sign != SIGN_MIXED) continue;
         ulong valid = word_valid(s, w);
-        for (uint place = 0; place < BRICK_WORDS; place++)
-            words[(ulong)BRICK_WORDS * number + place] = word[n][place] & valid;
+        for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++)
+            words[(ulong)BRICK_WORDS * number + brick_row] = word[n][brick_row] & valid;
     }
 }
 
@@ -158,8 +158,8 @@ inline_always uint run_sign_again(const slab *s, uint y0, uint z0, uint w, uint 
         bricks[first + n].sign = own;
         if (own != SIGN_MIXED) continue;
         mixed |= 1u << n;
-        for (uint place = 0; place < BRICK_WORDS; place++)
-            row_prefetch(s, y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, w + n, 1, samples);
+        for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++)
+            row_prefetch(s, y0 + brick_row % BRICK_ROWS, z0 + brick_row / BRICK_ROWS, w + n, 1, samples);
     }
     return mixed;
 }

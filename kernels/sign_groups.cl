@@ -52,13 +52,13 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         group_barrier();
         for (uint step = 0; step < ROW_PARTS; step++) {
             uint item = step * WORK_ITEMS + (uint)get_local_id(0), b = item / (ROW_PARTS * BRICK_WORDS);
-            uint place = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
-            uint y = y0 + number / s->words_x * BRICK_ROWS + place % BRICK_ROWS, zp = z + place / BRICK_ROWS;
+            uint brick_row = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
+            uint y = y0 + number / s->words_x * BRICK_ROWS + brick_row % BRICK_ROWS, zp = z + brick_row / BRICK_ROWS;
             bool wanted = number < count && y < s->ny && zp < s->z1;
             if (wanted && s->results.ranges_known) wanted = range_sign(&s->test, found[b]) == SIGN_MIXED;
             if (wanted)
                 part_visit(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
-                           words + (ulong)BRICK_WORDS * (first + number) + place, &found[b]);
+                           words + (ulong)BRICK_WORDS * (first + number) + brick_row, &found[b]);
         }
         group_barrier();
         {

@@ -22,7 +22,7 @@ typedef float slab_f32;
 #endif
 
 /* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word. A brick has 32 rows, whose words are
- * consecutive: that of row (y, z) of the brick has place 8 z + y. */
+ * consecutive: that of row (y, z) of the brick has index 8 z + y. */
 enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 
 /* On which side a brick's samples are. Words of uniform bricks are not stored: two bricks of constant words at the
@@ -32,7 +32,7 @@ enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 /* What kernel 1 finds out about a brick. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
-    slab_u32 rows;                /* bit n: the row of place n emits something */
+    slab_u32 rows;                /* bit n: row n of the brick emits something */
     slab_u32 sign;
 } brick_state;
 
@@ -52,7 +52,7 @@ enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* The index of a sample in that table, in samples. */
-#define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
+#define NUMBER_INDEX(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
 
 /* For that kernel the table of cases names lanes. A cube has four rows of samples; from its first sample on,
  * NUMBER_LANES numbers of each row make a vector. A lane is an index into the four vectors, one after another. */

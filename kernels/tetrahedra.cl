@@ -77,20 +77,20 @@ typedef struct crossings {
 } crossings;
 
 inline_always crossings crossings_owned(const cube_rows *r) {
-    crossings k;
-    k.type[0] = (r->a0 ^ r->a1) & r->has_x;
-    k.type[1] = (r->a0 ^ r->b0) & r->has_y;
-    k.type[2] = (r->a0 ^ r->c0) & r->has_z;
-    k.type[3] = k.type[4] = k.type[5] = 0;
-    if (!DIAGONALS) return k;
-    k.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
-    k.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
-    k.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
-    return k;
+    crossings edges;
+    edges.type[0] = (r->a0 ^ r->a1) & r->has_x;
+    edges.type[1] = (r->a0 ^ r->b0) & r->has_y;
+    edges.type[2] = (r->a0 ^ r->c0) & r->has_z;
+    edges.type[3] = edges.type[4] = edges.type[5] = 0;
+    if (!DIAGONALS) return edges;
+    edges.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
+    edges.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
+    edges.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
+    return edges;
 }
 
-inline_always lanes crossings_any(const crossings *k) {
-    return k->type[0] | k->type[1] | k->type[2] | k->type[3] | k->type[4] | k->type[5];
+inline_always lanes crossings_any(const crossings *edges) {
+    return edges->type[0] | edges->type[1] | edges->type[2] | edges->type[3] | edges->type[4] | edges->type[5];
 }
 
 /* Adds a + b + c bit by bit: the sum bits in *sum, the carries returned. */
@@ -172,13 +172,13 @@ inline_always lanes triangles_count(const cube_rows *r, lanes cubes) { return OF
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
  * vertex in its brick: 14 bits, here 0, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
-inline_always lanes offsets_pack(const crossings *k, lanes *vertex_count) {
-    lanes y = lanes_popcount(k->type[0]);
-    lanes z = y + lanes_popcount(k->type[1]);
-    lanes xy = z + lanes_popcount(k->type[2]);
-    lanes xz = xy + lanes_popcount(k->type[3]);
-    lanes yz = xz + lanes_popcount(k->type[4]);
-    *vertex_count = yz + lanes_popcount(k->type[5]);
+inline_always lanes offsets_pack(const crossings *edges, lanes *vertex_count) {
+    lanes y = lanes_popcount(edges->type[0]);
+    lanes z = y + lanes_popcount(edges->type[1]);
+    lanes xy = z + lanes_popcount(edges->type[2]);
+    lanes xz = xy + lanes_popcount(edges->type[3]);
+    lanes yz = xz + lanes_popcount(edges->type[4]);
+    *vertex_count = yz + lanes_popcount(edges->type[5]);
     return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46;
 }
 

@@ -26,13 +26,13 @@ inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->results.word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }
 
-/* The place of a row in its brick. */
-inline_always uint row_place(const slab *s, uint y, uint z) {
+/* The index of a row in its brick. */
+inline_always uint row_in_brick(const slab *s, uint y, uint z) {
     return (z - s->results.word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
 }
 
 inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
-    return BRICK_WORDS * brick_index(s, y, z, w) + row_place(s, y, z);
+    return BRICK_WORDS * brick_index(s, y, z, w) + row_in_brick(s, y, z);
 }
 
 /* The 32 words of brick `number`. The constant words of a brick that is inside have bits set outside the grid too. */
@@ -50,7 +50,7 @@ inline_always bool bits_missing(BITS bits, const isovalue_test *test) {
     return missing;
 }
 
-/* At place n of the sample buffer. */
+/* At index n of the sample buffer. */
 inline_always bool sample_missing(global const BITS *samples, global const uchar *blanked, const slab *s, ulong n) {
     return bits_missing(samples[n], &s->test) ||
            (s->arrays.has_blanked_samples && blanked[n + s->arrays.blanked_offset]);

@@ -16,7 +16,7 @@
 bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const tc_context *context = grid->context;
     return context->options.check_device && surface_needs_kernels(grid, options) &&
-           !context->passed[kind_number(surface_kind(grid, options, emits))];
+           !context->trial_passed[kind_number(surface_kind(grid, options, emits))];
 }
 
 /* ------------------------------------------------------------------------------------------------------- comparison */
@@ -169,6 +169,6 @@ tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool
     const kernel_kind kind = surface_kind(grid, options, emits);
     tc_status status = trial_of_kind(grid->context, kind);
     if (status) return status;
-    grid->context->passed[kind_number(kind)] = true;
+    grid->context->trial_passed[kind_number(kind)] = true;
     return context_progress(grid->context, "trial", 0);
 }

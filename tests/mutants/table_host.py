@@ -352,7 +352,7 @@ MUTANTS = [
             "winding: mirrored grids are not turned over"),
            ("*offset = (uint32_t)((first - start) / 4);", "*offset = 0;", "slabs: a window's place in its page")),
     *group("host/lib/tetrahedra/complex_surface.c",
-           ("places[e] = row[CASE_EDGES]++;", "places[e] = (uint8_t)(3 - row[CASE_EDGES]++);", "case table: places"),
+           ("slots[e] = row[CASE_EDGES]++;", "slots[e] = (uint8_t)(3 - row[CASE_EDGES]++);", "case table: slots"),
            ("row[CASE_TRIANGLES] = c->triangle_count;", "row[CASE_TRIANGLES] = 1;", "case table: one triangle each"),
            ("while (entries < 2ull * r->head[HEAD_CROSSED]) entries *= 2;", "",
             "a table of edges that is full does not grow", SCATTERED),

@@ -74,7 +74,7 @@ isovalue_test isovalue_test_of(inside_range inside, double isovalue) {
     return test;
 }
 
-bool sample_patterns(tc_type type, double value, uint64_t patterns[2]) {
+bool value_bits(tc_type type, double value, uint64_t patterns[2]) {
     patterns[0] = patterns[1] = 0;
     switch (type) {
 #define PATTERN_CASE(type, name, c_type, least, most, ...)                                                             \

@@ -27,6 +27,6 @@ inside_range inside_range_of(tc_type type, double isovalue);
 isovalue_test isovalue_test_of(inside_range inside, double isovalue);
 
 /* Bit patterns of samples that equal `value`: two for zero in floating types. False where no sample can equal it. */
-bool sample_patterns(tc_type type, double value, uint64_t patterns[2]);
+bool value_bits(tc_type type, double value, uint64_t patterns[2]);
 
 #endif

@@ -38,7 +38,7 @@ static const float *channel_values(const tc_mesh *mesh, int channel) {
 }
 
 tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
-    tc_status status = result_begin(data, sizeof *data, "tc_mesh_get: data");
+    tc_status status = struct_clear(data, sizeof *data, "tc_mesh_get: data");
     if (status) return status;
     if (!mesh) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh");
     const tc_mesh_data found = {.struct_size = sizeof found,
@@ -51,7 +51,7 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
                                 .slab_count = mesh->slab_count,
                                 .timings = mesh->timings,
                                 .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
-    result_give(data, &found);
+    struct_copy_out(data, &found);
     return TC_OK;
 }
 

@@ -52,7 +52,7 @@ owned_edge edge_between(unsigned corner_a, unsigned corner_b);
 extern const owned_edge cube_edges[CUBE_EDGES];
 
 /* The index in cube_edges of the edge between two corners. */
-uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b);
+uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
 /* What all tetrahedra of a cube emit, derived from the tables above; edges are indices in cube_edges. */
 typedef struct cube_case {
@@ -68,4 +68,3 @@ typedef void cases_derive(cube_case cases[2][256], int mirrored);
 cases_derive tetra_cases_derive, hybrid_cases_derive;
 
 #endif
-

@@ -97,7 +97,7 @@ tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const v
 
 /* Releases the workspace, with the results of kernel 1 in it. */
 void workspace_release(tc_context *context) {
-    context->counted = context->classified = NULL;
+    context->counted_grid = context->classified_grid = NULL;
     device_buffer *buffers = (device_buffer *)&context->work;
     for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
 }

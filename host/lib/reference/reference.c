@@ -214,7 +214,7 @@ static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
     return r->ids[layer & 1] + sample * EDGES_PER_SAMPLE + type;
 }
 
-static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
     for (int type = 0; type < methods[r->method].edge_types; type++)
         for (int64_t x = x0; x < x1; x++) {
@@ -306,9 +306,9 @@ static void layer_run(reference *r, int64_t layer, row_stage *stage) {
 static tc_status layers_run(reference *r, const char *stage, double before, double share) {
     int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    layer_run(r, 0, row_number);
+    layer_run(r, 0, row_vertices);
     for (int64_t layer = 0; layer < layer_count; layer++) {
-        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_number);
+        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_vertices);
         layer_run(r, layer, row_triangulate);
         tc_status status =
             context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
@@ -391,7 +391,7 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
     if (!status) status = ids_allocate(&r);
     if (!status) {
         r.mesh = mesh;
-        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
+        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_vertices);
         status = mesh_complete(&r, false);
     }
     reference_end(&r);
@@ -405,7 +405,7 @@ tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options
     tc_status status = reference_begin(&r, grid, options);
     r.carried = c;
     for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
-        layer_run(&r, layer, row_number);
+        layer_run(&r, layer, row_vertices);
         status = context_progress(grid->context, "carry", (double)(layer + 1) / (double)layer_count);
     }
     *vertex_count = r.vertex_count;

@@ -81,7 +81,7 @@ static tc_status change_fail(void) {
 }
 
 /* The number of the vertex on the edge of two points; makes the vertex when the edge is first met. */
-static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
+static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     tc_status status = table_grow(r);
     if (status) return status;
@@ -123,7 +123,7 @@ static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
     for (int e = 0; e < 6 && !status; e++) {
         const uint8_t *ends = tetrahedron_edges[e];
         if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
-            status = edge_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
+            status = edge_vertex_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
     }
     for (unsigned n = 0; n < c->triangle_count && !status; n++, r->triangle_count++) {
         if (!r->mesh) continue;

@@ -27,7 +27,7 @@ static slab base_of(const tc_grid *grid, inside_range inside, double isovalue) {
               .results = {.ranges_known = grid->device->ranges_known},
               .tiling = {
                   .tile_rows = plan->tile_rows, .tile_layers = plan->tile_layers, .spin_limit = grid->scan.spin_limit}};
-    s.test.has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s.test.nodata_bits);
+    s.test.has_nodata = grid->has_nodata && value_bits(grid->type, grid->nodata, s.test.nodata_bits);
     memcpy(s.space.matrix, grid->matrix, sizeof s.space.matrix);
     memcpy(s.space.normal_matrix, grid->normal_matrix, sizeof s.space.normal_matrix);
     return s;
@@ -94,11 +94,11 @@ static tc_status workspace_reserve(run *r) {
                                    {&w->state, state_bytes(r), "the scan"},
                                    {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
-    if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
+    if (r->context->workspace_grid != r->grid && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
         workspace_release(r->context); /* with buffers of another grid it could exceed the budget */
     }
-    r->context->served = r->grid;
+    r->context->workspace_grid = r->grid;
     windows_trim(r);
     tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
     for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
@@ -148,27 +148,25 @@ void run_end(run *r, tc_status status) {
 
 /* -------------------------------------------------------------------------------------------------- classification */
 
-static slab_place classify_place(const run *r, uint32_t slab_index) {
-    return (slab_place){slab_index, slab_index % plan_window_count(r->plan)};
+static slab_ref classify_ref(const run *r, uint32_t slab_index) {
+    return (slab_ref){slab_index, slab_index % plan_window_count(r->plan)};
 }
 
-static tc_status classify_load(run *r, uint32_t slab_index) {
-    return slab_load(r, classify_place(r, slab_index), false);
-}
+static tc_status classify_load(run *r, uint32_t slab_index) { return slab_load(r, classify_ref(r, slab_index), false); }
 
-static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_place(r, slab_index)); }
+static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_ref(r, slab_index)); }
 
 static tc_status slab_classify(run *r, uint32_t slab_index) {
-    slab_place place = classify_place(r, slab_index);
+    slab_ref ref = classify_ref(r, slab_index);
     workspace *work = &r->context->work;
-    word_buffers *w = place_words(r, place);
+    word_buffers *w = slab_words(r, ref);
     slab s;
-    slab_describe(r, place, &s);
-    tc_status status = slab_mark_cells(r, place, &s);
+    slab_describe(r, ref, &s);
+    tc_status status = slab_mark_cells(r, ref, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(r->grid->device->ranges.memory),
                                          ARGUMENT(w->words.memory),
@@ -220,7 +218,7 @@ static tc_status slabs_classify(run *r) {
  * missing cells, and remembered as such. */
 static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits,
                           double share) {
-    grid->context->counted = grid->context->classified = NULL; /* the workspace is overwritten from here on */
+    grid->context->counted_grid = grid->context->classified_grid = NULL; /* the workspace is overwritten from here on */
     slab_store_release(&grid->device->store);
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
@@ -244,7 +242,7 @@ static void results_keep(tc_grid *grid, const tc_extract_options *options, run *
     free(device->heads);
     device->heads = r ? r->heads : NULL;
     device->classified_options = *options;
-    grid->context->classified = grid;
+    grid->context->classified_grid = grid;
     if (!r) return;
     r->heads = NULL;
     if (!device->carries) return;

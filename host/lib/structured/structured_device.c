@@ -13,7 +13,7 @@
 static tc_status counted_check(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
     const tc_extract_options *counted = &device->classified_options;
-    if (grid->context->counted != grid || counted->isovalue != options->isovalue ||
+    if (grid->context->counted_grid != grid || counted->isovalue != options->isovalue ||
         counted->method != options->method || channels_asked(counted) != channels_asked(options))
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "tc_emit emits what tc_count has counted just before: count this grid "

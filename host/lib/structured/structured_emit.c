@@ -12,15 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint64_t page_bytes = 4096;
-
 /* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
 static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
                            uint32_t *offset, const char *name) {
     *offset = 0;
     if (first == end) return buffer_reserve(r->context, buffer, 4, name);
     if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
-    uint64_t start = first & ~(page_bytes - 1);
+    uint64_t start = first & ~(uint64_t)(PAGE_BYTES - 1);
     *offset = (uint32_t)((first - start) / 4);
     return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
 }
@@ -115,11 +113,11 @@ static tc_status cases_provide(run *r, device_buffer **out) {
 }
 
 /* Emits the active bricks of s among [brick_first, brick_last). */
-static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
+static tc_status bricks_emit(run *r, slab_ref ref, slab s, const mesh_window *w, uint64_t slab_triangle) {
     workspace *work = &r->context->work;
-    const word_buffers *words = place_words(r, place);
+    const word_buffers *words = slab_words(r, ref);
     const device_buffer *coordinates =
-        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : place_array(r, place, ARRAY_POINTS);
+        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : slab_array(r, ref, ARRAY_POINTS);
     device_buffer *cases;
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
@@ -133,7 +131,7 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
     s.mesh.vertex_offset = w->vertex_offset;
     s.mesh.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(words->words.memory),
                                          ARGUMENT(words->offsets.memory),
@@ -146,14 +144,14 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(w->buffers->channels[CHANNEL_NORMALS].memory),
                                          ARGUMENT(w->buffers->triangles.memory),
                                          ARGUMENT(coordinates->memory),
-                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
+                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory)};
     return kernel_launch(r->context, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
-/* -------------------------------------------------------------------------------------------------------- emission */
+/* -------------------------------------------------------------------------------------------------------- emit_plan */
 
 /* Reserves windows for the largest step at once, as a window must not grow while copies from it run. */
-static tc_status windows_reserve(run *r, emission *e) {
+static tc_status windows_reserve(run *r, emit_plan *e) {
     mesh_window largest = {0};
     tc_status status = TC_OK;
     steps_largest(e, &largest.vertex1, &largest.triangle1);
@@ -165,7 +163,7 @@ static tc_status windows_reserve(run *r, emission *e) {
 }
 
 /* Releases buffers of an extraction with other windows, which would exceed the budget together with the new ones. */
-static tc_status windows_begin(run *r, emission *e) {
+static tc_status windows_begin(run *r, emit_plan *e) {
     mesh_buffers *buffers = r->context->work.mesh;
     mesh_buffers_release(r->context, &buffers[1]);
     if (e->window_count) mesh_buffers_release(r->context, &buffers[0]);
@@ -177,15 +175,15 @@ static tc_status windows_begin(run *r, emission *e) {
 }
 
 static tc_status emit_load(run *r, uint32_t n) {
-    const emit_step *step = &r->emission->steps[n];
+    const emit_step *step = &r->emit_plan->steps[n];
     if (!step->opens_slab) return TC_OK;
-    tc_status status = slab_load(r, step->place, true);
-    return status ? status : slab_restore(r, step->place);
+    tc_status status = slab_load(r, step->ref, true);
+    return status ? status : slab_restore(r, step->ref);
 }
 
 static void step_describe(const run *r, const emit_step *step, slab *s) {
     const uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
-    slab_describe(r, step->place, s);
+    slab_describe(r, step->ref, s);
     s->mesh.vertex_base = (uint32_t)step->slab_vertex;
     s->mesh.vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->results.head_offset + STATE_VERTICES]);
     s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
@@ -193,20 +191,20 @@ static void step_describe(const run *r, const emit_step *step, slab *s) {
 }
 
 static tc_status step_emit(run *r, uint32_t n) {
-    emission *e = r->emission;
+    emit_plan *e = r->emit_plan;
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
     const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has overwritten that */
-    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->place, &s) : TC_OK;
+    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->ref, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;
-    return bricks_emit(r, step->place, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
+    return bricks_emit(r, step->ref, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
 }
 
 /* The last copy is timed: it begins when all kernels have ended. */
 static tc_status emit_unload(run *r, uint32_t n) {
-    emission *e = r->emission;
+    emit_plan *e = r->emit_plan;
     const emit_step *step = &e->steps[n];
     if (n + 1 == e->step_count) {
         cl_int error = cl->Finish(r->context->queue);
@@ -218,7 +216,7 @@ static tc_status emit_unload(run *r, uint32_t n) {
 }
 
 /* Steps may only overlap where what they have loaded does not share a window. */
-static tc_status steps_emit(run *r, emission *e) {
+static tc_status steps_emit(run *r, emit_plan *e) {
     const step_stages stages = {"emit", 0.5, 0.5, emit_load, step_emit, emit_unload};
     tc_status status = windows_begin(r, e);
     if (!status) status = steps_run(r, &stages, e->step_count, r->plan->overlaps && e->window_count != 1);
@@ -230,21 +228,21 @@ static tc_status steps_emit(run *r, emission *e) {
 }
 
 tc_status slabs_emit_whole(run *r, mesh_buffers *buffers) {
-    emission e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
-    r->emission = &e;
+    emit_plan e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
+    r->emit_plan = &e;
     tc_status status = steps_plan(r, &e, true);
     for (uint32_t n = 0; n < e.step_count && !status; n++) status = step_emit(r, n);
     free(e.steps);
-    r->emission = NULL;
+    r->emit_plan = NULL;
     return status;
 }
 
 tc_status slabs_emit(run *r, tc_mesh *mesh) {
-    emission e = {.mesh = mesh};
-    r->emission = &e;
+    emit_plan e = {.mesh = mesh};
+    r->emit_plan = &e;
     tc_status status = steps_plan(r, &e, window_fits(r, r->vertex_count, r->triangle_count, 1));
     if (!status) status = steps_emit(r, &e);
     free(e.steps);
-    r->emission = NULL;
+    r->emit_plan = NULL;
     return status;
 }

@@ -23,10 +23,10 @@ tc_status complex_device_create(tc_grid *grid) {
 
 void complex_device_destroy(tc_grid *grid) {
     struct complex_slabs *slabs = grid->complex->slabs;
-    if (grid->context->served == grid) grid->context->served = NULL;
+    if (grid->context->workspace_grid == grid) grid->context->workspace_grid = NULL;
     part_tetrahedra_release(grid);
     part_points_release(grid);
-    if (grid->context->classified == grid) grid->context->classified = NULL;
+    if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
     if (slabs) free(slabs->ranges);
     if (slabs) edge_numbers_release(&slabs->edges);
     free(slabs);
@@ -39,7 +39,7 @@ static tc_status cut_later(complex_run *r) {
     if (status) return status;
     part_tetrahedra_release(r->grid);
     part_points_release(r->grid);
-    r->context->served = NULL; /* the workspace is too large */
+    r->context->workspace_grid = NULL; /* the workspace is too large */
     return TC_OK;
 }
 

@@ -32,9 +32,6 @@ uint32_t complex_cluster_count(uint64_t tetrahedron_count);
 uint32_t complex_tile_clusters(const tc_grid *grid);
 uint32_t complex_tile_actives(const tc_grid *grid);
 
-/* What device buffers may have together, in bytes. */
-uint64_t complex_budget(const tc_context *context);
-
 /* Whether kernel 1 can run over the complex whole. */
 bool complex_fits(const tc_grid *grid);
 

@@ -145,7 +145,7 @@ static tc_status vertices_join(slabs_run *t, const active_tetrahedron *a) {
         const uint8_t *ends = t->cases[a->pattern] + CASE_ENDS + 2 * __builtin_ctz(rest);
         const uint32_t p = names ? names[a->points[ends[0]]] : a->points[ends[0]];
         const uint32_t q = names ? names[a->points[ends[1]]] : a->points[ends[1]];
-        tc_status status = edge_number(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
+        tc_status status = edge_numbers_find(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
         if (status) return status;
         t->number_count++;
     }
@@ -209,15 +209,15 @@ tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, dou
 /* -------------------------------------------------------------------------------------------------------- emission */
 
 /* What has been emitted of the mesh, and the positions of a slab. */
-typedef struct emission {
+typedef struct joined_mesh {
     tc_mesh *mesh;
     const uint32_t *numbers; /* of the slab's vertices */
     uint64_t vertex_count, triangle_count;
     float *positions;
     double readback_ms;
-} emission;
+} joined_mesh;
 
-static tc_status positions_allocate(const slabs_run *t, emission *e) {
+static tc_status positions_allocate(const slabs_run *t, joined_mesh *e) {
     uint32_t most = 0;
     for (uint32_t n = 0; n < t->slabs->slab_count; n++)
         if (t->totals[n].vertices > most) most = t->totals[n].vertices;
@@ -226,7 +226,7 @@ static tc_status positions_allocate(const slabs_run *t, emission *e) {
 }
 
 /* Reads what the slab has emitted, triangles to where they belong. */
-static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) {
+static tc_status slab_read(const slabs_run *t, slab_totals totals, joined_mesh *e) {
     const mesh_buffers *m = &t->r.context->work.mesh[0];
     cl_command_queue queue = t->r.context->queue;
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
@@ -239,7 +239,7 @@ static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) 
 }
 
 /* Puts the slab's new vertices behind the others, and gives its triangles the numbers in the mesh. */
-static void slab_place(slab_totals totals, emission *e) {
+static void slab_append(slab_totals totals, joined_mesh *e) {
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
     float *positions = e->mesh->channels[CHANNEL_POSITIONS].memory;
     for (uint32_t n = 0; n < totals.vertices; n++)
@@ -250,7 +250,7 @@ static void slab_place(slab_totals totals, emission *e) {
     e->triangle_count += totals.triangles;
 }
 
-static tc_status slab_emit(slabs_run *t, uint32_t slab_index, emission *e) {
+static tc_status slab_emit(slabs_run *t, uint32_t slab_index, joined_mesh *e) {
     const slab_totals totals = t->totals[slab_index];
     mesh_buffers *m = &t->r.context->work.mesh[0];
     const uint64_t vertex_bytes = CHANNEL_BYTES * (uint64_t)totals.vertices;
@@ -264,14 +264,14 @@ static tc_status slab_emit(slabs_run *t, uint32_t slab_index, emission *e) {
     if (!status) status = surface_emit(&t->r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
     if (!status) status = slab_read(t, totals, e);
-    if (!status) slab_place(totals, e);
+    if (!status) slab_append(totals, e);
     e->readback_ms += clock_ms() - emitted;
     return status;
 }
 
 static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
     const uint32_t count = t->slabs->slab_count;
-    emission e = {.mesh = mesh, .numbers = t->numbers};
+    joined_mesh e = {.mesh = mesh, .numbers = t->numbers};
     tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, POSITIONS_ALONE);
     if (!t->r.complex->carries) edge_numbers_release(&t->edges);
     if (!status) status = positions_allocate(t, &e);

@@ -15,7 +15,7 @@
 
 bool surface_fits(complex_run *r, uint64_t bytes) {
     const tc_context *context = r->context;
-    const uint64_t budget = complex_budget(context);
+    const uint64_t budget = context_budget(context);
     if (r->complex->slabs) return true; /* slabs are cut to fit */
     if (bytes > context->info.max_buffer_bytes || context->device_bytes > budget ||
         bytes > budget - context->device_bytes)
@@ -36,16 +36,15 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]) {
     memset(cases, 0, 16 * CASE_BYTES);
     for (unsigned pattern = 0; pattern < 16; pattern++) {
         const tetrahedron_case *c = &tetrahedron_cases[pattern];
-        uint8_t *row = cases[pattern], places[6] = {0};
+        uint8_t *row = cases[pattern], slots[6] = {0};
         for (unsigned e = 0; e < 6; e++) {
             const uint8_t *ends = tetrahedron_edges[e];
             if ((pattern >> ends[0] & 1) == (pattern >> ends[1] & 1)) continue;
-            places[e] = row[CASE_EDGES]++;
-            memcpy(row + CASE_ENDS + 2 * places[e], ends, 2);
+            slots[e] = row[CASE_EDGES]++;
+            memcpy(row + CASE_ENDS + 2 * slots[e], ends, 2);
         }
         row[CASE_TRIANGLES] = c->triangle_count;
-        for (unsigned n = 0; n < 3u * c->triangle_count; n++)
-            row[CASE_CORNERS + n] = places[c->triangles[n / 3][n % 3]];
+        for (unsigned n = 0; n < 3u * c->triangle_count; n++) row[CASE_CORNERS + n] = slots[c->triangles[n / 3][n % 3]];
     }
 }
 
@@ -100,21 +99,21 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
     r->work = &context->work.complex;
     r->test = isovalue_test_of(inside_range_of(grid->type, isovalue), isovalue);
-    context->counted = context->classified = NULL;
+    context->counted_grid = context->classified_grid = NULL;
     if (grid->complex->slabs) edge_numbers_release(&grid->complex->slabs->edges);
     tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
-    if (context->served != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
+    if (context->workspace_grid != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
         cl->Finish(context->queue);
         workspace_release(context);
     }
-    context->served = grid;
+    context->workspace_grid = grid;
     return cases_provide(context, &r->work->cases);
 }
 
 void complex_classified_note(tc_grid *grid, double isovalue, surface_size size) {
-    grid->context->classified = grid;
+    grid->context->classified_grid = grid;
     grid->complex->classified_isovalue = isovalue;
     grid->complex->size = size;
 }
