@@ -6,7 +6,7 @@
 Each file PART.json has `part`, `date`, `versions`, `seconds` and `figures`, a list of {`what`, `value`}. The table goes
 between the page's trust:begin and trust:end comments, behind it one of `drivers`, where a part has such a list (those of
 tests/systems/drivers.py, each with its system); what kernels need on GPUs, from offline.json, between offline:begin and
-offline:end. tests/test_readme.py compares both with the results.
+offline:end. tests/package/test_readme.py compares both with the results.
 """
 
 import argparse

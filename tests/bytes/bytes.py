@@ -8,13 +8,14 @@ oclgrind.py.
 Usage: bytes.py TEST_BYTES FOLDER, FOLDER for the second implementation and caches
 With TETRACUBES_RESULTS in the environment, a folder, the figures go to bytes.json in it.
 """
-import datetime
-import json
 import os
 import re
 import subprocess
 import sys
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -78,9 +79,6 @@ def differences(done):
 
 
 def results_write(done, seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder:
-        return
     whole = [one for one in done if one["tier"] == "whole"]
     versions = {one["platform"]: one["driver"] for one in done}
     figures = [("cases of grids, one hash each", max(one["cases"] for one in whole)),
@@ -88,12 +86,8 @@ def results_write(done, seconds):
                ("implementations of OpenCL with the same bytes", len(versions)),
                ("meshes with the reference's hash", sum(one["meshes"] for one in done)),
                ("of these made in slabs", sum(one["slab_meshes"] for one in done))]
-    with open(os.path.join(folder, "bytes.json"), "w") as file:
-        json.dump({"part": "bytes", "date": datetime.date.today().isoformat(), "versions": versions,
-                   "seconds": round(seconds), "figures": [{"what": name, "value": value} for name, value in figures],
-                   "runs": [{key: one[key] for key in one if key != "hashes"} for one in done],
-                   "hashes": whole[0]["hashes"]}, file, indent=1)
-        file.write("\n")
+    part_write("bytes", versions, figures, seconds, hashes=whole[0]["hashes"],
+               runs=[{key: one[key] for key in one if key != "hashes"} for one in done])
 
 
 def main():

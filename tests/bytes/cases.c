@@ -1,8 +1,8 @@
 #include "cases.h"
 
-#include "../complex.h"
-#include "../random.h"
-#include "../samples.h"
+#include "complex.h"
+#include "random.h"
+#include "samples.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,8 +10,6 @@ a compiler takes minutes under valgrind.
 Usage: memcheck.py quick|long TEST_BYTES FAULTS PLAIN_PROCESSOR
 With TETRACUBES_RESULTS in the environment, a folder, the figures of a long run go to memcheck.json in it.
 """
-import datetime
-import json
 import os
 import re
 import shutil
@@ -19,6 +17,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOUND = 99  # exit status of valgrind where it has findings
@@ -84,18 +85,10 @@ def cases_check(runs, program, text):
 
 
 def results_write(cases, meshes, device, seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder:
-        return
     valgrind = run(["valgrind", "--version"], None)[1].split("-")[-1].strip()
-    what = [("cases on PoCL under valgrind, memory and uninitialised values", cases), ("meshes of these", meshes),
-            ("findings", 0), ("planted faults reported", sum(1 for _, wanted in FAULTS if wanted))]
-    with open(os.path.join(folder, "memcheck.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "memcheck", "date": datetime.date.today().isoformat(),
-                   "versions": {"valgrind": valgrind, "device": device[0], "driver": device[1]},
-                   "seconds": round(seconds), "figures": [{"what": name, "value": value} for name, value in what]},
-                  file, indent=1)
-        file.write("\n")
+    figures = [("cases on PoCL under valgrind, memory and uninitialised values", cases), ("meshes of these", meshes),
+               ("findings", 0), ("planted faults reported", sum(1 for _, wanted in FAULTS if wanted))]
+    part_write("memcheck", {"valgrind": valgrind, "device": device[0], "driver": device[1]}, figures, seconds)
 
 
 def main():

@@ -8,15 +8,16 @@ each check reports. Triangle soups are the writers' work: no kernel makes them.
 Usage: oclgrind.py quick|long TEST_BYTES FAULTS WRITE_LAYER
 With TETRACUBES_RESULTS in the environment, a folder, the figures of a long run go to oclgrind.json in it.
 """
-import datetime
 import glob
-import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 # Kernels as they are written: optimised ones have instructions that the simulator does not know; so has prefetching.
 BUILD_OPTIONS = "-cl-opt-disable -Dinline_always= -Dline_prefetch(x)="
@@ -119,19 +120,12 @@ def cases_check(program, tier, text, checks, layer, figures):
 
 
 def results_write(races, uninitialised, seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder:
-        return
-    what = [("cases under Oclgrind, memory, races and calls", races["cases"]),
-            ("meshes of these", races["meshes"]),
-            ("cases under Oclgrind, uninitialised values", uninitialised["cases"]),
-            ("meshes of these", uninitialised["meshes"]),
-            ("planted faults reported", sum(1 for fault in FAULTS if fault[2]))]
-    with open(os.path.join(folder, "oclgrind.json"), "w") as file:
-        json.dump({"part": "oclgrind", "date": datetime.date.today().isoformat(),
-                   "versions": {"Oclgrind": races["version"]}, "seconds": round(seconds),
-                   "figures": [{"what": name, "value": value} for name, value in what]}, file, indent=1)
-        file.write("\n")
+    figures = [("cases under Oclgrind, memory, races and calls", races["cases"]),
+               ("meshes of these", races["meshes"]),
+               ("cases under Oclgrind, uninitialised values", uninitialised["cases"]),
+               ("meshes of these", uninitialised["meshes"]),
+               ("planted faults reported", sum(1 for fault in FAULTS if fault[2]))]
+    part_write("oclgrind", {"Oclgrind": races["version"]}, figures, seconds)
 
 
 def main():

@@ -16,8 +16,8 @@
  */
 #include "cases.h"
 
-#include "../engines.h"
-#include "../random.h"
+#include "engines.h"
+#include "random.h"
 
 #include <inttypes.h>
 
@@ -94,9 +94,7 @@ static uint64_t hash_of(tc_context *context, const case_data *data, bool again, 
 static tc_context *variant_open(const variant *v, uint64_t memory) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.work_items = v->work_items;
     expert.work_groups = v->work_groups;
     expert.tile_bricks = v->tile_bricks;
@@ -187,9 +185,7 @@ static void device_tell(void) {
     printf("device %s, %s, driver %s\n", info.platform, info.name, info.driver);
     printf("launched with %u work-items as %s, version %s\n", tuning.work_items, info.type, info.version);
     tc_context_destroy(device);
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.work_items = 1;
     takes_alone = !tc_context_create(&options, &alone);
     tc_context_destroy(alone);

@@ -11,10 +11,10 @@ import json
 import os
 import sys
 import time
-import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import test_cli  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from part import part_write
 
 LAYER = None
 IS_LONG = False
@@ -42,7 +42,7 @@ QUICK_MISTAKES = [("division", "u8"), ("fallback", "u8")]
 NOT_AVAILABLE = -2
 
 
-class DriverCase(test_cli.Case):
+class DriverCase(tool_case.Case):
     def layer(self, command):
         return {"OPENCL_LAYERS": LAYER, "TETRACUBES_LAYER": command, "TETRACUBES_CACHE_DIR": ""}
 
@@ -178,26 +178,21 @@ class Lost(DriverCase):
 
 
 def write_figures(seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder or not IS_LONG:
+    if not IS_LONG:
         return
-    version = test_cli.tool("devices", "--json", env={"OPENCL_LAYERS": ""})
+    version = tool_case.tool("devices", "--json", env={"OPENCL_LAYERS": ""})
     devices = json.loads(version.stdout)["devices"] if not version.returncode else []
     names = {"planted": "corrupting devices planted", "caught": "corrupting devices refused by extract",
              "selftests": "corrupting devices that failed the self-test", "lost": "devices that went away"}
-    with open(os.path.join(folder, "drivers.json"), "w") as file:
-        json.dump({"part": "drivers", "date": time.strftime("%Y-%m-%d"),
-                   "versions": {device["platform"]: device["driver"] for device in devices},
-                   "seconds": round(seconds),
-                   "figures": [{"what": names[key], "value": FIGURES[key]} for key in names]}, file, indent=1)
-        file.write("\n")
+    part_write("drivers", {device["platform"]: device["driver"] for device in devices},
+               [(what, FIGURES[key]) for key, what in names.items()], seconds)
 
 
 if __name__ == "__main__":
-    test_cli.TOOL, LAYER = (os.path.abspath(path) for path in sys.argv[1:3])
+    LAYER = os.path.abspath(sys.argv[2])
     IS_LONG = "long" in sys.argv[3:]
     begin = time.monotonic()
-    result = unittest.main(argv=sys.argv[:1], exit=False).result
+    result = tool_case.main(exit=False).result
     if result.wasSuccessful():
         write_figures(time.monotonic() - begin)
     sys.exit(not result.wasSuccessful())

@@ -13,17 +13,16 @@ import resource
 import signal
 import subprocess
 import sys
-import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import test_cli  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
 
 STRIKE = None
 OLD = b"what was there before"
 NOBODY = 65534
 
 
-class EndCase(test_cli.Case):
+class EndCase(tool_case.Case):
     def setUp(self):
         super().setUp()
         self.volume = self.generate("noise", "a.nrrd", "40,30,20", "f32")
@@ -43,7 +42,7 @@ class EndCase(test_cli.Case):
 
     def struck(self, status, arguments, says=None, **strike):
         environment = dict(strike, LD_PRELOAD=STRIKE)
-        result = test_cli.tool(*arguments, env=environment)
+        result = tool_case.tool(*arguments, env=environment)
         told = f"{arguments} {strike}: status {result.returncode}, {result.stderr!r}"
         self.assertEqual(result.returncode, status, told)
         if says:
@@ -85,8 +84,7 @@ class Struck(EndCase):
 
     def test_signals_cancel_with_kernels(self):
         """Compilers of kernels put handlers of their own before others'."""
-        if not test_cli.HAS_DEVICE:
-            self.skipTest("no OpenCL device")
+        self.needs_device()
         arguments = ["extract", self.volume, "--iso", "127.5", "-o", self.path("out.ply")]
         self.expect(0, *arguments)  # whose kernels are in PoCL's cache from here on: what is written is the mesh
         os.unlink(self.path("out.ply"))
@@ -100,7 +98,7 @@ class Struck(EndCase):
         """Nobody reads the pipe, so the run cannot go on to where it would see the first."""
         os.mkfifo(self.path("pipe.obj"))
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT):
-            process = subprocess.Popen([test_cli.TOOL, *self.extract, "-o", self.path("pipe.obj")],
+            process = subprocess.Popen([tool_case.TOOL, *self.extract, "-o", self.path("pipe.obj")],
                                        stderr=subprocess.PIPE, preexec_fn=lambda: resource.setrlimit(
                                            resource.RLIMIT_CORE, (0, 0)))
             self.addCleanup(process.kill)
@@ -223,7 +221,7 @@ class Places(EndCase):
         os.mkdir(locked, 0o555)
         for arguments, name in self.outputs():
             try:
-                result = subprocess.run([test_cli.TOOL, *arguments, os.path.join(locked, name)], stderr=subprocess.PIPE,
+                result = subprocess.run([tool_case.TOOL, *arguments, os.path.join(locked, name)], stderr=subprocess.PIPE,
                                         text=True, preexec_fn=drop, timeout=1000)
             except PermissionError:
                 self.skipTest("nobody may not run the tool here")
@@ -252,7 +250,7 @@ class Places(EndCase):
                     arguments = [*arguments[:-1], self.path("pipe.raw")]
                 reader, writer = os.pipe()
                 os.close(reader)
-                result = subprocess.run([test_cli.TOOL, *arguments], stdout=writer, stderr=subprocess.PIPE, text=True,
+                result = subprocess.run([tool_case.TOOL, *arguments], stdout=writer, stderr=subprocess.PIPE, text=True,
                                         restore_signals=False, timeout=1000,
                                         preexec_fn=lambda: signal.signal(signal.SIGPIPE, handling))
                 os.close(writer)
@@ -290,7 +288,7 @@ class Inputs(EndCase):
         yield ["extract", volume, "--iso", "127.5", "--engine", "reference", "--count"], None
         yield ["tetrahedralize", volume, "--quiet", "-o"], "out.vtu"
         yield ["info", volume], None
-        if test_cli.HAS_DEVICE:
+        if tool_case.HAS_DEVICE:
             yield ["extract", volume, "--iso", "127.5", "-o"], "out.ply"
             yield ["extract", volume, "--iso", "127.5", "--engine", "auto", "-o"], "out.ply"
             yield ["extract", volume, "--iso", "127.5", "--verify"], None
@@ -315,7 +313,7 @@ class Inputs(EndCase):
                     file.write(whole)
 
     def test_input_changes(self):
-        """Written to when it has been mapped: no surface of samples that were never there together passes for one."""
+        """The input is written to after it was mapped: samples that were never there together make no surface."""
         whole = self.content(self.volume)
         for at in (2000, len(whole) - 1):
             for arguments, name in self.commands(self.volume):
@@ -341,8 +339,6 @@ class Inputs(EndCase):
 
 
 if __name__ == "__main__":
-    test_cli.TOOL = os.path.abspath(sys.argv[1])
-    test_cli.HAS_DEVICE = "reference" not in sys.argv[3:]
     STRIKE = os.path.abspath(sys.argv[2])
-    test_cli.signals_as_usual()
-    unittest.main(argv=sys.argv[:1] + test_cli.chosen())
+    tool_case.signals_as_usual()
+    tool_case.main()

@@ -9,11 +9,10 @@ import json
 import os
 import subprocess
 import sys
-import unittest
 import xml.etree.ElementTree
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import test_cli  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
 
 LAYER = None
 SOURCE = None
@@ -21,7 +20,7 @@ DEVICE_KEYS = {"device", "groups", "pass", "platform", "driver", "version", "tet
 GROUP_KEYS = {"name", "trials", "failed", "message", "crashed", "skipped", "seconds"}
 
 
-class SelftestCase(test_cli.Case):
+class SelftestCase(tool_case.Case):
     def layer(self, command, **more):
         return {"OPENCL_LAYERS": LAYER, "TETRACUBES_LAYER": command, "TETRACUBES_CACHE_DIR": "", **more}
 
@@ -88,7 +87,7 @@ class Vectors(SelftestCase):
 
     def test_file_of_the_tool(self):
         script = os.path.join(SOURCE, "host", "tool", "vectors.py")
-        done = subprocess.run([sys.executable, script, test_cli.TOOL, "--check"], stdout=subprocess.PIPE, text=True,
+        done = subprocess.run([sys.executable, script, tool_case.TOOL, "--check"], stdout=subprocess.PIPE, text=True,
                               check=False)
         self.assertEqual(done.returncode, 0, done.stdout)
 
@@ -131,11 +130,11 @@ class Faults(SelftestCase):
 
     def test_junit_that_cannot_be_written(self):
         vectors = self.vectors(*self.right("noise 2 2 2 u8"))
-        result = test_cli.tool("selftest", "--vectors", vectors, "--junit", self.path("none/junit.xml"))
+        result = tool_case.tool("selftest", "--vectors", vectors, "--junit", self.path("none/junit.xml"))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("none", result.stderr)
 
 
 if __name__ == "__main__":
-    test_cli.TOOL, LAYER, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
-    unittest.main(argv=sys.argv[:1] + test_cli.chosen())
+    LAYER, SOURCE = (os.path.abspath(path) for path in sys.argv[2:4])
+    tool_case.main()

@@ -13,10 +13,10 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import test_cli  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from part import part_write
 
 LAYER = None
 FIGURES = {"planted": 0, "told": 0, "reference": 0}
@@ -56,7 +56,7 @@ def wait_until_idle(process):
         time.sleep(0.1)
 
 
-class TrialCase(test_cli.Case):
+class TrialCase(tool_case.Case):
     def setUp(self):
         super().setUp()
         self.volume = self.generate("sphere", "a.nrrd", "30,20,10", "f32")
@@ -226,7 +226,7 @@ class Sound(TrialCase):
 
     def test_children_ignored(self):
         """A shell may have set SIGCHLD to be ignored: then nobody learns how a child ends."""
-        result = subprocess.run([test_cli.TOOL, *self.arguments, "-o", self.path("a.ply")],
+        result = subprocess.run([tool_case.TOOL, *self.arguments, "-o", self.path("a.ply")],
                                 env={**os.environ, **self.layer("lacks fame")},
                                 preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN), timeout=1000,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
@@ -236,7 +236,7 @@ class Sound(TrialCase):
 class Interrupted(TrialCase):
     def start(self, command="crash launch hang", kept=1):
         """The tool, once it has kept so many verdicts and waits for the next."""
-        process = subprocess.Popen([test_cli.TOOL, *self.arguments, "-o", self.path("a.ply")], stderr=subprocess.PIPE,
+        process = subprocess.Popen([tool_case.TOOL, *self.arguments, "-o", self.path("a.ply")], stderr=subprocess.PIPE,
                                    env={**os.environ, **self.layer(command)}, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(lambda: [os.kill(number, signal.SIGKILL) for number in trials_running()])
@@ -277,25 +277,20 @@ class Interrupted(TrialCase):
 
 
 def write_figures(seconds):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder or "long" not in sys.argv[3:]:
+    if "long" not in sys.argv[3:]:
         return
-    devices = json.loads(test_cli.tool("devices", "--json", env={"OPENCL_LAYERS": ""}).stdout)["devices"]
+    devices = json.loads(tool_case.tool("devices", "--json", env={"OPENCL_LAYERS": ""}).stdout)["devices"]
     names = {"planted": "drivers planted that crash, hang, refuse or compute wrongly",
              "told": "of these ended in a sentence", "reference": "of these done by the reference, --engine auto"}
-    with open(os.path.join(folder, "trials.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "trials", "date": time.strftime("%Y-%m-%d"),
-                   "versions": {device["platform"]: device["driver"] for device in devices},
-                   "seconds": round(seconds),
-                   "figures": [{"what": names[key], "value": FIGURES[key]} for key in names]}, file, indent=1)
-        file.write("\n")
+    part_write("trials", {device["platform"]: device["driver"] for device in devices},
+               [(what, FIGURES[key]) for key, what in names.items()], seconds)
 
 
 if __name__ == "__main__":
-    test_cli.TOOL, LAYER = (os.path.abspath(path) for path in sys.argv[1:3])
-    test_cli.signals_as_usual()
+    LAYER = os.path.abspath(sys.argv[2])
+    tool_case.signals_as_usual()
     begin = time.monotonic()
-    result = unittest.main(argv=sys.argv[:1] + test_cli.chosen(), exit=False).result
+    result = tool_case.main(exit=False).result
     if result.wasSuccessful():
         write_figures(time.monotonic() - begin)
     sys.exit(not result.wasSuccessful())

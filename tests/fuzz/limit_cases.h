@@ -6,6 +6,8 @@
 #ifndef LIMIT_CASES_H
 #define LIMIT_CASES_H
 
+#include <stddef.h>
+
 typedef struct limit_case {
     const char *name, *text, *part; /* part: of the failure's text; NULL: the file is read */
 } limit_case;

@@ -5,8 +5,8 @@
  *
  * Memory is measured: nothing is taken for what a header only says.
  */
-#include "../read_files.h"
 #include "limit_cases.h"
+#include "read_files.h"
 
 #include "dataset.h"
 

@@ -28,10 +28,11 @@ from pathlib import Path
 
 from results import Part, run, tool_version
 
-FILE_TESTS = ["test_read", "test_read_lenient", "test_read_hostile", "test_vtk_legacy", "test_vtk_xml",
-              "test_vtk_xml_hostile", "test_plot3d", "test_dataset", "test_write", "test_write_vtk", "test_write_vtk_wide"]
-QUICK_TESTS = ["test_read_lenient", "test_read_hostile", "test_vtk_xml", "test_vtk_xml_hostile", "test_dataset",
-               "test_write_vtk", "test_misuse", "test_order", "test_api"]
+FILE_TESTS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_read_hostile", "test_vtk_legacy",
+              "test_vtk_legacy_odd", "test_vtk_legacy_hostile", "test_vtk_xml", "test_vtk_xml_hostile", "test_plot3d",
+              "test_dataset", "test_write", "test_write_vtk", "test_write_vtk_wide"]
+QUICK_TESTS = ["test_read_lenient", "test_nrrd_lenient", "test_read_hostile", "test_vtk_xml", "test_vtk_xml_hostile",
+               "test_dataset", "test_write_vtk", "test_misuse", "test_order", "test_api"]
 SANITIZED = "address,undefined"
 LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1:use_sigaltstack=0",
          "LSAN_OPTIONS": f"suppressions='{Path(__file__).resolve().parent / 'leaks.txt'}':print_suppressions=0",

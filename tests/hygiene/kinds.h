@@ -7,7 +7,7 @@
 #ifndef KINDS_H
 #define KINDS_H
 
-#include "../engines.h"
+#include "engines.h"
 
 #include <math.h>
 

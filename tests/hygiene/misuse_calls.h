@@ -7,7 +7,7 @@
 #ifndef MISUSE_CALLS_H
 #define MISUSE_CALLS_H
 
-#include "../api.h"
+#include "api.h"
 
 #include <stddef.h>
 
@@ -190,7 +190,7 @@ static tc_status call_tc_context_tuning_save(arguments *a, bool *zero) {
     return tc_context_tuning_save(a->context);
 }
 
-/* A grid that came about is a grid: the reference extracts from it. */
+/* A grid that was made can be used: the reference engine extracts from it. */
 static tc_status grid_end(const arguments *a, tc_status status, tc_grid *made, bool *zero) {
     tc_mesh *mesh = NULL;
     *zero = !made;

@@ -8,6 +8,9 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
+
 
 def run(command, check=True, **more):
     """A finished process with both streams as one text."""
@@ -34,7 +37,7 @@ class Part:
 
     def figure(self, what, value):
         print(f"{what}: {value}", flush=True)
-        self.figures.append({"what": what, "value": value})
+        self.figures.append((what, value))
 
     def renew(self):
         """Replaces its figures in the file of an earlier whole run, and leaves the others."""
@@ -42,16 +45,10 @@ class Part:
         if not os.environ.get("TETRACUBES_RESULTS") or not path.exists():
             return
         text = json.loads(path.read_text(encoding="utf-8"))
-        fresh = {figure["what"]: figure["value"] for figure in self.figures}
+        fresh = dict(self.figures)
         for figure in text["figures"]:
             figure["value"] = fresh.get(figure["what"], figure["value"])
         path.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
 
     def write(self, **details):
-        folder = os.environ.get("TETRACUBES_RESULTS")
-        if not folder:
-            return
-        text = {"part": self.name, "date": time.strftime("%Y-%m-%d"), "versions": self.versions,
-                "seconds": round(time.monotonic() - self.start), "figures": self.figures, **details}
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        (Path(folder) / f"{self.name}.json").write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
+        part_write(self.name, self.versions, self.figures, time.monotonic() - self.start, **details)

@@ -87,8 +87,8 @@ static void expect_usable(const subject *s) {
     }
 }
 
-/* A count that was cancelled, or overtaken by a call that was, is none: tc_emit tells so by asking for a count, and one
- * that stands by asking for buffers. */
+/* After a cancelled count, or a call that was cancelled since the count, tc_emit asks for a count; where the count
+ * stands, it asks for buffers. */
 static void expect_count_stands(const subject *s, bool stands) {
     const tc_device_mesh no_buffers = {.struct_size = sizeof no_buffers};
     tc_extract_options how;
@@ -166,9 +166,7 @@ static uint64_t slabs_memory(enum kind kind, int always_copy) {
         tc_extract_options how;
         tc_grid *grid = NULL;
         tc_mesh *mesh = NULL;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         options.max_memory_bytes = bytes;
         expert.always_copy = always_copy;
         tc_context *context = context_open(&options);
@@ -193,9 +191,7 @@ static void test_mode(size_t mode, enum kind kind, const tc_mesh_data expected[2
     watch w = {0};
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     options.engine = modes[mode].engine;
     expert.always_copy = modes[mode].always_copy;
     options.max_memory_bytes = modes[mode].memory ? slabs_memory(kind, modes[mode].always_copy) : 0;

@@ -1,5 +1,5 @@
 /*
- * test_misuse.c - every public function with every argument and every field of a struct that cannot be
+ * test_misuse.c - every public function with every argument and every field of a struct that is not allowed
  *
  * All that calls take stands in one struct of arguments, good ones. The table names a call, one place in that struct,
  * and the values to be written there, each with the statuses that it may end in; test_abi.py sees to it that no
@@ -289,8 +289,8 @@ static const sized sizes[] = {
     SIZED(tc_tetrahedralize_grid, tetrahedra, true),
 };
 
-/* What lies beyond the size is neither read, but has its default, nor written, here 0xee; of a size that cannot be
- * nothing is written. */
+/* Bytes beyond struct_size are not read, so that their fields have defaults, and not written: they stay 0xee. With a
+ * size that is not allowed nothing is written. */
 static void test_size(const world *w, const sized *s, size_t size) {
     arguments a, good, defaults;
     bool zero, legitimate = size >= sizeof size && size <= s->bytes && size % sizeof size == 0;

@@ -7,8 +7,8 @@
  *
  *     test_order [SEED [STEPS]]
  */
-#include "../random.h"
 #include "kinds.h"
+#include "random.h"
 
 enum { CONTEXTS = 2, GRIDS = 4, MESHES = 3 };
 
@@ -32,9 +32,7 @@ static int progress(void *user, const char *stage, double fraction) {
 static void context_make(walk *w, int n, bool device) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     w->opencl[n] = device && random_below(2);
     options.engine = w->opencl[n] ? TC_ENGINE_OPENCL : TC_ENGINE_REFERENCE;
     expert.always_copy = random_below(4) == 0;

@@ -25,8 +25,8 @@ static unsigned bit_index;
 
 /* ----------------------------------------------------------------------------------------------------- compilers */
 
-/* A mistake: text that stands in the kernels, and what is compiled in its place. "starved" is none: it is what a group
- * sees that waits for one which the device has left standing, the tile before without sums; for a single group. */
+/* A mistake: text that stands in the kernels, and what is compiled in its place. "starved" is no mistake of a compiler:
+ * a group waits for one that the device does not run, and sees the tile before without sums; for a single group. */
 typedef struct mistake {
     const char *name, *from, *to;
 } mistake;

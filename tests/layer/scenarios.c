@@ -306,9 +306,7 @@ static tc_context_options context_describe(int index) {
     const scenario *s = &scenarios[index];
     tc_context_options o;
     static tc_expert_options expert;
-    tc_context_options_init(&o);
-    tc_expert_options_init(&expert);
-    o.expert = &expert;
+    options_init(&o, &expert);
     o.engine = s->engine;
     expert.always_copy = s->always_copy;
     o.max_memory_bytes = budgets[index];

@@ -1,5 +1,5 @@
 /*
- * scenarios.h - what programs do with the library, from the first call to the last, with a word in between wherever a
+ * scenarios.h - what programs do with the library, from the first call to the last, and a question to the test where a
  * call fails
  *
  * A scenario makes a context, a grid and surfaces of two isovalues, gives everything back, and compares all that it got

@@ -40,8 +40,9 @@ static void test_carry(tc_context *context, const tc_grid_options *grid, const t
     for (int n = 0; n < SAMPLES; n++) field[n] = (float)random_between(0, 1);
     for (int n = 0; n < 2; n++) {
         tc_grid *g = NULL;
-        EXPECT(!tc_grid_create(contexts[n], grid, &g) && !tc_interpolate_field(g, options, &carried, values[n], vertex_count), "%s",
-               tc_message());
+        EXPECT(!tc_grid_create(contexts[n], grid, &g) &&
+                   !tc_interpolate_field(g, options, &carried, values[n], vertex_count),
+               "%s", tc_message());
         tc_grid_destroy(g);
     }
     EXPECT(memcmp(values[0], values[1], sizeof *field * (size_t)vertex_count) == 0, "%s samples: carried values differ",
@@ -141,9 +142,7 @@ static void test_limits(const layer_functions *layer) {
     for (size_t n = 0; n < sizeof limits / sizeof *limits; n++) {
         tc_context_options options;
         tc_expert_options expert;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.work_items = 128;
         EXPECT(layer->command(limits[n].command), "%s is not understood", limits[n].command);
         tc_context *context = context_open(&options);
@@ -163,9 +162,7 @@ static void test_local_memory(const layer_functions *layer) {
         tc_context_options options;
         tc_expert_options expert;
         tc_context *context = NULL;
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.work_items = work_items;
         tc_status status = tc_context_create(&options, &context);
         EXPECT(status == (work_items == 352 ? TC_OK : TC_ERROR_ARGUMENT), "%u work-items with 32 KiB: status %d",
@@ -207,9 +204,7 @@ int main(void) {
         tc_context_options options;
         tc_expert_options expert;
         tc_device_info info = {.struct_size = sizeof info};
-        tc_context_options_init(&options);
-        tc_expert_options_init(&expert);
-        options.expert = &expert;
+        options_init(&options, &expert);
         expert.work_items = work_items;
         tc_context *context = context_open(&options);
         EXPECT(tc_context_device(context, &info) == TC_OK && !info.has_fp64, "the device has fp64 all the same");

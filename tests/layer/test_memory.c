@@ -151,9 +151,7 @@ static tc_status crossed_make(tc_context *of, tc_grid **grid) {
 static void test_fallback(void) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.work_items = expert.work_groups = expert.tile_bricks = 1;
     expert.spin_limit = 3;
     if (test_chosen("starved groups")) {

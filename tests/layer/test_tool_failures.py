@@ -9,9 +9,7 @@ crash. Without `all` a sample of requests and calls. Standard library only.
 """
 import base64
 import bz2
-import datetime
 import gzip
-import json
 import os
 import re
 import struct
@@ -21,6 +19,9 @@ import tempfile
 import time
 import unittest
 import zlib
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 TOOL = None
 MEMORY_LIBRARY = None
@@ -139,7 +140,7 @@ class Failures(unittest.TestCase):
         return result.returncode, result.stderr, files
 
     def judge(self, command, what, outcome, expected, pattern):
-        """Nothing but done without, or a failure as it should be."""
+        """The run did without what failed, or it failed as it should."""
         status, messages, files = outcome
         told = f"{command}, {what}: status {status}, {messages!r}"
         self.assertIn(status, (0, 1), told)
@@ -238,16 +239,9 @@ class Device(Failures):
 
 
 def results_write(start, result):
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if not folder or not ALL:
-        return
-    figures = [{"what": what, "value": count} for what, count in COUNTS.items()]
-    figures.append({"what": "wrong statuses, files or messages, in the tool",
-                    "value": len(result.failures) + len(result.errors)})
-    with open(os.path.join(folder, "tool_failures.json"), "w") as out:
-        json.dump({"part": "tool_failures", "date": datetime.date.today().isoformat(),
-                   "versions": {"tetracubes": subprocess.check_output([TOOL, "--version"], text=True).split()[1]},
-                   "seconds": round(time.monotonic() - start), "figures": figures}, out, indent=1)
+    figures = {**COUNTS, "wrong statuses, files or messages, in the tool": len(result.failures) + len(result.errors)}
+    version = subprocess.check_output([TOOL, "--version"], text=True).split()[1]
+    part_write("tool_failures", {"tetracubes": version}, figures.items(), time.monotonic() - start)
 
 
 if __name__ == "__main__":
@@ -259,5 +253,6 @@ if __name__ == "__main__":
     TOOL = os.path.abspath(sys.argv[1])
     done = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False).result
     print(COUNTS)
-    results_write(begin, done)
+    if ALL:
+        results_write(begin, done)
     sys.exit(not done.wasSuccessful())

@@ -7,8 +7,8 @@
  */
 #define CL_TARGET_OPENCL_VERSION 120
 
-#include "../api.h"
-#include "../folder.h"
+#include "api.h"
+#include "folder.h"
 #include "layer_find.h"
 
 #include <math.h>
@@ -35,9 +35,7 @@ static tc_verdict told(void *user, const char *job, char *reason, size_t bytes) 
 static tc_status context_try(script *s, uint32_t work_items, tc_context **context) {
     tc_context_options options;
     tc_expert_options expert;
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     expert.work_items = work_items;
     expert.child_trial = s ? told : NULL;
     expert.child_trial_user = s;
@@ -159,9 +157,7 @@ static void test_within_a_call(void) {
     tc_grid *grid = NULL;
     tc_mesh *meshes[2] = {NULL, NULL};
     tc_mesh_data data[2] = {{.struct_size = sizeof *data}, {.struct_size = sizeof *data}};
-    tc_context_options_init(&options);
-    tc_expert_options_init(&expert);
-    options.expert = &expert;
+    options_init(&options, &expert);
     tc_extract_options_init(&how);
     expert.child_trial = bad_with_missing, expert.child_trial_user = &asked;
     contexts[0] = context_open(&options), contexts[1] = reference_open();

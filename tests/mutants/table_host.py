@@ -112,7 +112,7 @@ MUTANTS = [
             "vertices: edges that enter are left out"),
            ("carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b),",
             "carry_vertex(r->carried, r->vertex_count, sample_index(r, b), sample_index(r, a),",
-            "carried fields: ends exchanged", {"tests": ("test_cli_grids, carry",)}),
+            "carried fields: ends exchanged", {"tests": ("test_cli_blocks, carry",)}),
            ("r->grid->mirrored ? (3 - m) % 3 : m", "m", "winding: mirrored grids are not turned over"),
            ("r->grid->mirrored ? (3 - m) % 3 : m", "(3 - m) % 3", "winding: all are turned over"),
            ("{cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);\n        }\n    }\n}\n\nstatic void tetrahedra_emit",

@@ -1,7 +1,7 @@
 #include "analytic.h"
 
-#include "../complex.h"
-#include "../samples.h"
+#include "complex.h"
+#include "samples.h"
 
 #include <math.h>
 #include <stdio.h>

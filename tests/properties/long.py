@@ -7,8 +7,6 @@ TETRACUBES_RESULTS names a folder, PART.json there receives date, versions, seco
 of them fails.
 """
 import concurrent.futures
-import datetime
-import json
 import os
 import re
 import subprocess
@@ -16,6 +14,9 @@ import sys
 import tempfile
 import threading
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 KINDS = "uniform rectilinear curvilinear missing hybrid tetrahedra hexahedra mixed".split()
 SHAPES = "sphere torus gyroid".split()
@@ -77,20 +78,10 @@ def main():
     text = "".join(done.stdout for done in runs)
     figures = {"topology": topology_figures, "geometry": geometry_figures}[part](text)
     device = re.search(r"^device: (.*)", text, re.M)
-    result = {
-        "part": part,
-        "date": datetime.date.today().isoformat(),
-        "versions": {"device": device[1]} if device else {},
-        "seconds": round(time.monotonic() - start),
-        "figures": [{"what": what, "value": value} for what, value in figures.items()],
-        "lines": [line for line in text.splitlines() if re.match("random|patterns|found|order|planes|values", line)],
-    }
     for what, value in figures.items():
         print(f"{what}: {value}")
-    if os.environ.get("TETRACUBES_RESULTS"):
-        with open(os.path.join(os.environ["TETRACUBES_RESULTS"], part + ".json"), "w") as file:
-            json.dump(result, file, indent=1)
-            file.write("\n")
+    lines = [line for line in text.splitlines() if re.match("random|patterns|found|order|planes|values", line)]
+    part_write(part, {"device": device[1]} if device else {}, figures.items(), time.monotonic() - start, lines=lines)
     return 0
 
 

@@ -1,7 +1,7 @@
 #include "subject.h"
 
-#include "../random.h"
-#include "../samples.h"
+#include "random.h"
+#include "samples.h"
 
 #include <math.h>
 #include <stdio.h>

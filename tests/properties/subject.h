@@ -1,5 +1,5 @@
 /*
- * subject.h - a random grid of a kind and a sample type, which its seed makes again
+ * subject.h - a random grid of a kind and a sample type, which its seed repeats
  *
  * Most are tiny, so that many can be tried; some reach over the ends of words of 64 samples and of bricks. Samples are
  * noise, waves, integers 0 to 3, integers within one of the isovalue, or the extremes of their type. Matrices, axes and
@@ -8,7 +8,7 @@
 #ifndef SUBJECT_H
 #define SUBJECT_H
 
-#include "../complex.h"
+#include "complex.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>

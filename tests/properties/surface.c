@@ -1,8 +1,7 @@
 #include "surface.h"
 
-#include "../samples.h"
-#include "../split.h"
-#include "../topology.h"
+#include "samples.h"
+#include "signs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,150 +12,19 @@ typedef unsigned long long ull;
 
 static char fault[256];
 
-/* ----------------------------------------------------------------------------------------------------------- bodies */
-
 static bool sample_is_inside(const subject *s, int64_t n) {
     return sample_get(s->samples, s->type, n) >= s->how.isovalue;
 }
 
-static int64_t corner_sample(const tc_grid_options *g, const int64_t p[3], int corner) {
-    return ((p[2] + (corner >> 2)) * g->dims[1] + p[1] + (corner >> 1 & 1)) * g->dims[0] + p[0] + (corner & 1);
-}
-
-/* The cube at p; false where it is left out. */
-static bool cube_make(const subject *s, const int64_t p[3], body *b) {
-    const tc_grid_options *g = &s->grid;
-    const int64_t number = (p[2] * (g->dims[1] - 1) + p[1]) * (g->dims[0] - 1) + p[0];
-    bool present = !(g->blanked_cells && g->blanked_cells[number]);
-    b->corner_count = 8;
-    for (int c = 0; c < 8; c++) {
-        const int64_t sample = corner_sample(g, p, c);
-        int64_t sum = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            const int64_t at = p[axis] + (c >> axis & 1);
-            b->at[c][axis] = (double)at;
-            sum += g->first_index[axis] + at;
-        }
-        b->samples[c] = (uint32_t)sample;
-        b->inside[c] = sample_is_inside(s, sample);
-        b->even[c] = sum % 2 == 0;
-        present = present && subject_has(s, sample);
-    }
-    return present;
-}
-
-static void cube_add(const subject *s, const body *cube, expected *e) {
-    if (s->how.method == TC_METHOD_HYBRID) {
-        expected_add(e, cube, s->mirrored);
+void subject_expect(const subject *s, expected *e) {
+    signs g;
+    if (!kind_is_structured(s->kind)) {
+        complex_expect(&s->cells, s->how.isovalue, e);
         return;
     }
-    for (unsigned t = 0; t < 5; t++) {
-        body b = {.corner_count = 4};
-        unsigned corners[4];
-        split_tetrahedron(!cube->even[0], t, corners);
-        for (int n = 0; n < 4; n++) {
-            b.samples[n] = cube->samples[corners[n]];
-            b.inside[n] = cube->inside[corners[n]];
-            memcpy(b.at[n], cube->at[corners[n]], sizeof b.at[n]);
-        }
-        expected_add(e, &b, s->mirrored);
-    }
-}
-
-static bool body_is_cut(const body *b) {
-    int inside = 0;
-    for (int n = 0; n < b->corner_count; n++) inside += b->inside[n];
-    return inside > 0 && inside < b->corner_count;
-}
-
-/* Bricks of 64 x 8 x 4 samples, in them rows of 64, in those the axes x, y, z and diagonals xy, xz, yz, then x. */
-static uint64_t place_in_order(const tc_grid_options *g, const uint32_t ends[2]) {
-    static const unsigned ranks[8] = {[1] = 0, [2] = 1, [4] = 2, [3] = 3, [5] = 4, [6] = 5}; /* by the axes spanned */
-    uint64_t at[3];
-    unsigned spans = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const int64_t stride = axis == 0 ? 1 : axis == 1 ? g->dims[0] : g->dims[0] * g->dims[1];
-        const uint64_t p = (uint64_t)(ends[0] / stride % g->dims[axis]);
-        const uint64_t q = (uint64_t)(ends[1] / stride % g->dims[axis]);
-        at[axis] = p < q ? p : q;
-        spans |= (unsigned)(p != q) << axis;
-    }
-    const uint64_t brick = (at[2] / 4 << 12 | at[1] / 8) << 12 | at[0] / 64;
-    return ((brick << 2 | at[2] % 4) << 3 | at[1] % 8) << 9 | (uint64_t)ranks[spans] << 6 | at[0] % 64;
-}
-
-static void structured_expect(const subject *s, expected *e) {
-    const tc_grid_options *g = &s->grid;
-    uint64_t active = 0;
-    const bool whole = s->how.method == TC_METHOD_HYBRID;
-    const uint64_t cubes = (uint64_t)((g->dims[0] - 1) * (g->dims[1] - 1) * (g->dims[2] - 1));
-    expected_begin(e, whole ? cubes : 5 * cubes, whole ? 8 : 4);
-    for (int64_t z = 0; z + 1 < g->dims[2]; z++)
-        for (int64_t y = 0; y + 1 < g->dims[1]; y++)
-            for (int64_t x = 0; x + 1 < g->dims[0]; x++) {
-                body cube;
-                if (!cube_make(s, (int64_t[3]){x, y, z}, &cube) || !body_is_cut(&cube)) continue;
-                cube_add(s, &cube, e);
-                active++;
-            }
-    e->active_cells = active;
-    uint64_t *keys = malloc((e->vertex_count + 1) * sizeof *keys);
-    if (!keys) exit(EXIT_FAILURE);
-    for (uint32_t n = 0; n < e->vertex_count; n++) keys[n] = place_in_order(g, e->ends[n]);
-    expected_renumber(e, keys);
-    free(keys);
-}
-
-static void complex_expect(const subject *s, expected *e) {
-    uint64_t active = 0;
-    expected_begin(e, s->cells.tetrahedron_count, 4);
-    for (uint64_t n = 0; n < s->cells.tetrahedron_count; n++) {
-        body b = {.corner_count = 4};
-        bool present = true;
-        for (int v = 0; v < 4; v++) {
-            b.samples[v] = s->cells.tetrahedra[4 * n + (uint64_t)v];
-            b.inside[v] = sample_is_inside(s, b.samples[v]);
-            subject_place(s, b.samples[v], b.at[v]);
-            present = present && subject_has(s, b.samples[v]);
-        }
-        if (!present || !body_is_cut(&b)) continue;
-        expected_add(e, &b, false);
-        active++;
-    }
-    e->active_cells = active;
-}
-
-void subject_expect(const subject *s, expected *e) {
-    kind_is_structured(s->kind) ? structured_expect(s, e) : complex_expect(s, e);
-    expected_finish(e);
-}
-
-/* ----------------------------------------------------------------------------------------------- counts and indices */
-
-static const char *counts_fault(const expected *e, const tc_mesh_data *m) {
-    if (m->vertex_count == e->vertex_count && m->triangle_count == e->triangle_count &&
-        m->active_cell_count == e->active_cells)
-        return NULL;
-    snprintf(fault, sizeof fault, "%llu vertices, %llu triangles, %llu active cells; should be %u, %llu, %llu",
-             (ull)m->vertex_count, (ull)m->triangle_count, (ull)m->active_cell_count, e->vertex_count,
-             (ull)e->triangle_count, (ull)e->active_cells);
-    return fault;
-}
-
-static const char *topology_fault(const subject *s, const expected *e, const tc_mesh_data *m) {
-    topology t;
-    topology_of(m->positions, m->vertex_count, m->triangles, m->triangle_count, &t);
-    if (s->complete && e->fans != e->vertex_count) return "the grid's signs give a vertex of a complete grid two fans";
-    if (!t.bad_edges && !t.bad_triangles && !t.orphans && t.boundary_edges == e->boundary_edges && t.fans == e->fans &&
-        t.euler_characteristic == e->euler_characteristic)
-        return NULL;
-    snprintf(
-        fault, sizeof fault,
-        "%llu bad edges, %llu bad triangles, %llu orphans; boundary edges %llu for %llu, Euler characteristic %lld "
-        "for %lld, fans %llu for %llu",
-        (ull)t.bad_edges, (ull)t.bad_triangles, (ull)t.orphans, (ull)t.boundary_edges, (ull)e->boundary_edges,
-        (long long)t.euler_characteristic, (long long)e->euler_characteristic, (ull)t.fans, (ull)e->fans);
-    return fault;
+    signs_make(&g, &s->grid, s->how.isovalue);
+    signs_expect(&g, s->how.method, s->mirrored, e);
+    signs_free(&g);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- arcs */
@@ -177,10 +45,6 @@ static side side_make(uint32_t from, uint32_t to, bool of_mesh) {
     return from < to ? (side){from, to, of_mesh, 0} : (side){to, from, of_mesh, 1};
 }
 
-static void place_of(const tc_grid_options *g, uint32_t n, int64_t p[3]) {
-    p[0] = n % g->dims[0], p[1] = n / g->dims[0] % g->dims[1], p[2] = n / g->dims[0] / g->dims[1];
-}
-
 /* Whether both vertices lie in one of the planes in which a structured grid ends. */
 static bool side_ends_grid(const subject *s, const expected *e, const side *edge) {
     const uint32_t corners[4] = {e->ends[edge->low][0], e->ends[edge->low][1], e->ends[edge->high][0],
@@ -188,7 +52,7 @@ static bool side_ends_grid(const subject *s, const expected *e, const side *edge
     unsigned planes = 63;
     for (int n = 0; n < 4; n++) {
         int64_t p[3];
-        place_of(&s->grid, corners[n], p);
+        grid_place(&s->grid, corners[n], p);
         for (int axis = 0; axis < 3; axis++) {
             if (p[axis] != 0) planes &= ~(1u << axis);
             if (p[axis] != s->grid.dims[axis] - 1) planes &= ~(8u << axis);
@@ -339,8 +203,8 @@ static void position_make(const subject *s, const origins *o, const uint32_t end
     }
     int64_t a[3], b[3];
     float at[3];
-    place_of(&s->grid, ends[0], a);
-    place_of(&s->grid, ends[1], b);
+    grid_place(&s->grid, ends[0], a);
+    grid_place(&s->grid, ends[1], b);
     for (int axis = 0; axis < 3; axis++)
         at[axis] =
             (float)(s->grid.first_index[axis] + a[axis] - (int64_t)o->base[axis]) + t * (float)(b[axis] - a[axis]);
@@ -432,7 +296,7 @@ const char *surface_fault(const subject *s, const expected *e, const tc_mesh_dat
     const char *found = NULL;
     if (checks & CHECK_GRID) found = grid_fault(s, e);
     if (!found && (checks & CHECK_COUNTS)) found = counts_fault(e, mesh);
-    if (!found && (checks & CHECK_TOPOLOGY)) found = topology_fault(s, e, mesh);
+    if (!found && (checks & CHECK_TOPOLOGY)) found = topology_fault(e, s->complete, mesh);
     if (!found && (checks & CHECK_ARCS)) found = arcs_fault(s, e, mesh);
     if (!found && (checks & CHECK_CELLS)) found = cells_fault(e, mesh);
     if (!found && (checks & CHECK_PLACES)) found = positions_fault(s, e, mesh);

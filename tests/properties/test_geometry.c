@@ -14,8 +14,8 @@
  */
 #include "analytic.h"
 
-#include "../engines.h"
-#include "../samples.h"
+#include "engines.h"
+#include "samples.h"
 
 #include <float.h>
 #include <math.h>

@@ -12,10 +12,10 @@
  */
 #include "surface.h"
 
-#include "../engines.h"
-#include "../random.h"
-#include "../samples.h"
-#include "../topology.h"
+#include "engines.h"
+#include "random.h"
+#include "samples.h"
+#include "topology.h"
 
 #include <inttypes.h>
 
@@ -250,7 +250,7 @@ static void vertex_move(copy *c, uint32_t vertex) {
     memcpy(p, &bits, sizeof bits);
 }
 
-/* Plants one; SIGN is the grid's. */
+/* Plants a fault in the mesh; SIGN is planted in the grid, by sample_turn. */
 static void mutate(copy *c, mutation m) {
     const uint32_t count = (uint32_t)c->data.triangle_count, vertices = (uint32_t)c->data.vertex_count;
     uint32_t *one = c->triangles + 3 * random_below(count), *last = c->triangles + 3 * (count - 1);

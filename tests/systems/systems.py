@@ -12,7 +12,6 @@ of this run. Needs root, debootstrap and a mirror of Debian: the one that apt us
 status 77 where that is missing. Chroots are made in TETRACUBES_CHROOTS, left out the folder for temporary files, about
 4 GB each, and removed.
 """
-import datetime
 import glob
 import json
 import os
@@ -22,6 +21,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from part import part_write
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SUITES = {"bookworm": "Debian 12", "trixie": "Debian 13", "sid": "Debian unstable"}
@@ -153,7 +155,7 @@ def suite_try(tier, suite, folder):
 
 
 def machine_try(program, folder):
-    """What is no package of a release."""
+    """Drivers that no release has as a package, tried on this machine."""
     out = os.path.join(folder, "drivers.json")
     subprocess.run([sys.executable, os.path.join(ROOT, "tests", "systems", "drivers.py"), program, "--out", out,
                     "--folder", os.path.join(folder, "second"), "--only", "Intel"], check=False)
@@ -183,7 +185,8 @@ def results_write(seen):
     folder = os.environ.get("TETRACUBES_RESULTS")
     if not folder:
         return
-    seen = sorted(seen + told_before(folder, [one["system"] for one in seen]), key=lambda one: ORDER.index(one["system"]))
+    seen = seen + told_before(folder, [one["system"] for one in seen])
+    seen.sort(key=lambda one: ORDER.index(one["system"]))
     lines = [{key: value for key, value in dict(line, system=one["system"]).items() if key != "hashes"}
              for one in seen for line in one["drivers"]]
     bare = [one for one in seen if one["commands"]]
@@ -194,13 +197,9 @@ def results_write(seen):
                ("of them tried", len(lines))]
     versions_of = {f"{one['system']}, {name}": version for one in seen for name, version in one["versions"].items()
                    if name in ("gcc", "libexpat1")}
-    with open(os.path.join(folder, "systems.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "systems", "date": max(one["date"] for one in seen), "versions": versions_of,
-                   "seconds": sum(line["seconds"] for one in seen for line in one["commands"]),
-                   "figures": [{"what": what, "value": value} for what, value in figures],
-                   "systems": [{key: one[key] for key in ("system", "date", "commands", "versions")} for one in seen],
-                   "drivers": lines}, file, indent=1)
-        file.write("\n")
+    part_write("systems", versions_of, figures, sum(line["seconds"] for one in seen for line in one["commands"]),
+               drivers=lines, systems=[{key: one[key] for key in ("system", "date", "commands", "versions")}
+                                       for one in seen])
 
 
 def main():

@@ -1,0 +1,21 @@
+/*
+ * mesh_walk.h - a mesh, whole, against the grid that it came from
+ *
+ * Counts and topology must be those of the signs (signs.h). Walks grid and mesh together in the documented order: every
+ * vertex must lie where its crossed edge says, every tetrahedron must have its triangles, on its own crossed edges,
+ * facing outward. Knows the split (split.h) and the contract on order, edges and positions; shares no code or table
+ * with the library.
+ */
+#ifndef MESH_WALK_H
+#define MESH_WALK_H
+
+#include "tetracubes.h"
+
+/* Uniform, rectilinear and curvilinear grids. The first fault, in words that stay valid until the next call; NULL where
+ * there is none. Normals are checked where the mesh has them. */
+const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh);
+
+/* FNV-1a, by words of 32 bits, over positions, normals where there are any, and triangles. */
+uint64_t mesh_bytes_hash(const tc_mesh_data *mesh);
+
+#endif

@@ -1,0 +1,101 @@
+"""meshes.py - written meshes read back, by code of the tests' own
+
+Readers give the points, the triangles as numbers of points, and the three types of a point's coordinates, as struct
+names them.
+"""
+import math
+import re
+import struct
+from typing import NamedTuple
+
+
+class Ply(NamedTuple):
+    names: list  # of the properties of vertices
+    layout: str  # their types, as struct names them
+    rows: list  # of each vertex, its values
+    triangles: list
+
+
+def ply_read(path):
+    """A binary PLY file, which ends where its last triangle does."""
+    with open(path, "rb") as f:
+        head, body = f.read().split(b"end_header\n", 1)
+    lines = [line.split() for line in head.decode().splitlines()]
+    vertices, faces = (int(words[2]) for words in lines if words[0] == "element")
+    properties = [words[1:] for words in lines if words[0] == "property" and words[1] != "list"]
+    layout = "".join({"float": "f", "double": "d"}[kind] for kind, _ in properties)
+    size = struct.calcsize("<" + layout)
+    rows = [struct.unpack_from("<" + layout, body, n * size) for n in range(vertices)]
+    triangles = [struct.unpack_from("<3I", body, vertices * size + 13 * n + 1) for n in range(faces)]
+    assert len(body) == vertices * size + 13 * faces
+    return Ply([name for _, name in properties], layout, rows, triangles)
+
+
+def ply_vertices(path):
+    """(the values of each vertex by their names, triangles)"""
+    ply = ply_read(path)
+    return [dict(zip(ply.names, row)) for row in ply.rows], ply.triangles
+
+
+def read_ply(path):
+    ply = ply_read(path)
+    return [row[:3] for row in ply.rows], ply.triangles, ply.layout[:3]
+
+
+def read_vtp(path):
+    with open(path, "rb") as f:
+        content = f.read()
+    appended = content.index(b"_", content.index(b"<AppendedData")) + 1
+    header = content[:appended].decode("latin-1")
+
+    def array(name):
+        element = next(e for e in re.findall(r"<DataArray[^>]*>", header) if f'Name="{name}"' in e)
+        at = appended + int(re.search(r'offset="(\d+)"', element)[1])
+        kind = re.search(r'type="(\w+)"', element)[1]
+        code = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q"}[kind]
+        size = struct.unpack_from("<Q", content, at)[0]
+        return struct.unpack_from(f"<{size // struct.calcsize(code)}{code}", content, at + 8), code
+    flat, code = array("Points")
+    corners = array("connectivity")[0]
+    return list(zip(*[iter(flat)] * 3)), list(zip(*[iter(corners)] * 3)), code * 3
+
+
+def read_obj(path):
+    points, faces = [], []
+    with open(path, encoding="ascii") as f:
+        for line in f:
+            word, *rest = line.split()
+            if word == "v":
+                points.append(tuple(map(float, rest)))
+            elif word == "f":
+                faces.append(tuple(int(corner.split("/")[0]) - 1 for corner in rest))
+    return points, faces, "ddd"
+
+
+def read_stl(path):
+    with open(path, "rb") as f:
+        content = f.read()
+    count = struct.unpack_from("<I", content, 80)[0]
+    points = []
+    for n in range(count):
+        values = struct.unpack_from("<12f", content, 84 + 50 * n)
+        points += [values[3:6], values[6:9], values[9:12]]
+    return points, [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(count)], "fff"
+
+
+READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
+
+
+READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
+
+
+def measures(points, faces, at=(0, 0, 0)):
+    """Area, and volume of the cone to `at`."""
+    area = volume = 0
+    for face in faces:
+        a, b, c = ([points[v][axis] - at[axis] for axis in range(3)] for v in face)
+        u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
+        n = [u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3] for k in range(3)]
+        area += math.hypot(*n) / 2
+        volume += sum(n[k] * a[k] for k in range(3)) / 6
+    return area, volume
