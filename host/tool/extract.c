@@ -11,21 +11,22 @@
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
  * written; the others are, and the exit status is 3.
  */
-#include "carry.h"
-#include "coarse.h"
+#include "command_line/option_effects.h"
 #include "commands.h"
-#include "drop.h"
-#include "effects.h"
 #include "exit_status.h"
+#include "extract/carried_fields.h"
+#include "extract/final_surface.h"
+#include "extract/precision.h"
+#include "extract/report.h"
+#include "extract/surface_check.h"
+#include "extract/surface_files.h"
+#include "extract/surface_notices.h"
 #include "failure.h"
-#include "input.h"
+#include "input/input.h"
+#include "library_status.h"
 #include "mesh_check.h"
-#include "notice.h"
 #include "progress.h"
-#include "report.h"
-#include "surface_check.h"
-#include "surface_files.h"
-#include "surface_notices.h"
+#include "terminal/notice.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -36,7 +37,7 @@ typedef struct job {
     const options *o;
     dataset data;
     scalar field;
-    carried carried;
+    carried_fields carried;
     block_list blocks;
     engine main, reference; /* reference: for --verify only */
     int start_status;       /* of starting the main engine's device */
@@ -60,9 +61,9 @@ static int read_input(job *j) {
     double begin = now_ms();
     int status = input_read(j->o, &j->data);
     if (!status) status = surface_files_check(j->o);
-    if (!status) status = effects_check_input(j->o, &j->data, 0);
+    if (!status) status = option_effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(j->o, &j->data, &j->field);
-    if (!status) status = carry_select(j->o, &j->data, &j->carried);
+    if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
     j->report.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
@@ -157,7 +158,7 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
 }
 
 /* The box of the surface in world space. */
-static void find_bounds(const shown_surface *shown, double bounds[2][3]) {
+static void find_bounds(const final_surface *shown, double bounds[2][3]) {
     const float *positions = shown->mesh.positions;
     for (int axis = 0; axis < 3; axis++) {
         bounds[0][axis] = INFINITY;
@@ -176,7 +177,7 @@ static void find_bounds(const shown_surface *shown, double bounds[2][3]) {
     }
 }
 
-static void describe_mesh(const job *j, const shown_surface *shown, surface_report *s) {
+static void describe_mesh(const job *j, const final_surface *shown, surface_report *s) {
     const tc_mesh_data *m = &shown->mesh;
     s->has_mesh = 1;
     s->vertex_count = m->vertex_count;
@@ -198,19 +199,19 @@ static void describe_mesh(const job *j, const shown_surface *shown, surface_repo
     s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
 }
 
-static int write_surface(job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
+static int write_surface(job *j, const surface_source *source, const final_surface *shown, surface_report *s) {
     double begin = now_ms();
-    int status = carry_to_mesh(&j->carried, &j->main, source->how, source->mesh);
-    if (!status) status = surface_carry(shown, &j->carried);
+    int status = carried_fields_interpolate(&j->carried, &j->main, source->how, source->mesh);
+    if (!status) status = final_surface_carry(shown, &j->carried);
     if (!status) status = surface_files_write(j->o, s->iso, shown, j->carried.fields, j->carried.count, &s->path);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
 
 /* Whether float32 is fine enough for the mesh, and the file's numbers for what is written. */
-static int tell_numbers(const job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
-    coarse_verdict mesh, file;
-    int status = coarse_tell_mesh(source, j->o->check, &mesh);
+static int tell_numbers(const job *j, const surface_source *source, const final_surface *shown, surface_report *s) {
+    precision_verdict mesh, file;
+    int status = precision_tell_mesh(source, j->o->check, &mesh);
     if (!status) status = surface_files_tell_numbers(j->o, source, shown, &file);
     if (status) return status;
     s->is_coarse = mesh.any > 0;
@@ -219,17 +220,17 @@ static int tell_numbers(const job *j, const coarse_surface *source, const shown_
 }
 
 /* The surface that is made of the engine's mesh: told, checked, written. */
-static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_data *mesh, shown_surface *shown,
+static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_data *mesh, final_surface *shown,
                           surface_report *s) {
-    const coarse_surface source = {&j->main, &j->blocks, how, mesh, s->iso};
+    const surface_source source = {&j->main, &j->blocks, how, mesh, s->iso};
     int good = 1, status = j->o->verify ? surface_verify(&j->reference, how, mesh, s) : 0;
-    if (!status && j->o->drop_degenerate) status = surface_drop_degenerate(shown, s);
+    if (!status && j->o->drop_degenerate) status = final_surface_drop_degenerate(shown, s);
     if (status) return status;
     describe_mesh(j, shown, s);
     status = surface_tell_empty(&j->data, &j->field, s);
     if (!status) status = tell_numbers(j, &source, shown, s);
     if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
-    surface_tell_dropped(shown, s);
+    final_surface_tell_dropped(shown, s);
     if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);
     if (status || (status = progress_status())) return status;
     if (!good || (s->has_verdict && !s->verified)) {
@@ -241,7 +242,7 @@ static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_d
 
 static int make_surface(job *j, surface_report *s) {
     tc_mesh_data mesh;
-    shown_surface shown;
+    final_surface shown;
     tc_extract_options how;
     int status;
     tc_extract_options_init(&how);
@@ -254,9 +255,9 @@ static int make_surface(job *j, surface_report *s) {
     if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, &how, &mesh);
     if (status) return status;
     add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
-    surface_show(&j->main, &mesh, &shown);
+    final_surface_begin(&j->main, &mesh, &shown);
     status = finish_surface(j, &how, &mesh, &shown, s);
-    surface_release(&shown);
+    final_surface_release(&shown);
     return status;
 }
 
@@ -277,8 +278,8 @@ static int make_surfaces(job *j) {
 static int print_report(job *j, double begin_ms) {
     j->report.total_ms = now_ms() - begin_ms;
     progress_clear();
-    if (j->o->json) return report_extract_json(&j->report);
-    if (!j->o->quiet) report_extract_text(&j->report);
+    if (j->o->json) return extract_report_json(&j->report);
+    if (!j->o->quiet) extract_report_text(&j->report);
     return 0;
 }
 
@@ -303,7 +304,7 @@ cleanup:
     engine_close(&j.reference);
     engine_close(&j.main);
     blocks_release(&j.blocks);
-    carry_release(&j.carried);
+    carried_fields_release(&j.carried);
     dataset_release(&j.data);
     return status;
 }
