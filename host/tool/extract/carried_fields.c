@@ -117,7 +117,8 @@ int carried_fields_select(const options *o, dataset *d, carried_fields *out) {
     out->fields = calloc(count, sizeof *out->fields);
     out->values = calloc(count, sizeof *out->values);
     out->is_narrow = calloc(count, sizeof *out->is_narrow);
-    int is_there = names && out->from && out->fields && out->values && out->is_narrow;
+    out->ranges = calloc(count, sizeof *out->ranges);
+    int is_there = names && out->from && out->fields && out->values && out->is_narrow && out->ranges;
     int status = is_there ? select_all(o, d, out, names) : fail(STATUS_FAILED, "out of memory for the fields to carry");
     free(names);
     return status;
@@ -129,41 +130,52 @@ void carried_fields_release(carried_fields *c) {
     free(c->fields);
     free(c->values);
     free(c->is_narrow);
+    free(c->ranges);
     *c = (carried_fields){0};
 }
 
-/* Carried values are float32: a notice where that shows, as more than 1/4096 of their range, or as infinity. The
- * first not again where it has been told of the whole field. */
-static void tell_rounded(const point_field *from, int is_told, uint64_t vertex_count, const float *values) {
-    const uint64_t count = vertex_count * (uint64_t)from->components;
-    const tc_type type = from->blocks->type;
-    double low = INFINITY, high = -INFINITY;
-    int is_beyond = 0;
-    if (!notice_wanted() || tc_type_bytes(type) < sizeof(float) || type == TC_F32) return;
-    for (uint64_t n = 0; n < count; n++) {
-        is_beyond = is_beyond || isinf(values[n]);
-        if (!isfinite(values[n])) continue;
-        low = fmin(low, (double)values[n]);
-        high = fmax(high, (double)values[n]);
-    }
-    const double step = step_between(low, high);
-    if (is_beyond)
-        notice("field '%s': values beyond float32, as which fields are carried, are infinite", from->name);
-    else if (!is_told && high > low && step * STEPS_MOST > high - low)
-        notice("field '%s' is carried as float32, which has steps of %.2g there, and its values differ by %.2g",
-               from->name, step, high - low);
+void carried_fields_begin(carried_fields *c) {
+    for (int n = 0; n < c->count; n++) c->ranges[n] = (carried_range){INFINITY, -INFINITY, 0};
 }
 
-int carried_fields_interpolate(carried_fields *c, engine *e, const tc_extract_options *how, const tc_mesh_data *mesh) {
+/* Whether float32 can be too coarse for values of the type. */
+static int may_be_rounded(tc_type type) { return tc_type_bytes(type) >= sizeof(float) && type != TC_F32; }
+
+static void extend_range(carried_range *range, const float *values, uint64_t count) {
+    for (uint64_t n = 0; n < count; n++) {
+        range->is_beyond = range->is_beyond || isinf(values[n]);
+        if (!isfinite(values[n])) continue;
+        range->low = fmin(range->low, (double)values[n]);
+        range->high = fmax(range->high, (double)values[n]);
+    }
+}
+
+int carried_fields_interpolate(carried_fields *c, engine *e, block_range blocks, const tc_extract_options *how,
+                               const tc_mesh_data *mesh) {
     for (int n = 0; n < c->count; n++) {
-        size_t bytes = (size_t)mesh->vertex_count * (size_t)c->from[n].components * sizeof **c->values;
+        const uint64_t count = mesh->vertex_count * (uint64_t)c->from[n].components;
         free(c->values[n]);
-        c->values[n] = malloc(bytes ? bytes : 1);
+        c->values[n] = malloc(count ? (size_t)count * sizeof **c->values : 1);
         if (!c->values[n]) return fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
-        int status = engine_carry(e, how, &c->from[n], c->values[n]);
+        int status = engine_carry(e, blocks, how, &c->from[n], c->values[n]);
         if (status) return status;
-        tell_rounded(&c->from[n], c->is_narrow[n], mesh->vertex_count, c->values[n]);
+        if (notice_wanted() && may_be_rounded(c->from[n].blocks->type))
+            extend_range(&c->ranges[n], c->values[n], count);
         c->fields[n].values = c->values[n];
     }
     return 0;
+}
+
+/* Float32 shows as more than 1/4096 of the range of the values, or as infinity. The first is not told again where it
+ * has been told of the whole field. */
+void carried_fields_tell(const carried_fields *c) {
+    for (int n = 0; n < c->count; n++) {
+        const carried_range *range = &c->ranges[n];
+        const double step = step_between(range->low, range->high), width = range->high - range->low;
+        if (range->is_beyond)
+            notice("field '%s': values beyond float32, as which fields are carried, are infinite", c->from[n].name);
+        else if (!c->is_narrow[n] && width > 0 && step * STEPS_MOST > width)
+            notice("field '%s' is carried as float32, which has steps of %.2g there, and its values differ by %.2g",
+                   c->from[n].name, step, width);
+    }
 }

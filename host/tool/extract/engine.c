@@ -81,9 +81,9 @@ int engine_upload(const options *o, const block_list *blocks, engine *e) {
     return 0;
 }
 
-int engine_origins_differ(const engine *e) {
+int engine_origins_differ(const engine *e, block_range blocks) {
     const mesh_part *first = NULL;
-    for (int n = 0; n < e->block_count; n++) {
+    for (int n = blocks.first; n < blocks.first + blocks.count; n++) {
         if (!e->parts[n].vertex_count) continue;
         if (first && memcmp(first->origin, e->parts[n].origin, sizeof first->origin) != 0) return 1;
         first = &e->parts[n];
@@ -170,13 +170,13 @@ static int extract_block(engine *e, int n, const tc_extract_options *how, tc_mes
     return engine_status(status);
 }
 
-int engine_extract(engine *e, const tc_extract_options *how, tc_mesh_data *data) {
+int engine_extract(engine *e, block_range blocks, const tc_extract_options *how, tc_mesh_data *data) {
     tc_mesh_data part;
     *data = (tc_mesh_data){.struct_size = sizeof *data};
-    if (e->block_count == 1 && e->grids[0]) return extract_block(e, 0, how, data);
+    if (blocks.count == 1 && e->grids[blocks.first]) return extract_block(e, blocks.first, how, data);
     int status = make_room(&e->joined, 1, 1, how->normals);
     e->fails_alike = status != 0;
-    for (int n = 0; n < e->block_count && !status; n++) {
+    for (int n = blocks.first; n < blocks.first + blocks.count && !status; n++) {
         if ((status = extract_block(e, n, how, &part))) break;
         status = join(&e->joined, &part, how->normals, data);
         e->fails_alike = status != 0;
@@ -187,8 +187,9 @@ int engine_extract(engine *e, const tc_extract_options *how, tc_mesh_data *data)
     return status;
 }
 
-int engine_carry(engine *e, const tc_extract_options *how, const point_field *field, float *values) {
-    for (int n = 0; n < e->block_count; n++) {
+int engine_carry(engine *e, block_range blocks, const tc_extract_options *how, const point_field *field,
+                 float *values) {
+    for (int n = blocks.first; n < blocks.first + blocks.count; n++) {
         const dataset_field *from = &field->blocks[n];
         const tc_field carried = {sizeof carried, from->type, from->components, from->values};
         uint64_t count = e->parts[n].vertex_count * (uint64_t)from->components;

@@ -16,10 +16,15 @@ typedef struct joined_mesh {
     uint64_t vertex_room, triangle_room;
 } joined_mesh;
 
+/* Blocks `first` to first + count - 1: those whose surfaces become one mesh. */
+typedef struct block_range {
+    int first, count;
+} block_range;
+
 typedef struct engine {
     tc_context *context;
     tc_grid **grids;  /* one per block; NULL of a block with nothing to contour */
-    mesh_part *parts; /* what each block gave to the last mesh, and its origin */
+    mesh_part *parts; /* what each block gave to the last mesh that it is in, and its origin */
     int block_count;
     tc_mesh *mesh; /* of one block, used for each in turn */
     joined_mesh joined;
@@ -34,17 +39,17 @@ void engine_close(engine *e);
  * that meet have the same vertices there. */
 int engine_upload(const options *o, const block_list *blocks, engine *e);
 
-/* Whether positions of some blocks are relative to another origin than those of others. */
-int engine_origins_differ(const engine *e);
+/* Whether positions of some of the blocks are relative to another origin than those of others. */
+int engine_origins_differ(const engine *e, block_range blocks);
 
 /* Sums of tc_count over the blocks. */
 int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts);
 
-/* The surface of all blocks; *data stays valid until the next call. Positions are relative to each part's origin,
+/* The surface of these blocks; *data stays valid until the next call. Positions are relative to each part's origin,
  * data->origin is the first one's. Times are summed, slabs those of the block with the most. */
-int engine_extract(engine *e, const tc_extract_options *how, tc_mesh_data *data);
+int engine_extract(engine *e, block_range blocks, const tc_extract_options *how, tc_mesh_data *data);
 
-/* Carries a field of the blocks' points onto the vertices of the mesh just made: value_count floats. */
-int engine_carry(engine *e, const tc_extract_options *how, const point_field *field, float *values);
+/* Carries a field of the blocks' points onto the vertices of the mesh just made of them. */
+int engine_carry(engine *e, block_range blocks, const tc_extract_options *how, const point_field *field, float *values);
 
 #endif

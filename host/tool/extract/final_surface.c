@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-void final_surface_begin(const engine *e, const tc_mesh_data *mesh, final_surface *out) {
-    *out = (final_surface){.mesh = *mesh, .parts = e->parts, .part_count = e->block_count};
+void final_surface_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, final_surface *out) {
+    *out = (final_surface){.mesh = *mesh, .parts = e->parts + blocks.first, .part_count = blocks.count};
 }
 
 /* The tuples of the vertices that the result has, from malloc; NULL with its failure's text without memory. */
@@ -43,7 +43,8 @@ int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
     collapsed_mesh *c = &shown->collapsed;
     int status = mesh_collapse(m->positions, m->vertex_count, m->triangles, m->triangle_count, c);
     s->has_dropped = 1;
-    s->dropped_count = c->dropped_count;
+    s->dropped_count += c->dropped_count;
+    s->crowded_edges += c->crowded_edges;
     if (status || !c->dropped_count) return status;
     shown->positions = gather(c, m->positions, 3);
     if (m->normals && shown->positions) shown->normals = gather(c, m->normals, 3);
@@ -56,11 +57,11 @@ int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
     return divide(shown);
 }
 
-void final_surface_tell_dropped(const final_surface *shown, const surface_report *s) {
-    if (shown->collapsed.crowded_edges)
+void final_surface_tell_dropped(const surface_report *s) {
+    if (s->crowded_edges)
         notice("isovalue %s: without its triangles of zero area the surface has %" PRIu64 " edges of more than two "
                "triangles, as it had there before",
-               s->iso->text, shown->collapsed.crowded_edges);
+               s->iso->text, s->crowded_edges);
     if (s->has_dropped && s->summary.degenerate_triangles)
         notice("isovalue %s: %" PRIu64 " triangles of zero area are left: their corners are apart, on a line",
                s->iso->text, s->summary.degenerate_triangles);

@@ -26,7 +26,7 @@ static double reach_of(const cell_range *cells, const coordinate_numbers *number
 
 /* Whether some vertex may lie where a cell has few steps: looks at cells, at all of them or at some. */
 static int may_be_coarse(const surface_source *s, const double *zero, int digits, int all) {
-    for (int n = 0; n < s->engine->block_count; n++) {
+    for (int n = s->range.first; n < s->range.first + s->range.count; n++) {
         const coordinate_numbers numbers = numbers_of(s, n, zero, digits);
         cell_range cells;
         double step = 0;
@@ -44,7 +44,7 @@ static int carry_steps(const surface_source *s, const double *zero, int digits, 
     dataset_field *fields = calloc((size_t)count + 1, sizeof *fields);
     int status = fields ? 0 : fail(STATUS_FAILED, "out of memory for %d blocks", count);
     *steps = NULL;
-    for (int n = 0; n < count && !status; n++) {
+    for (int n = s->range.first; n < s->range.first + s->range.count && !status; n++) {
         const coordinate_numbers numbers = numbers_of(s, n, zero, digits);
         fields[n] = (dataset_field){.name = "steps", .components = 1, .type = TC_F32};
         if (!s->engine->parts[n].vertex_count) continue;
@@ -53,7 +53,8 @@ static int carry_steps(const surface_source *s, const double *zero, int digits, 
     }
     if (!status && !(*steps = malloc((size_t)(s->mesh->vertex_count + 1) * sizeof **steps)))
         status = fail(STATUS_FAILED, "out of memory for the sizes of cells at the surface");
-    if (!status) status = engine_carry(s->engine, s->how, &(point_field){.components = 1, .blocks = fields}, *steps);
+    if (!status)
+        status = engine_carry(s->engine, s->range, s->how, &(point_field){.components = 1, .blocks = fields}, *steps);
     for (int n = 0; n < count && fields; n++) free((void *)fields[n].values);
     free(fields);
     if (!status) return 0;
@@ -62,45 +63,28 @@ static int carry_steps(const surface_source *s, const double *zero, int digits, 
     return status;
 }
 
-/* Vertices where cells have few steps. */
-typedef struct coarse_count {
-    uint64_t coarse, least; /* below STEPS_FINE, COARSE_STEPS_LEAST */
-    double fewest;          /* steps */
-} coarse_count;
-
-static int count_coarse(const surface_source *s, const double *zero, int digits, int all, coarse_count *out) {
+static int count_coarse(const surface_source *s, const double *zero, int digits, int all, coarse_count *sum) {
     float *steps;
-    *out = (coarse_count){.fewest = INFINITY};
+    sum->vertices += s->mesh->vertex_count;
     if (!s->mesh->vertex_count || !may_be_coarse(s, zero, digits, all)) return 0;
     int status = carry_steps(s, zero, digits, &steps);
     for (uint64_t v = 0; v < s->mesh->vertex_count && !status; v++) {
         if (!(steps[v] > 0) || steps[v] >= STEPS_FINE) continue;
-        out->coarse++;
-        out->least += steps[v] < COARSE_STEPS_LEAST;
-        out->fewest = fmin(out->fewest, (double)steps[v]);
+        sum->fewest = sum->coarse ? fmin(sum->fewest, (double)steps[v]) : (double)steps[v];
+        sum->coarse++;
+        sum->lost += steps[v] < COARSE_STEPS_LEAST;
     }
     free(steps);
     return status;
 }
 
-int precision_tell_mesh(const surface_source *s, int check, precision_verdict *verdict) {
-    coarse_count found;
-    *verdict = (precision_verdict){0};
-    if (!notice_wanted() && !check) return 0;
-    int status = count_coarse(s, NULL, FLT_MANT_DIG, check, &found);
-    verdict->any = found.coarse;
-    verdict->vertices = found.least;
-    if (!status && found.coarse)
-        notice("isovalue %s: float32 is coarse at %" PRIu64 " of %" PRIu64
-               " vertices: cells are as thin as %.2g of its "
-               "steps there; parts of the input that lie far from its middle are finer in files of their own",
-               s->iso->text, found.coarse, s->mesh->vertex_count, found.fewest);
-    return status;
+int precision_count_mesh(const surface_source *s, int check, coarse_count *sum) {
+    return notice_wanted() || check ? count_coarse(s, NULL, FLT_MANT_DIG, check, sum) : 0;
 }
 
 /* Coordinates beyond float32, where the file has no other. */
 static int check_reach(const surface_source *s, const double *zero) {
-    for (int n = 0; n < s->engine->block_count; n++) {
+    for (int n = s->range.first; n < s->range.first + s->range.count; n++) {
         const coordinate_numbers numbers = numbers_of(s, n, zero, FLT_MANT_DIG);
         cell_range cells;
         if (!s->engine->parts[n].vertex_count) continue;
@@ -114,31 +98,33 @@ static int check_reach(const surface_source *s, const double *zero) {
     return 0;
 }
 
-int precision_tell_file(const surface_source *s, const double *zero, int is_chosen, int digits, int check,
-                        precision_verdict *verdict) {
-    const double *origin = s->mesh->origin;
-    coarse_count found;
-    *verdict = (precision_verdict){0};
+int precision_count_file(const surface_source *s, const double zero[3], int digits, int check, coarse_count *sum) {
     int status = digits == FLT_MANT_DIG ? check_reach(s, zero) : 0;
     if (status || (!notice_wanted() && !check)) return status;
-    status = count_coarse(s, zero, digits, check, &found);
-    verdict->any = found.coarse;
-    verdict->vertices = found.least;
-    if (status || !found.coarse) return status;
-    if (engine_origins_differ(s->engine))
+    return count_coarse(s, zero, digits, check, sum);
+}
+
+void precision_tell_mesh(const surface_report *s) {
+    const coarse_count *found = &s->mesh_numbers;
+    if (found->coarse)
+        notice("isovalue %s: float32 is coarse at %" PRIu64 " of %" PRIu64
+               " vertices: cells are as thin as %.2g of its "
+               "steps there; parts of the input that lie far from its middle are finer in files of their own",
+               s->iso->text, found->coarse, found->vertices, found->fewest);
+}
+
+void precision_tell_file(const surface_report *s, int is_chosen) {
+    const coarse_count *found = &s->file_numbers;
+    if (!found->coarse) return;
+    if (!s->has_origin)
         notice("isovalue %s: blocks lie so far from each other that cells are as thin as %.2g steps of the file's "
                "numbers: shapes are lost; --blocks separate keeps them, without --origin-at or with that of one block",
-               s->iso->text, found.fewest);
-    else if (is_chosen)
-        notice(
-            "isovalue %s: --origin-at lies so far from the surface that cells are as thin as %.2g steps of the file's "
-            "numbers: shapes are lost; choose a point near %s,%s,%s",
-            s->iso->text, found.fewest, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
-            shortest_number(origin[2]).text);
+               s->iso->text, found->fewest);
     else
-        notice("isovalue %s: the surface lies so far from zero that cells are as thin as %.2g steps of the file's "
-               "numbers: shapes are lost; --origin-at %s,%s,%s keeps them",
-               s->iso->text, found.fewest, shortest_number(origin[0]).text, shortest_number(origin[1]).text,
-               shortest_number(origin[2]).text);
-    return 0;
+        notice(is_chosen ? "isovalue %s: --origin-at lies so far from the surface that cells are as thin as %.2g steps "
+                           "of the file's numbers: shapes are lost; choose a point near %s,%s,%s"
+                         : "isovalue %s: the surface lies so far from zero that cells are as thin as %.2g steps of the "
+                           "file's numbers: shapes are lost; --origin-at %s,%s,%s keeps them",
+               s->iso->text, found->fewest, shortest_number(s->origin[0]).text, shortest_number(s->origin[1]).text,
+               shortest_number(s->origin[2]).text);
 }

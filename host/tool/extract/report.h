@@ -10,24 +10,34 @@
 #include "command_line/options.h"
 #include "tetracubes.h"
 
-/* One isovalue's results. */
+/* Vertices where the numbers that coordinates are have few steps across a cell (precision.h). */
+typedef struct coarse_count {
+    uint64_t vertices; /* of all meshes that were looked at */
+    uint64_t coarse;   /* where it shows */
+    uint64_t lost;     /* where the shape is lost */
+    double fewest;     /* steps, where coarse is not 0 */
+} coarse_count;
+
+/* One isovalue's results: of one mesh, or of several, the sums. */
 typedef struct surface_report {
     const typed_isovalue *iso;
     uint64_t vertex_count, triangle_count, active_cell_count;
     double classify_ms, emit_ms, readback_ms;
     uint32_t slab_count;
-    int has_mesh;         /* 0: counted only; then the rest is not filled */
-    mesh_summary summary; /* bounds in world space. This and the hash: not where no report is printed */
-    uint64_t hash;
+    int has_mesh;               /* 0: counted only; then the rest is not filled */
+    mesh_summary summary;       /* bounds in world space. This and the hash: not where no report is printed */
+    uint64_t hash;              /* of several meshes: mesh_hash_add of each in turn */
     int has_origin;             /* 0: blocks that lie far from each other have origins of their own */
     double origin[3];           /* that positions in memory, and so the hash, are relative to */
     uint64_t soup_vertex_count; /* of the file: three of its own for every triangle; 0 where it shares them */
     int has_dropped;
     uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
+    uint64_t crowded_edges; /* that dropping has left: of more than two triangles */
     int has_topology;
     mesh_topology topology;
-    int is_coarse;            /* float32 is, for the mesh (precision.h) */
-    uint64_t coarse_vertices; /* with --check: where cells are only few steps of numbers thick */
+    coarse_count mesh_numbers, file_numbers; /* float32 of the mesh; the numbers in the file */
+    uint64_t coarse_vertices;                /* with --check: where the shape is lost in one of them */
+    int is_relative;                         /* the file holds coordinates relative to the mesh's origin */
     int has_verdict;
     int verified;
     char *path; /* of the file, or files, written, or NULL; from malloc */

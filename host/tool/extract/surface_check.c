@@ -6,14 +6,16 @@
 #include "precision.h"
 #include "terminal/notice.h"
 
-int surface_verify(engine *reference_engine, const tc_extract_options *how, const tc_mesh_data *m, surface_report *s) {
+int surface_verify(engine *reference_engine, block_range blocks, const tc_extract_options *how, const tc_mesh_data *m,
+                   surface_report *s) {
     tc_mesh_data reference;
     char text[256];
-    int status = engine_extract(reference_engine, how, &reference);
+    int status = engine_extract(reference_engine, blocks, how, &reference);
     if (status) return status;
+    const int is_same = meshes_are_same(m, &reference, text, sizeof text);
+    s->verified = is_same && (s->verified || !s->has_verdict);
     s->has_verdict = 1;
-    s->verified = meshes_are_same(m, &reference, text, sizeof text);
-    if (!s->verified) message("isovalue %s: verification failed: %s", s->iso->text, text);
+    if (!is_same) message("isovalue %s: verification failed: %s", s->iso->text, text);
     return 0;
 }
 
@@ -39,11 +41,28 @@ static int explain_faults(const block_list *blocks, const surface_report *s, int
     return 0;
 }
 
-int surface_check(const block_list *blocks, const tc_mesh_data *m, surface_report *s, int *good) {
-    const mesh_topology *t = &s->topology;
-    int status = mesh_check(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->topology);
+int surface_check(const tc_mesh_data *m, surface_report *s) {
+    mesh_topology *sum = &s->topology, t;
+    int status = mesh_check(m->positions, m->vertex_count, m->triangles, m->triangle_count, &t);
     if (status) return status;
     s->has_topology = 1;
+    sum->boundary_edges += t.boundary_edges;
+    sum->nonmanifold_edges += t.nonmanifold_edges;
+    sum->nonmanifold_vertices += t.nonmanifold_vertices;
+    sum->misoriented_edges += t.misoriented_edges;
+    sum->unbalanced_edges += t.unbalanced_edges;
+    sum->orphan_vertices += t.orphan_vertices;
+    sum->invalid_triangles += t.invalid_triangles;
+    sum->euler_characteristic += t.euler_characteristic;
+    sum->components += t.components;
+    sum->area += t.area;
+    sum->volume += t.volume;
+    return 0;
+}
+
+int surface_judge(const block_list *blocks, const surface_report *s, int *good) {
+    const mesh_topology *t = &s->topology;
+    int status = 0;
     *good = !t->nonmanifold_edges && !t->misoriented_edges && !t->orphan_vertices && !t->invalid_triangles &&
             (!t->nonmanifold_vertices || blocks_may_touch(blocks));
     if ((t->misoriented_edges || t->nonmanifold_edges) && (status = explain_faults(blocks, s, good))) return status;
