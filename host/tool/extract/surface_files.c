@@ -69,7 +69,7 @@ static int check_files(const options *o, const dataset *d, const typed_isovalue 
     int status = 0;
     for (int block = first; block < end && !status; block++) {
         char *path = file_name(o, iso, block);
-        status = path ? input_overwrite_check(o, path) : STATUS_FAILED;
+        status = path ? input_overwrite_check(o, d, path) : STATUS_FAILED;
         if (!status) status = output_check(path);
         free(path);
     }

@@ -3,7 +3,6 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "library_status.h"
-#include "mapping.h"
 #include "output.h"
 #include "read.h"
 #include "shortest.h"
@@ -107,7 +106,7 @@ sample_array *input_samples(const dataset *d, const scalar *field) {
     return arrays;
 }
 
-int input_overwrite_check(const options *o, const char *path) {
+int input_overwrite_check(const options *o, const dataset *d, const char *path) {
     struct stat in, out;
     if (output_is_dash(path)) return 0;
     for (int n = 0; n < o->operand_count; n++) {
@@ -115,7 +114,7 @@ int input_overwrite_check(const options *o, const char *path) {
         if (in.st_dev == out.st_dev && in.st_ino == out.st_ino && S_ISREG(in.st_mode))
             return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
     }
-    if (mapping_was_opened(path))
+    if (d && file_list_has(&d->files, path))
         return fail(STATUS_USAGE, "-o %s is a file that the input names, read as part of it: name another file", path);
     return 0;
 }

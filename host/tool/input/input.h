@@ -27,9 +27,9 @@ void input_tell_rounded(const char *name);
 /* The notice that a field of cells was averaged. */
 void input_tell_average(const dataset *d, const char *name);
 
-/* STATUS_USAGE where path, the output, is one of the inputs or, once they are read, a file that they name: it must not
- * replace what it is made from. */
-int input_overwrite_check(const options *o, const char *path);
+/* STATUS_USAGE where path, the output, is one of the inputs or a file that the dataset was read from: it must not
+ * replace what it is made from. d is NULL before the inputs are read. */
+int input_overwrite_check(const options *o, const dataset *d, const char *path);
 
 /* *has: whether a field is named, or there is just one and nothing to choose in it: where input_select can succeed
  * though the command can do without. Returns 0 or STATUS_FAILED. */
