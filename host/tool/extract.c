@@ -30,6 +30,7 @@
 
 typedef struct job {
     const options *o;
+    read_request request;
     dataset data;
     scalar field;
     carried_fields carried;
@@ -41,12 +42,12 @@ typedef struct job {
     int failed_count; /* surfaces that failed verification or check */
 } job;
 
-static int check_usage(const options *o) {
+static int check_usage(job *j) {
+    const options *o = j->o;
     if (!o->isovalue_count)
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
-    read_request request;
-    int status = input_request(o, &request);
+    int status = input_request(o, &j->request);
     return status ? status : surface_files_check(o, NULL);
 }
 
@@ -54,10 +55,10 @@ static int check_usage(const options *o) {
 
 static int read_input(job *j) {
     double begin = now_ms();
-    int status = input_read(j->o, &j->data);
+    int status = input_read(&j->request, &j->data);
     if (!status) status = surface_files_check(j->o, &j->data);
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
-    if (!status) status = input_select(j->o, &j->data, &j->field);
+    if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
     j->report.read_ms = now_ms() - begin;
     return status ? status : progress_status();
@@ -280,7 +281,7 @@ int extract_run(const options *o) {
     job j = {.o = o};
     j.report.o = o;
     j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
-    int status = check_usage(o);
+    int status = check_usage(&j);
     if (status) goto cleanup;
     if ((status = read_and_start(&j))) goto cleanup;
     if ((status = cut(&j))) goto cleanup;

@@ -9,7 +9,6 @@
 #include "input/input.h"
 #include "input/statistics.h"
 #include "progress.h"
-#include "read.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
 #include "terminal/notice.h"
@@ -194,13 +193,12 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     read_request request;
     int status = input_request(o, &request);
     request.describe = 1;
-    if (!status) status = dataset_read(&request, d);
-    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", f->path, d->notices[n]);
+    if (!status) status = input_read(&request, d);
     if (!status) status = progress_status();
-    if (!status) status = open_choices_find(o, d, &f->open);
+    if (!status) status = open_choices_find(&request, d, &f->open);
     if (!status) status = option_effects_check_input(o, d, !f->open.can_select);
     if (!status && f->open.can_select) {
-        status = input_select(o, d, field);
+        status = input_select(&request, d, field);
         f->field = field;
     }
     if (!status) tell_rounded(f);

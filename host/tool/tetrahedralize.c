@@ -24,6 +24,7 @@
 
 typedef struct conversion {
     const options *o;
+    read_request request;
     dataset data; /* owns what is joined, too */
     scalar field;
     block_list blocks;
@@ -41,11 +42,12 @@ static int check_usage(const options *o) {
 }
 
 static int read_input(conversion *c) {
-    int has_choice = 0, status = input_read(c->o, &c->data);
+    int has_choice = 0, status = input_request(c->o, &c->request);
+    if (!status) status = input_read(&c->request, &c->data);
     if (!status) status = input_overwrite_check(c->o, &c->data, c->o->output);
-    if (!status) status = input_has_choice(c->o, &c->data, &has_choice);
+    if (!status) status = input_has_choice(&c->request, &c->data, &has_choice);
     if (!status) status = option_effects_check_input(c->o, &c->data, !has_choice);
-    if (!status && has_choice) status = input_select(c->o, &c->data, &c->field);
+    if (!status && has_choice) status = input_select(&c->request, &c->data, &c->field);
     return status ? status : progress_status();
 }
 

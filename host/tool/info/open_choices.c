@@ -2,7 +2,6 @@
 #include "open_choices.h"
 
 #include "exit_status.h"
-#include "request.h"
 #include "select.h"
 #include "terminal/json_report.h"
 
@@ -10,13 +9,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-int open_choices_find(const options *o, const dataset *d, open_choices *c) {
-    const field_request request = {.name = o->field, .component = o->component};
-    int components = 0, status = scalar_components(d, o->operands[0], &request, &components);
+int open_choices_find(const read_request *request, const dataset *d, open_choices *c) {
+    int components = 0, status = scalar_components(d, request, &components);
     *c = (open_choices){.meaning = d->frames && d->blocks->fields->meaning ? d->blocks->fields->meaning : ""};
     if (status) return status;
     if (d->frames > 1) c->frames = d->frames;
-    if (components > 1 && o->component == COMPONENT_OPEN) c->components = components;
+    if (components > 1 && request->component == COMPONENT_OPEN) c->components = components;
     c->can_select = components && !c->components;
     if (components) return 0;
     c->field_count = common_field_names(d, &c->fields);

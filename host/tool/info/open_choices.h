@@ -3,7 +3,7 @@
 #define OPEN_CHOICES_H
 
 #include "dataset.h"
-#include "command_line/options.h"
+#include "request.h"
 
 #include <jansson.h>
 
@@ -17,7 +17,7 @@ typedef struct open_choices {
 } open_choices;
 
 /* Returns 0, with *c to be released, or a status with its text: where --field names what is not there. */
-int open_choices_find(const options *o, const dataset *d, open_choices *c);
+int open_choices_find(const read_request *request, const dataset *d, open_choices *c);
 void open_choices_release(open_choices *c);
 
 /* An array: for each choice its option, and how many there are or their names. */

@@ -42,15 +42,15 @@ int input_request(const options *o, read_request *request) {
     request->skip = o->skip;
     request->component = o->component;
     request->frame = o->frame;
+    request->field = o->field;
+    request->has_nodata = o->has_nodata;
+    request->nodata = o->nodata;
     return 0;
 }
 
-int input_read(const options *o, dataset *d) {
-    read_request request = {0};
-    *d = (dataset){0};
-    int status = input_request(o, &request);
-    if (!status) status = dataset_read(&request, d);
-    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", request.path, d->notices[n]);
+int input_read(const read_request *request, dataset *d) {
+    int status = dataset_read(request, d);
+    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", request->path, d->notices[n]);
     return status;
 }
 
@@ -63,13 +63,12 @@ void input_tell_rounded(const char *name) {
     notice("field '%s' has 64-bit integers that no double holds: each is taken as the nearest double", name);
 }
 
-int input_select(const options *o, dataset *d, scalar *out) {
-    const field_request request = {o->field, o->component, o->has_nodata, o->nodata};
-    int status = scalar_select(d, o->operands[0], &request, out);
+int input_select(const read_request *request, dataset *d, scalar *out) {
+    int status = scalar_select(d, request, out);
     if (!status && out->is_rounded) input_tell_rounded(out->name);
     if (!status && out->is_averaged) input_tell_average(d, out->name);
-    if (!status && o->has_nodata && !out->has_nodata)
-        notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", shortest_number(o->nodata).text,
+    if (!status && request->has_nodata && !out->has_nodata)
+        notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", shortest_number(request->nodata).text,
                out->is_averaged ? "cell's value" : "sample", out->name[0] ? "field '" : "the input", out->name,
                out->name[0] ? "'" : "");
     return status;
@@ -119,13 +118,14 @@ int input_overwrite_check(const options *o, const dataset *d, const char *path) 
     return 0;
 }
 
-int input_has_choice(const options *o, const dataset *d, int *has) {
+int input_has_choice(const read_request *request, const dataset *d, int *has) {
     const char **names;
     int count = common_field_names(d, &names);
     if (count < 0) return STATUS_FAILED;
-    int is_plain = count == 1 && (o->component != COMPONENT_OPEN || block_field(d->blocks, names[0])->components == 1);
+    int is_plain =
+        count == 1 && (request->component != COMPONENT_OPEN || block_field(d->blocks, names[0])->components == 1);
     free(names);
-    *has = o->field || is_plain;
+    *has = request->field || is_plain;
     return 0;
 }
 

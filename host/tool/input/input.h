@@ -7,15 +7,15 @@
 #include "request.h"
 #include "select.h"
 
-/* The options of the inputs as their reader wants them; refuses none or too many, and --dims without --type. */
+/* All that the options say about the inputs; refuses none or too many, and --dims without --type. */
 int input_request(const options *o, read_request *request);
 
-/* Reads the inputs; notices of the reader become notices of the run. *d is to be released where 0 is returned. */
-int input_read(const options *o, dataset *d);
+/* Reads the inputs; notices of the reader become notices of the run. *d is to be released in any case. */
+int input_read(const read_request *request, dataset *d);
 
 /* Chooses the field by --field, --component and --nodata, with notices where it had to be averaged,
  * and where --nodata is nowhere in it. */
-int input_select(const options *o, dataset *d, scalar *out);
+int input_select(const read_request *request, dataset *d, scalar *out);
 
 /* The field's samples, an array per block, for statistics: of points that some cell of three dimensions uses, or of all
  * where no block has such a cell; from malloc, NULL with its failure's text without memory. */
@@ -33,7 +33,7 @@ int input_overwrite_check(const options *o, const dataset *d, const char *path);
 
 /* *has: whether a field is named, or there is just one and nothing to choose in it: where input_select can succeed
  * though the command can do without. Returns 0 or STATUS_FAILED. */
-int input_has_choice(const options *o, const dataset *d, int *has);
+int input_has_choice(const read_request *request, const dataset *d, int *has);
 
 /* A failure of the library that grids as a file describes them are to blame for; of raw input the options are. */
 int input_status(const options *o, tc_status status);
