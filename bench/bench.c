@@ -8,6 +8,7 @@
 #include "device_limits.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "measure.h"
 #include "progress.h"
 #include "report.h"

@@ -3,8 +3,8 @@
 
 #include "exit_status.h"
 #include "failure.h"
-#include "nearest.h"
 #include "sample_types.h"
+#include "similar_name.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -29,7 +29,7 @@ static int take_field(const char *text, bench_options *o) {
     o->fields[o->field_count++] = f;
     if (f) return 0;
     for (const field *other = fields; other->name; other++) names[count++] = other->name;
-    const char *meant = nearest_name(text, names, count);
+    const char *meant = similar_name(text, names, count);
     return fail(STATUS_USAGE, "--field: there is no field '%s'%s%s; see 'tetracubes-bench --help'", text,
                 meant ? "; did you mean " : "", meant ? meant : "");
 }
@@ -197,7 +197,7 @@ static const option table[] = {
 static int unknown_option(const char *typed) {
     const char *names[TABLE_COUNT];
     for (size_t n = 0; n < TABLE_COUNT; n++) names[n] = table[n].name;
-    const char *meant = nearest_name(typed, names, TABLE_COUNT);
+    const char *meant = similar_name(typed, names, TABLE_COUNT);
     return fail(STATUS_USAGE, "there is no option %s; %s%s", typed,
                 meant ? "did you mean " : "see 'tetracubes-bench --help'", meant ? meant : "");
 }

@@ -2,6 +2,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "measure.h"
 
 #include <stdlib.h>

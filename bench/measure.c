@@ -3,9 +3,10 @@
 #include "complexes.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "mesh_check.h"
+#include "mesh_compare.h"
 #include "progress.h"
-#include "verify.h"
 
 #include <CL/cl.h>
 #include <inttypes.h>
@@ -13,21 +14,6 @@
 #include <string.h>
 
 #define LEAST_REPEATS 3
-
-int library_status(tc_status status) {
-    switch (status) {
-    case TC_OK:
-        return 0;
-    case TC_ERROR_ARGUMENT:
-        return fail(STATUS_USAGE, "%s", tc_message());
-    case TC_ERROR_DATA:
-        return fail(STATUS_INPUT, "%s", tc_message());
-    case TC_ERROR_CANCELLED:
-        return progress_status();
-    default:
-        return fail(STATUS_FAILED, "%s", tc_message());
-    }
-}
 
 static int by_value(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
@@ -112,7 +98,7 @@ static int reference_compare(const measurement *m, const tc_mesh_data *device, s
     int status = library_status(tc_context_create(&options, &context));
     if (!status) status = library_status(samples_open(m->samples, context, &grid));
     if (!status) status = extract(grid, &m->first, &mesh, &data);
-    if (!status && !verify_same(device, &data, text, sizeof text))
+    if (!status && !meshes_are_same(device, &data, text, sizeof text))
         status = fail(STATUS_CHECK, "%s: verification failed: %s", m->label, text);
     double ms = data.timings.total_ms;
     *reference_ms = (spread){ms, ms, ms};

@@ -82,7 +82,4 @@ const char *method_name(tc_method method);
 /* Sorts the values. */
 spread spread_of(double *values, int count);
 
-/* The exit status for a status of the library, its message taken over; 0 for TC_OK. */
-int library_status(tc_status status);
-
 #endif

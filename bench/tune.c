@@ -12,6 +12,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "measure.h"
 #include "mesh_check.h"
 #include "progress.h"

@@ -46,4 +46,9 @@ void mesh_summarize(const float *positions, uint64_t vertex_count, const uint32_
 /* XXH64 (seed 0) of the positions' bytes, then the indices' bytes, both as they lie in memory. */
 uint64_t mesh_hash(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count);
 
+/* The hash of several meshes in turn, one more of them added: XXH64 with the hash so far, 0 before the first, as its
+ * seed. */
+uint64_t mesh_hash_add(uint64_t before, const float *positions, uint64_t vertex_count, const uint32_t *triangles,
+                       uint64_t triangle_count);
+
 #endif

@@ -159,8 +159,13 @@ void mesh_summarize(const float *positions, uint64_t vertex_count, const uint32_
 }
 
 uint64_t mesh_hash(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count) {
+    return mesh_hash_add(0, positions, vertex_count, triangles, triangle_count);
+}
+
+uint64_t mesh_hash_add(uint64_t before, const float *positions, uint64_t vertex_count, const uint32_t *triangles,
+                       uint64_t triangle_count) {
     XXH64_state_t state;
-    XXH64_reset(&state, 0);
+    XXH64_reset(&state, before);
     if (vertex_count > 0) XXH64_update(&state, positions, vertex_count * 3 * sizeof(float));
     if (triangle_count > 0) XXH64_update(&state, triangles, triangle_count * 3 * sizeof(uint32_t));
     return XXH64_digest(&state);

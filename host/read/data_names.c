@@ -160,12 +160,12 @@ static int check_links(const char *header_path, const char *path) {
     return status;
 }
 
-int data_names_open(const char *header_path, const char *path, mapping *m) {
+int data_names_open(const char *header_path, const char *path, dataset *out, mapping *m) {
     *m = (mapping){0};
     int status = check_links(header_path, path);
     if (!status && mapping_is_stream(path)) /* a pipe could be waited for without end */
         status = fail(STATUS_INPUT, "%s: is not a regular file, as data files have to be", path);
-    return status ? status : mapping_open(path, m);
+    return status ? status : dataset_map(out, path, m);
 }
 
 void data_names_cut(data_names *names, int64_t count) {

@@ -7,6 +7,7 @@
 #ifndef DATA_NAMES_H
 #define DATA_NAMES_H
 
+#include "dataset.h"
 #include "header_text.h"
 #include "mapping.h"
 
@@ -29,9 +30,9 @@ int data_names_is_pattern(const char *text);
  * *axes_per_file is left alone where not given. */
 int data_names_pattern(data_names *names, const char *header_path, const char *text, int64_t *axes_per_file);
 
-/* Opens one of the names. 0, or STATUS_INPUT where it cannot be, or where links lead out of the folders that the header
- * is named in and lies in. */
-int data_names_open(const char *header_path, const char *path, mapping *m);
+/* Maps one of the names as a file of the dataset. 0, or STATUS_INPUT where it cannot be, or where links lead out of the
+ * folders that the header is named in and lies in. */
+int data_names_open(const char *header_path, const char *path, dataset *out, mapping *m);
 
 /* Leaves the first so many. */
 void data_names_cut(data_names *names, int64_t count);

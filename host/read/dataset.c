@@ -25,6 +25,13 @@ void *dataset_allocate(dataset *d, uint64_t bytes) {
     return NULL;
 }
 
+int dataset_map(dataset *d, const char *path, mapping *m) {
+    int status = mapping_open(path, m);
+    if (!status) status = file_list_add(&d->files, m->identity);
+    if (status) mapping_close(m);
+    return status;
+}
+
 int dataset_keep(dataset *d, void *memory) {
     dataset_memory *entry = malloc(sizeof *entry);
     if (!entry) {
@@ -125,7 +132,8 @@ void dataset_release(dataset *d) {
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);
     free(d->blocks);
     free(d->absent);
-    mapping_close(&(mapping){d->mapping, d->mapping_bytes});
+    mapping_close(&(mapping){.bytes = d->mapping, .size = d->mapping_bytes});
+    file_list_release(&d->files);
     for (int n = 0; n < d->notice_count; n++) free(d->notices[n]);
     free(d->notices);
     *d = (dataset){0};

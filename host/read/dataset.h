@@ -8,6 +8,7 @@
 #ifndef DATASET_H
 #define DATASET_H
 
+#include "file_list.h"
 #include "tetracubes.h"
 
 typedef struct dataset_field {
@@ -74,6 +75,7 @@ typedef struct dataset {
 
     void *mapping; /* a file mapped into memory, or NULL */
     size_t mapping_bytes;
+    file_list files;               /* all that the input was read from: none may be overwritten while it is in use */
     struct dataset_memory *memory; /* list of all that dataset_allocate gave */
 } dataset;
 
@@ -83,6 +85,10 @@ void dataset_release(dataset *d);
 /* Memory that lives as long as the dataset, page-aligned and in huge pages where large; NULL, with STATUS_FAILED's text
  * set, where there is none. 0 bytes: memory all the same. */
 void *dataset_allocate(dataset *d, uint64_t bytes);
+
+/* Maps a file of the input (mapping.h) and notes it among its files; the mapping is the caller's. 0 or a status. */
+struct mapping;
+int dataset_map(dataset *d, const char *path, struct mapping *m);
 
 /* Takes over memory from samples_allocate: it lives as long as the dataset, or is freed at once where this fails. 0 or
  * STATUS_FAILED. */

@@ -17,35 +17,6 @@
 #include <sys/statfs.h>
 #include <unistd.h>
 
-enum { FILES_KEPT = 1 << 20 }; /* as many as a header can name; pages of it that are not used take no memory */
-
-/* The files mapped last. */
-static struct {
-    pthread_mutex_t lock;
-    struct file_identity {
-        dev_t device;
-        ino_t number;
-    } files[FILES_KEPT];
-    uint64_t count; /* of all; file n is in place n modulo FILES_KEPT */
-} opened = {.lock = PTHREAD_MUTEX_INITIALIZER};
-
-static void remember(const struct stat *about) {
-    pthread_mutex_lock(&opened.lock);
-    opened.files[opened.count++ % FILES_KEPT] = (struct file_identity){about->st_dev, about->st_ino};
-    pthread_mutex_unlock(&opened.lock);
-}
-
-int mapping_was_opened(const char *path) {
-    struct stat about;
-    int found = 0;
-    if (stat(path, &about)) return 0;
-    pthread_mutex_lock(&opened.lock);
-    for (uint64_t n = 0; n < opened.count && n < FILES_KEPT && !found; n++)
-        found = opened.files[n].device == about.st_dev && opened.files[n].number == about.st_ino;
-    pthread_mutex_unlock(&opened.lock);
-    return found;
-}
-
 int mapping_is_standard_input(const char *path) {
     static const char *const names[] = {"-", "/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"};
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
@@ -71,7 +42,7 @@ enum { STREAMS_KEPT = 8 };
 static struct {
     pthread_mutex_t lock;
     struct stream {
-        struct file_identity of;
+        file_identity of;
         int is_standard_input, file;
     } kept[STREAMS_KEPT];
     int count;
@@ -147,7 +118,7 @@ static int read_stream(const char *path, struct stream **out) {
     struct stat about = {0};
     struct stream s = {.is_standard_input = is_standard};
     fstat(from, &about);
-    s.of = (struct file_identity){about.st_dev, about.st_ino};
+    s.of = (file_identity){about.st_dev, about.st_ino};
     int status = take_stream(path, from, &s.file);
     if (!is_standard) close(from);
     if (status) return status;
@@ -190,15 +161,15 @@ int mapping_open(const char *path, mapping *m) {
     } else if ((uintmax_t)about.st_size > SIZE_MAX / 2) {
         status = fail(STATUS_INPUT, "%s: is larger than this machine can address", path);
     } else if (about.st_size > 0) {
-        remember(&about);
         void *bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
         if (bytes == MAP_FAILED)
             status = fail(errno == ENOMEM ? STATUS_FAILED : STATUS_INPUT, "%s: cannot be mapped into memory: %s", path,
                           strerror(errno));
         else
-            *m = (mapping){bytes, (size_t)about.st_size};
+            *m = (mapping){.bytes = bytes, .size = (size_t)about.st_size};
         if (m->bytes) truncation_watch_file(file, m->bytes);
     }
+    if (!status) m->identity = (file_identity){about.st_dev, about.st_ino};
     close(file);
     return status;
 }

@@ -2,11 +2,14 @@
 #ifndef MAPPING_H
 #define MAPPING_H
 
+#include "file_list.h"
+
 #include <stddef.h>
 
 typedef struct mapping {
     const unsigned char *bytes; /* page-aligned; NULL for an empty file */
     size_t size;
+    file_identity identity;
 } mapping;
 
 /* Maps a regular file, or what comes but once: "-", all of standard input, or a pipe by its name. That is read into
@@ -19,9 +22,6 @@ int mapping_is_standard_input(const char *path);
 /* Whether path is standard input, another open file by its number, or a pipe: it has no ending that tells the format,
  * and no other files lie beside it. */
 int mapping_is_stream(const char *path);
-
-/* Nonzero where path is one of the million files mapped last in this process, under whatever name. */
-int mapping_was_opened(const char *path);
 
 /* Accepts a zeroed mapping; zeroes it. */
 void mapping_close(mapping *m);

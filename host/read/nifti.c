@@ -371,7 +371,7 @@ int nifti_read(const read_request *request, const mapping *file, dataset *out) {
     int status = dataset_image_begin(out),
         by_image = !status && find_partner(request->path, ".img", header_endings, partner, sizeof partner);
     if (by_image) {
-        if ((status = mapping_open(partner, &other))) goto cleanup;
+        if ((status = dataset_map(out, partner, &other))) goto cleanup;
         h.path = partner;
         header = &other;
     }
@@ -383,7 +383,7 @@ int nifti_read(const read_request *request, const mapping *file, dataset *out) {
     }
     if (!by_image && !(h.is_single && has_data) &&
         find_partner(request->path, ".hdr", image_endings, partner, sizeof partner)) {
-        if ((status = mapping_open(partner, &other))) goto cleanup;
+        if ((status = dataset_map(out, partner, &other))) goto cleanup;
         image_path = partner;
         image = &other;
     } else if (!h.is_single && !has_data && mapping_is_stream(request->path)) {

@@ -325,7 +325,8 @@ int plot3d_read(const read_request *request, const mapping *grid, dataset *out) 
     int status = plot3d_open(request->path, grid, &first);
     if (status) goto cleanup;
     if (request->path2) {
-        if ((status = mapping_open(request->path2, &other)) || (status = plot3d_open(request->path2, &other, &second)))
+        if ((status = dataset_map(out, request->path2, &other)) ||
+            (status = plot3d_open(request->path2, &other, &second)))
             goto cleanup;
         status = choose_pair(&first, &second, &chosen);
     } else {

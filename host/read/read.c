@@ -164,8 +164,11 @@ int dataset_read(const read_request *request, dataset *out) {
                     "give the names of both",
                     mapping_is_standard_input(request->path) ? request->path : request->path2);
     if (request->path2 && !may_be_plot3d(read_format_of_ending(request->path))) return refuse_pair(request);
-    int status = mapping_open(request->path, &file);
-    if (status) return status;
+    int status = dataset_map(out, request->path, &file);
+    if (status) {
+        dataset_release(out);
+        return status;
+    }
     const read_format *format = find_format(request, &file);
     if (request->path2 && may_be_plot3d(format)) format = plot3d_format;
     if ((status = refuse_encoding(request, &file))) {

@@ -1,4 +1,4 @@
-/* request.h - what the command line says about the input */
+/* request.h - what the command line says about the input, to readers and to the choice of a field (select.h) */
 #ifndef REQUEST_H
 #define REQUEST_H
 
@@ -22,6 +22,9 @@ typedef struct read_request {
                           error where there is a choice, and COMPONENT_MAGNITUDE leaves all in the field */
     int frame;         /* of data with a fourth axis; -1 where not given */
     int describe;      /* of images: choices that are left open are no error: all components, the first frame */
+    const char *field; /* the one that is contoured; NULL: the only one there is */
+    int has_nodata;    /* its values equal to nodata (nodata.h) are missing, as are those that are not finite */
+    double nodata;
 } read_request;
 
 /* Defaults: as the comments above say. */

@@ -5,7 +5,6 @@
 #include "failure.h"
 #include "magnitude.h"
 #include "nodata.h"
-#include "request.h"
 #include "sample_types.h"
 
 #include <math.h>
@@ -200,7 +199,7 @@ static uint64_t find_equal(const dataset_field *f, uint64_t count, double value)
 }
 
 /* The request's nodata, where some value of the field equals it. */
-static missing_value find_nodata(const dataset_block *b, const dataset_field *f, const field_request *request) {
+static missing_value find_nodata(const dataset_block *b, const dataset_field *f, const read_request *request) {
     const uint64_t count = tuple_count(b, f) * (uint64_t)f->components;
     missing_value m = {.of = f};
     m.is_there = nodata_of_type(f->type, request->nodata, &m.value) && request->has_nodata &&
@@ -231,7 +230,7 @@ static int mask_missing(dataset *d, const dataset_block *b, const dataset_field 
     return 0;
 }
 
-static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_field *f, const field_request *request,
+static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_field *f, const read_request *request,
                            scalar_block *out, int *has_nodata) {
     dataset_field one, at_points;
     *out = (scalar_block){.blanked_points = b->blanked_points, .blanked_cells = b->blanked_cells};
@@ -256,17 +255,17 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
     return 0;
 }
 
-int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out) {
+int scalar_select(dataset *d, const read_request *request, scalar *out) {
     *out = (scalar){.component = -1};
     choice chosen;
-    int status = choose(d, path, "--field takes", request->name, &chosen);
+    int status = choose(d, request->path, "--field takes", request->field, &chosen);
     if (status) return status;
     out->name = chosen.name;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;
     for (int n = 0; n < d->block_count && !status; n++) {
         const dataset_field *f = chosen_field(&d->blocks[n], chosen);
-        status = check_component(d, path, f, request->component);
+        status = check_component(d, request->path, f, request->component);
         if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n], &out->has_nodata);
         if (f->components > 1) out->component = request->component;
         out->is_rounded |= f->is_rounded;
@@ -275,15 +274,15 @@ int scalar_select(dataset *d, const char *path, const field_request *request, sc
     return status;
 }
 
-int scalar_components(const dataset *d, const char *path, const field_request *request, int *components) {
+int scalar_components(const dataset *d, const read_request *request, int *components) {
     const char **names;
     int status, count = common_field_names(d, &names);
     choice chosen;
     *components = 0;
     if (count < 0) return STATUS_FAILED;
     free(names);
-    if (!request->name && count != 1) return 0;
-    if ((status = choose(d, path, "--field takes", request->name, &chosen))) return status;
+    if (!request->field && count != 1) return 0;
+    if ((status = choose(d, request->path, "--field takes", request->field, &chosen))) return status;
     *components = chosen_field(d->blocks, chosen)->components;
     return 0;
 }

@@ -9,14 +9,7 @@
 #define SELECT_H
 
 #include "dataset.h"
-
-/* What the command line says about the field. */
-typedef struct field_request {
-    const char *name; /* NULL: the only one there is */
-    int component;    /* of a field with several, from 0; COMPONENT_OPEN where not given, or COMPONENT_MAGNITUDE */
-    int has_nodata;   /* values equal to nodata (nodata.h) are missing, as are those that are not finite */
-    double nodata;
-} field_request;
+#include "request.h"
 
 /* One block's samples, and what is missing in it: the block's own and what the field's values tell. */
 typedef struct scalar_block {
@@ -45,17 +38,17 @@ typedef struct point_field {
     dataset_field *blocks;
 } point_field;
 
-/* Chooses the field and makes its samples. path is the input's name for messages. Returns 0, STATUS_USAGE where the
+/* Chooses the field and makes its samples. Returns 0, STATUS_USAGE where the
  * request leaves a choice open or names what is not there (the text lists what is), STATUS_INPUT where there is no
  * field, or STATUS_FAILED. */
-int scalar_select(dataset *d, const char *path, const field_request *request, scalar *out);
+int scalar_select(dataset *d, const read_request *request, scalar *out);
 
 /* *components: of the field that is named, or the only one; 0 where that choice is open, or there is none. Returns as
  * scalar_select where a name is not there. */
-int scalar_components(const dataset *d, const char *path, const field_request *request, int *components);
+int scalar_components(const dataset *d, const read_request *request, int *components);
 
-/* The field of that name with all its components. Returns as scalar_select; STATUS_INPUT too where blocks differ in
- * the number of components. */
+/* The field of that name with all its components. path is the input's name for messages. Returns as scalar_select;
+ * STATUS_INPUT too where blocks differ in the number of components. */
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out);
 
 /* The names of fields that every block has, as names of the first block's fields, each once; *names from malloc. -1

@@ -186,8 +186,8 @@ static void notice_rest(const source *from, const char *path, uint64_t rest, dat
                    from->files.count ? path : "it");
 }
 
-static int open_part(const source *from, const char *path, mapping *m) {
-    return from->files.count ? data_names_open(from->header_path, path, m) : mapping_open(path, m);
+static int open_part(const source *from, const char *path, dataset *out, mapping *m) {
+    return from->files.count ? data_names_open(from->header_path, path, out, m) : dataset_map(out, path, m);
 }
 
 /* Brings one file's part of the stored array; *more: whether more follows it. */
@@ -221,7 +221,7 @@ static int load_part(const source *from, const char *path, const layout *l, uint
                      dataset *out) {
     mapping m;
     uint64_t start = 0;
-    int more = 0, status = open_part(from, path, &m);
+    int more = 0, status = open_part(from, path, out, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start))) goto cleanup;
     const unsigned char *in = m.bytes ? m.bytes + start : m.bytes;
@@ -261,7 +261,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
 static int load_raw(const source *from, const char *path, const layout *l, dataset *out) {
     mapping m;
     uint64_t start = 0;
-    int status = open_part(from, path, &m);
+    int status = open_part(from, path, out, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))

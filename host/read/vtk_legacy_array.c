@@ -138,7 +138,7 @@ static void skip_metadata(legacy *r, int64_t components) {
 static int map_in_place(legacy *r, uint64_t count, void **out) {
     if (!r->out->mapping) {
         mapping m;
-        int status = mapping_open(r->path, &m);
+        int status = dataset_map(r->out, r->path, &m);
         if (status) return status;
         if (m.size != r->size) {
             mapping_close(&m);

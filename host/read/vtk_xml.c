@@ -471,7 +471,7 @@ int vtk_xml_read(const read_request *request, const mapping *file, dataset *out)
     xml_reader r = {.request = request, .out = out};
     mapping own; /* the caller closes its own; this one lives as long as values in it are used */
     (void)file;
-    int status = mapping_open(request->path, &own);
+    int status = dataset_map(out, request->path, &own);
     if (!status) status = vtk_xml_parse(request->path, &own, &r.doc);
     if (!status) status = load_blocks(&r);
     vtk_xml_release(&r.doc);

@@ -7,8 +7,7 @@
 #ifndef COMMANDS_H
 #define COMMANDS_H
 
-#include "options.h"
-#include "tetracubes.h"
+#include "command_line/options.h"
 
 int extract_run(const options *o);
 int info_run(const options *o);
@@ -19,14 +18,5 @@ int selftest_run(const options *o);
 
 /* What follows the options in 'generate --help': the fields. */
 void generate_help(FILE *out);
-
-/* The library's failure as the tool's: records tc_message() and returns the exit status that it means. */
-int library_status(tc_status status);
-
-/* A driver has failed: this process then ends without giving it occasion to tidy up. */
-void driver_distrust(void);
-
-/* One line on standard error, "tetracubes: ..."; not for failures, which main prints. */
-void message(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

@@ -2,9 +2,11 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "report.h"
+#include "library_status.h"
+#include "terminal/json_report.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 
 static json_t *device_json(int index, const tc_device_info *d) {
     char spec[32];
@@ -12,10 +14,10 @@ static json_t *device_json(int index, const tc_device_info *d) {
     json_t *object = json_object();
     json_object_set_new(object, "index", json_integer(index));
     json_object_set_new(object, "spec", json_string(spec));
-    json_object_set_new(object, "name", report_string(d->name));
-    json_object_set_new(object, "platform", report_string(d->platform));
-    json_object_set_new(object, "version", report_string(d->version));
-    json_object_set_new(object, "driver", report_string(d->driver));
+    json_object_set_new(object, "name", string_json(d->name));
+    json_object_set_new(object, "platform", string_json(d->platform));
+    json_object_set_new(object, "version", string_json(d->version));
+    json_object_set_new(object, "driver", string_json(d->driver));
     json_object_set_new(object, "type", json_string(d->type));
     json_object_set_new(object, "compute_units", json_integer(d->compute_units));
     json_object_set_new(object, "max_work_group_size", json_integer((json_int_t)d->max_work_group_size));
@@ -57,7 +59,7 @@ int devices_run(const options *o) {
         else
             device_text(n, &device);
     }
-    if (o->json && !status) return report_print(json_pack("{s:o}", "devices", array), 15);
+    if (o->json && !status) return json_report_print(json_pack("{s:o}", "devices", array));
     json_decref(array);
     return status;
 }

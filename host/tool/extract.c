@@ -9,34 +9,31 @@
  * are the same.
  *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
- * written; the others are, and the exit status is 3.
+ * written; the others are, and the exit status is 3. Files of a surface appear together, when all are complete.
  */
-#include "carry.h"
-#include "coarse.h"
+#include "command_line/option_effects.h"
 #include "commands.h"
-#include "drop.h"
-#include "effects.h"
 #include "exit_status.h"
+#include "extract/surface_check.h"
+#include "extract/surface_figures.h"
+#include "extract/surface_files.h"
+#include "extract/surface_notices.h"
 #include "failure.h"
-#include "input.h"
-#include "mesh_check.h"
-#include "notice.h"
+#include "input/input.h"
+#include "library_status.h"
 #include "progress.h"
-#include "report.h"
-#include "surface_check.h"
-#include "surface_files.h"
-#include "surface_notices.h"
+#include "terminal/notice.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 typedef struct job {
     const options *o;
+    read_request request;
     dataset data;
     scalar field;
-    carried carried;
+    carried_fields carried;
     block_list blocks;
     engine main, reference; /* reference: for --verify only */
     int start_status;       /* of starting the main engine's device */
@@ -45,24 +42,24 @@ typedef struct job {
     int failed_count; /* surfaces that failed verification or check */
 } job;
 
-static int check_usage(const options *o) {
+static int check_usage(job *j) {
+    const options *o = j->o;
     if (!o->isovalue_count)
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
-    read_request request;
-    int status = input_request(o, &request);
-    return status ? status : surface_files_check(o);
+    int status = input_request(o, &j->request);
+    return status ? status : surface_files_check(o, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- stages */
 
 static int read_input(job *j) {
     double begin = now_ms();
-    int status = input_read(j->o, &j->data);
-    if (!status) status = surface_files_check(j->o);
-    if (!status) status = effects_check_input(j->o, &j->data, 0);
-    if (!status) status = input_select(j->o, &j->data, &j->field);
-    if (!status) status = carry_select(j->o, &j->data, &j->carried);
+    int status = input_read(&j->request, &j->data);
+    if (!status) status = surface_files_check(j->o, &j->data);
+    if (!status) status = option_effects_check_input(j->o, &j->data, 0);
+    if (!status) status = input_select(&j->request, &j->data, &j->field);
+    if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
     j->report.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
@@ -156,107 +153,104 @@ static int count_surface(job *j, const tc_extract_options *how, surface_report *
     return status ? status : progress_status();
 }
 
-/* The box of the surface in world space. */
-static void find_bounds(const shown_surface *shown, double bounds[2][3]) {
-    const float *positions = shown->mesh.positions;
-    for (int axis = 0; axis < 3; axis++) {
-        bounds[0][axis] = INFINITY;
-        bounds[1][axis] = -INFINITY;
-    }
-    for (int n = 0; n < shown->part_count; n++) {
-        const mesh_part *part = &shown->parts[n];
-        mesh_summary own;
-        mesh_summarize(positions, part->vertex_count, NULL, 0, &own);
-        positions += 3 * part->vertex_count;
-        if (part->vertex_count <= own.nonfinite_vertices) continue;
-        for (int axis = 0; axis < 3; axis++) {
-            bounds[0][axis] = fmin(bounds[0][axis], own.bounds[0][axis] + part->origin[axis]);
-            bounds[1][axis] = fmax(bounds[1][axis], own.bounds[1][axis] + part->origin[axis]);
-        }
-    }
+/* ------------------------------------------------------------------------------------------------------ one surface */
+
+/* A surface while it is made: one mesh of all blocks or, with --blocks separate, a mesh of each, so that no more than
+ * one block's is in memory. */
+typedef struct surface_job {
+    job *j;
+    tc_extract_options how;
+    surface_report *s;
+    int is_good;        /* as far as meshes are verified and checked */
+    output_group files; /* complete, but not under their names yet */
+} surface_job;
+
+/* All that is told of a surface, once the last of its meshes is made. */
+static int tell_surface(surface_job *w) {
+    job *j = w->j;
+    surface_report *s = w->s;
+    int status = surface_tell_empty(&j->data, &j->field, s);
+    if (status) return status;
+    precision_tell_mesh(s);
+    if (j->o->output) surface_files_tell_numbers(j->o, j->blocks.count, s);
+    s->coarse_vertices = s->mesh_numbers.lost > s->file_numbers.lost ? s->mesh_numbers.lost : s->file_numbers.lost;
+    if (!s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
+    final_surface_tell_dropped(s);
+    return !status && j->o->check ? surface_judge(&j->blocks, s, &w->is_good) : status;
 }
 
-static void describe_mesh(const job *j, const shown_surface *shown, surface_report *s) {
-    const tc_mesh_data *m = &shown->mesh;
-    s->has_mesh = 1;
-    s->vertex_count = m->vertex_count;
-    s->triangle_count = m->triangle_count;
-    s->active_cell_count = m->active_cell_count;
-    s->soup_vertex_count = j->o->soup && j->o->output ? 3 * m->triangle_count : 0;
-    s->classify_ms = m->timings.classify_ms;
-    s->emit_ms = m->timings.emit_ms;
-    s->readback_ms = m->timings.readback_ms;
-    s->slab_count = m->slab_count;
-    if (j->o->quiet && !j->o->json) return; /* nobody will read it */
-    mesh_summarize(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->summary);
-    s->has_origin = !engine_origins_differ(&j->main);
-    for (int axis = 0; axis < 3; axis++) {
-        s->origin[axis] = m->origin[axis];
-        for (int end = 0; end < 2; end++) s->summary.bounds[end][axis] += m->origin[axis];
-    }
-    if (!s->has_origin) find_bounds(shown, s->summary.bounds);
-    s->hash = mesh_hash(m->positions, m->vertex_count, m->triangles, m->triangle_count);
-}
-
-static int write_surface(job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
+static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, const final_surface *mesh,
+                      int is_last) {
+    job *j = w->j;
     double begin = now_ms();
-    int status = carry_to_mesh(&j->carried, &j->main, source->how, source->mesh);
-    if (!status) status = surface_carry(shown, &j->carried);
-    if (!status) status = surface_files_write(j->o, s->iso, shown, j->carried.fields, j->carried.count, &s->path);
+    int status = carried_fields_interpolate(&j->carried, &j->main, blocks, &w->how, made);
+    if (!status) status = final_surface_carry(mesh, &j->carried);
+    if (!status && is_last) carried_fields_tell(&j->carried);
+    if (!status) status = surface_files_write(j->o, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
 
-/* Whether float32 is fine enough for the mesh, and the file's numbers for what is written. */
-static int tell_numbers(const job *j, const coarse_surface *source, const shown_surface *shown, surface_report *s) {
-    coarse_verdict mesh, file;
-    int status = coarse_tell_mesh(source, j->o->check, &mesh);
-    if (!status) status = surface_files_tell_numbers(j->o, source, shown, &file);
+/* What comes of the mesh that the engine has made. */
+static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, final_surface *mesh, int is_last) {
+    job *j = w->j;
+    surface_report *s = w->s;
+    const surface_source source = {&j->main, &j->blocks, blocks, &w->how, made};
+    int status = j->o->verify ? surface_verify(&j->reference, blocks, &w->how, made, s) : 0;
+    if (!status && j->o->drop_degenerate) status = final_surface_drop_degenerate(mesh, s);
     if (status) return status;
-    s->is_coarse = mesh.any > 0;
-    s->coarse_vertices = mesh.vertices > file.vertices ? mesh.vertices : file.vertices;
-    return 0;
+    surface_add_mesh(j->o, &source, mesh, s);
+    status = precision_count_mesh(&source, j->o->check, &s->mesh_numbers);
+    if (!status) status = surface_files_count_coarse(j->o, &source, mesh, s);
+    if (!status && j->o->check) status = surface_check(&mesh->mesh, s);
+    if (!status && is_last) status = tell_surface(w);
+    if (status || (status = progress_status())) return status;
+    if (s->has_verdict && !s->verified) w->is_good = 0;
+    return w->is_good && j->o->output ? write_mesh(w, blocks, made, mesh, is_last) : 0;
 }
 
-/* The surface that is made of the engine's mesh: told, checked, written. */
-static int finish_surface(job *j, const tc_extract_options *how, const tc_mesh_data *mesh, shown_surface *shown,
-                          surface_report *s) {
-    const coarse_surface source = {&j->main, &j->blocks, how, mesh, s->iso};
-    int good = 1, status = j->o->verify ? surface_verify(&j->reference, how, mesh, s) : 0;
-    if (!status && j->o->drop_degenerate) status = surface_drop_degenerate(shown, s);
+static int make_mesh(surface_job *w, block_range blocks, int is_last) {
+    job *j = w->j;
+    tc_mesh_data made;
+    final_surface mesh;
+    double begin = now_ms();
+    int status = engine_extract(&j->main, blocks, &w->how, &made);
+    if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, blocks, &w->how, &made);
     if (status) return status;
-    describe_mesh(j, shown, s);
-    status = surface_tell_empty(&j->data, &j->field, s);
-    if (!status) status = tell_numbers(j, &source, shown, s);
-    if (!status && !s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
-    surface_tell_dropped(shown, s);
-    if (!status && j->o->check) status = surface_check(&j->blocks, &shown->mesh, s, &good);
-    if (status || (status = progress_status())) return status;
-    if (!good || (s->has_verdict && !s->verified)) {
-        j->failed_count++;
-        return 0;
-    }
-    return j->o->output ? write_surface(j, &source, shown, s) : 0;
+    add_device_start(j, begin, made.timings.total_ms + made.timings.readback_ms);
+    final_surface_begin(&j->main, blocks, &made, &mesh);
+    status = finish_mesh(w, blocks, &made, &mesh, is_last);
+    final_surface_release(&mesh);
+    return status;
+}
+
+/* Puts the surface's files under their names, all together. */
+static int publish(surface_job *w) {
+    job *j = w->j;
+    double begin = now_ms();
+    if (!w->is_good) j->failed_count++;
+    if (!w->is_good || !j->o->output) return 0;
+    int status = output_group_publish(&w->files);
+    j->report.write_ms += now_ms() - begin;
+    if (status) return status;
+    w->s->path = surface_files_describe(j->o, w->s->iso, j->blocks.count);
+    return w->s->path ? 0 : STATUS_FAILED;
 }
 
 static int make_surface(job *j, surface_report *s) {
-    tc_mesh_data mesh;
-    shown_surface shown;
-    tc_extract_options how;
-    int status;
-    tc_extract_options_init(&how);
-    how.isovalue = s->iso->value;
-    how.normals = j->o->normals;
-    how.method = (tc_method)j->o->method;
-    if (j->o->count) return count_surface(j, &how, s);
-    double begin = now_ms();
-    status = engine_extract(&j->main, &how, &mesh);
-    if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, &how, &mesh);
-    if (status) return status;
-    add_device_start(j, begin, mesh.timings.total_ms + mesh.timings.readback_ms);
-    surface_show(&j->main, &mesh, &shown);
-    status = finish_surface(j, &how, &mesh, &shown, s);
-    surface_release(&shown);
+    surface_job w = {.j = j, .s = s, .is_good = 1};
+    const int blocks_each = j->o->separate_blocks ? 1 : j->blocks.count; /* of each mesh */
+    int status = 0;
+    tc_extract_options_init(&w.how);
+    w.how.isovalue = s->iso->value;
+    w.how.normals = j->o->normals;
+    w.how.method = (tc_method)j->o->method;
+    if (j->o->count) return count_surface(j, &w.how, s);
+    carried_fields_begin(&j->carried);
+    for (int first = 0; first < j->blocks.count && !status; first += blocks_each)
+        status = make_mesh(&w, (block_range){first, blocks_each}, first + blocks_each == j->blocks.count);
+    if (!status) status = publish(&w);
+    output_group_discard(&w.files);
     return status;
 }
 
@@ -277,8 +271,8 @@ static int make_surfaces(job *j) {
 static int print_report(job *j, double begin_ms) {
     j->report.total_ms = now_ms() - begin_ms;
     progress_clear();
-    if (j->o->json) return report_extract_json(&j->report);
-    if (!j->o->quiet) report_extract_text(&j->report);
+    if (j->o->json) return extract_report_json(&j->report);
+    if (!j->o->quiet) extract_report_text(&j->report);
     return 0;
 }
 
@@ -287,7 +281,7 @@ int extract_run(const options *o) {
     job j = {.o = o};
     j.report.o = o;
     j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
-    int status = check_usage(o);
+    int status = check_usage(&j);
     if (status) goto cleanup;
     if ((status = read_and_start(&j))) goto cleanup;
     if ((status = cut(&j))) goto cleanup;
@@ -303,7 +297,7 @@ cleanup:
     engine_close(&j.reference);
     engine_close(&j.main);
     blocks_release(&j.blocks);
-    carry_release(&j.carried);
+    carried_fields_release(&j.carried);
     dataset_release(&j.data);
     return status;
 }

@@ -8,13 +8,14 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "field.h"
-#include "nearest.h"
 #include "output.h"
 #include "progress.h"
+#include "similar_name.h"
 #include "stored_types.h"
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -45,7 +46,7 @@ static int unknown_field(const char *name) {
         snprintf(all + used, sizeof all - used, "%s%s", count ? ", " : "", f->name);
         names[count++] = f->name;
     }
-    const char *meant = nearest_name(name, names, count);
+    const char *meant = similar_name(name, names, count);
     return fail(STATUS_USAGE, "there is no field '%s'%s%s%s; fields are %s", name, meant ? "; did you mean " : "",
                 meant ? meant : "", meant ? "?" : "", all);
 }

@@ -1,20 +1,21 @@
 /* info.c - what an input holds: blocks and fields; range, histogram and isovalues worth trying of the chosen one */
-#include "choices.h"
+#include "command_line/option_effects.h"
 #include "commands.h"
-#include "describe.h"
-#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "input.h"
-#include "notice.h"
-#include "obstacle.h"
+#include "info/describe_blocks.h"
+#include "info/no_surface.h"
+#include "info/open_choices.h"
+#include "input/input.h"
+#include "input/statistics.h"
 #include "progress.h"
-#include "read.h"
-#include "report.h"
-#include "statistics.h"
+#include "shortest.h"
+#include "terminal/json_report.h"
+#include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,19 +27,19 @@ typedef struct facts {
     const char *path;
     const dataset *d;
     const scalar *field; /* NULL where there is a choice that was not made, of fields or components */
-    choices open;
+    open_choices open;
     statistics s;
-    char obstacle[OBSTACLE_BYTES]; /* why there can be no surface, or "" */
+    char no_surface[NO_SURFACE_BYTES]; /* why there can be no surface, or "" */
 } facts;
 
 static json_t *histogram_json(const statistics *s) {
     json_t *counts = json_array();
     for (int n = 0; n < s->bin_count; n++) json_array_append_new(counts, json_integer((json_int_t)s->bins[n]));
-    return json_pack("{s:o, s:o, s:o}", "low", report_real(s->low), "width", report_real(s->width), "counts", counts);
+    return json_pack("{s:o, s:o, s:o}", "low", real_json(s->low), "width", real_json(s->width), "counts", counts);
 }
 
 static int suggest(const facts *f, suggestion good[SUGGESTIONS_MAX]) {
-    return *f->obstacle ? 0 : statistics_suggest(&f->s, good);
+    return *f->no_surface ? 0 : statistics_suggest(&f->s, good);
 }
 
 static json_t *suggestions_json(const facts *f) {
@@ -46,7 +47,7 @@ static json_t *suggestions_json(const facts *f) {
     int count = suggest(f, good);
     json_t *array = json_array();
     for (int n = 0; n < count; n++)
-        json_array_append_new(array, json_pack("{s:o, s:s, s:s}", "iso", report_real(good[n].isovalue), "name",
+        json_array_append_new(array, json_pack("{s:o, s:s, s:s}", "iso", real_json(good[n].isovalue), "name",
                                                good[n].name, "reason", good[n].reason));
     return array;
 }
@@ -60,21 +61,21 @@ static void add_grid(json_t *object, const dataset_block *b) {
     double spacing[3];
     int is_uniform = b && b->kind == GRID_UNIFORM;
     for (int axis = 0; axis < 3; axis++) spacing[axis] = is_uniform ? describe_spacing(b, axis) : 0.0;
-    json_object_set_new(object, "dims", b ? report_integers(b->dims) : json_null());
-    json_object_set_new(object, "first", b ? report_integers(b->first) : json_null());
-    json_object_set_new(object, "spacing", is_uniform ? report_reals(spacing, 3) : json_null());
+    json_object_set_new(object, "dims", b ? integers_json(b->dims) : json_null());
+    json_object_set_new(object, "first", b ? integers_json(b->first) : json_null());
+    json_object_set_new(object, "spacing", is_uniform ? reals_json(spacing, 3) : json_null());
     json_object_set_new(object, "matrix",
-                        is_uniform ? json_pack("[o, o, o]", report_reals(b->matrix[0], 4),
-                                               report_reals(b->matrix[1], 4), report_reals(b->matrix[2], 4))
+                        is_uniform ? json_pack("[o, o, o]", reals_json(b->matrix[0], 4), reals_json(b->matrix[1], 4),
+                                               reals_json(b->matrix[2], 4))
                                    : json_null());
 }
 
 static void add_field(json_t *object, const facts *f) {
     const statistics *s = &f->s;
-    json_object_set_new(object, "field", f->field ? report_string(f->field->name) : json_null());
+    json_object_set_new(object, "field", f->field ? string_json(f->field->name) : json_null());
     json_object_set_new(object, "type", f->field ? json_string(tc_type_name(f->field->blocks->type)) : json_null());
     json_object_set_new(object, "range",
-                        s->finite_count ? report_reals((double[]){s->minimum, s->maximum}, 2) : json_null());
+                        s->finite_count ? reals_json((double[]){s->minimum, s->maximum}, 2) : json_null());
     json_object_set_new(object, "nonfinite", json_integer((json_int_t)s->nonfinite_count));
     json_object_set_new(object, "missing", json_integer((json_int_t)s->missing_count));
     json_object_set_new(object, "histogram", histogram_json(s));
@@ -83,16 +84,16 @@ static void add_field(json_t *object, const facts *f) {
 
 static int print_json(const facts *f) {
     json_t *object = json_object();
-    json_object_set_new(object, "input", report_string(f->path));
+    json_object_set_new(object, "input", string_json(f->path));
     json_object_set_new(object, "format", json_string(f->d->format));
     add_grid(object, only_block(f->d));
-    json_object_set_new(object, "space", report_string(f->d->space));
-    json_object_set_new(object, "notice", report_string(f->d->notice));
+    json_object_set_new(object, "space", string_json(f->d->space));
+    json_object_set_new(object, "notice", string_json(f->d->notice));
     add_field(object, f);
     json_object_set_new(object, "blocks", describe_blocks_json(f->d));
-    json_object_set_new(object, "choices", choices_json(&f->open));
-    report_add_notices(object);
-    return report_print(object, 15);
+    json_object_set_new(object, "choices", open_choices_json(&f->open));
+    json_object_set_new(object, "notices", notices_json());
+    return json_report_print(object);
 }
 
 /* Neighbouring bins are merged into rows; bars show square roots, since most volumes are mostly air. */
@@ -114,10 +115,10 @@ static void print_chart(const statistics *s) {
 static void print_suggestions(const facts *f) {
     suggestion good[SUGGESTIONS_MAX];
     int count = suggest(f, good);
-    printf("isovalues     %s%s\n", *f->obstacle ? "none: " : "",
-           *f->obstacle ? f->obstacle
-           : count      ? "worth trying:"
-                        : "none: no value separates the samples");
+    printf("isovalues     %s%s\n", *f->no_surface ? "none: " : "",
+           *f->no_surface ? f->no_surface
+           : count        ? "worth trying:"
+                          : "none: no value separates the samples");
     for (int n = 0; n < count; n++) printf("  %22s %s\n", shortest_number(good[n].isovalue).text, good[n].reason);
 }
 
@@ -133,11 +134,11 @@ static void print_image(const facts *f) {
 
 static void print_field(const facts *f) {
     const statistics *s = &f->s;
-    choices_text(&f->open);
+    open_choices_text(&f->open);
     if (!f->field) {
         const int has_field = f->d->block_count && f->d->blocks->field_count;
-        printf("isovalues     none%s%s\n", has_field && !*f->obstacle ? " before that is chosen" : ": ",
-               !has_field ? "there is no field" : f->obstacle);
+        printf("isovalues     none%s%s\n", has_field && !*f->no_surface ? " before that is chosen" : ": ",
+               !has_field ? "there is no field" : f->no_surface);
         return;
     }
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
@@ -192,19 +193,18 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     read_request request;
     int status = input_request(o, &request);
     request.describe = 1;
-    if (!status) status = dataset_read(&request, d);
-    for (int n = 0; !status && n < d->notice_count; n++) notice("%s: %s", f->path, d->notices[n]);
+    if (!status) status = input_read(&request, d);
     if (!status) status = progress_status();
-    if (!status) status = choices_find(o, d, &f->open);
-    if (!status) status = effects_check_input(o, d, !f->open.can_select);
+    if (!status) status = open_choices_find(&request, d, &f->open);
+    if (!status) status = option_effects_check_input(o, d, !f->open.can_select);
     if (!status && f->open.can_select) {
-        status = input_select(o, d, field);
+        status = input_select(&request, d, field);
         f->field = field;
     }
     if (!status) tell_rounded(f);
     if (!status) status = find_statistics(f);
-    if (!status) status = obstacle_find(o, d, f->field, f->obstacle);
-    if (!status && *f->obstacle) notice("%s: nothing can be extracted: %s", f->path, f->obstacle);
+    if (!status) status = no_surface_reason(o, d, f->field, f->no_surface);
+    if (!status && *f->no_surface) notice("%s: nothing can be extracted: %s", f->path, f->no_surface);
     return status ? status : progress_status();
 }
 
@@ -219,7 +219,7 @@ int info_run(const options *o) {
     else if (!o->quiet)
         print_text(&f);
 cleanup:
-    choices_release(&f.open);
+    open_choices_release(&f.open);
     dataset_release(&d);
     return status;
 }

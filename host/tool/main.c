@@ -3,27 +3,26 @@
  *
  * Results go to standard output, everything else to standard error; exit statuses are those of exit_status.h.
  */
+#include "command_line/completion.h"
+#include "command_line/option_effects.h"
 #include "commands.h"
-#include "completion.h"
-#include "control.h"
-#include "effects.h"
+#include "drivers/driver_trial.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "mesh_write.h"
-#include "nearest.h"
-#include "notice.h"
 #include "output.h"
 #include "progress.h"
 #include "read_formats.h"
-#include "report.h"
-#include "selftest.h"
-#include "streams.h"
-#include "trial.h"
+#include "selftest/child.h"
+#include "similar_name.h"
+#include "terminal/json_report.h"
+#include "terminal/notice.h"
+#include "terminal/standard_streams.h"
 #include "truncation.h"
 
 #include <errno.h>
-#include <signal.h>
-#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -151,41 +150,6 @@ static void print_version(FILE *out) {
     fprintf(out, "writes: %s; %s (tetrahedra)\n", &MESH_FORMATS(MESH_LABEL)[2], &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
 }
 
-void message(const char *format, ...) {
-    char text[8192]; /* no memory is asked for: there may be none */
-    va_list arguments;
-    progress_clear();
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    control_mask(text, 1);
-    fprintf(stderr, "tetracubes: %s\n", text);
-}
-
-static volatile sig_atomic_t driver_failed; /* set by either thread of extract */
-
-void driver_distrust(void) { driver_failed = 1; }
-
-int library_status(tc_status status) {
-    switch (status) {
-    case TC_OK:
-        return 0;
-    case TC_ERROR_ARGUMENT:
-        return fail(STATUS_USAGE, "%s", tc_message());
-    case TC_ERROR_DATA:
-        return fail(STATUS_INPUT, "%s", tc_message());
-    case TC_ERROR_WRONG_RESULT:
-        return fail(STATUS_FAILED, "%s (--engine reference, or auto)", tc_message());
-    case TC_ERROR_CANCELLED:
-        return progress_cancelled() ? progress_status() : fail(STATUS_FAILED, "%s", tc_message());
-    case TC_ERROR_DEVICE:
-        driver_distrust();
-        return fail(STATUS_FAILED, "%s", tc_message());
-    default:
-        return fail(STATUS_FAILED, "%s", tc_message());
-    }
-}
-
 static const command *find_command(const char *name) {
     for (size_t n = 0; n < COMMAND_COUNT; n++)
         if (strcmp(commands[n].name, name) == 0) return &commands[n];
@@ -195,7 +159,7 @@ static const command *find_command(const char *name) {
 static int unknown_command(const char *name) {
     const char *names[COMMAND_COUNT];
     for (size_t n = 0; n < COMMAND_COUNT; n++) names[n] = commands[n].name;
-    const char *meant = nearest_name(name, names, COMMAND_COUNT);
+    const char *meant = similar_name(name, names, COMMAND_COUNT);
     if (meant) return fail(STATUS_USAGE, "there is no command '%s'; did you mean %s?", name, meant);
     return fail(STATUS_USAGE, "there is no command '%s'; see 'tetracubes --help'", name);
 }
@@ -208,10 +172,10 @@ static int run_command(const command *c, int argc, char **argv) {
     } else if (!status) {
         streams_choose(o.output);
         progress_begin(o.quiet);
-        report_begin();
+        json_report_begin();
         notice_begin(o.quiet, o.json);
         output_stop_when(progress_cancelled);
-        status = effects_check(&o);
+        status = option_effects_check(&o);
         if (!status) status = c->run(&o);
         if (status == STATUS_FAILED && progress_cancelled()) status = progress_status();
         if (status && truncation_seen()) status = truncation_status(); /* whatever came of it */
@@ -267,6 +231,6 @@ int main(int argc, char **argv) {
         message("%s", failure_text());
         if (!status) status = lost;
     }
-    if (driver_failed) _exit(status); /* a driver may crash or hang once more where it tidies up */
+    if (driver_is_distrusted()) _exit(status); /* it may crash or hang once more where it tidies up */
     return status;
 }

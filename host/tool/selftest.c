@@ -1,14 +1,19 @@
 /* selftest.c - runs the groups of trials on a device, each in a child of this process; says PASS or FAIL */
-#include "child.h"
 #include "commands.h"
+#include "drivers/child_process.h"
+#include "drivers/driver_trial.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "library_status.h"
 #include "progress.h"
-#include "report.h"
-#include "selftest.h"
-#include "trial.h"
+#include "selftest/child.h"
+#include "selftest/results.h"
+#include "selftest/trials.h"
+#include "selftest/vectors.h"
+#include "terminal/json_report.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -152,7 +157,7 @@ static json_t *group_json(const selftest_results *all, int group) {
     for (size_t n = 0; n < all->count; n++) ms += all->results[n].group == group ? all->results[n].ms : 0;
     return json_pack("{s:s, s:i, s:i, s:s, s:i, s:i, s:o}", "name", group_name(group), "trials", v.trial_count,
                      "failed", v.failed_count, "message", text, "crashed", v.crashed_count, "skipped", v.skipped_count,
-                     "seconds", report_real(round(ms) / 1000));
+                     "seconds", real_json(round(ms) / 1000));
 }
 
 /* With the trial of its opening, as the driver may end this process too. */
@@ -188,11 +193,10 @@ static int run_groups(const options *o, selftest_results *all, json_t *groups) {
 }
 
 static int print_json(const tc_device_info *info, json_t *groups, int failed_count) {
-    return report_print(json_pack("{s:o, s:O, s:b, s:o, s:o, s:o, s:s}", "device", report_string(info->name), "groups",
-                                  groups, "pass", !failed_count, "platform", report_string(info->platform), "driver",
-                                  report_string(info->driver), "version", report_string(info->version), "tetracubes",
-                                  tc_version()),
-                        15);
+    return json_report_print(json_pack("{s:o, s:O, s:b, s:o, s:o, s:o, s:s}", "device", string_json(info->name),
+                                       "groups", groups, "pass", !failed_count, "platform", string_json(info->platform),
+                                       "driver", string_json(info->driver), "version", string_json(info->version),
+                                       "tetracubes", tc_version()));
 }
 
 static int check_usage(const options *o) {

@@ -3,26 +3,28 @@
  *
  * Blocks follow each other, as do their points; nothing is merged. Fields are those that every block has.
  */
-#include "blocks.h"
+#include "command_line/option_effects.h"
 #include "commands.h"
-#include "effects.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "faces.h"
-#include "input.h"
+#include "input/blocks.h"
+#include "input/face_faults.h"
+#include "input/input.h"
 #include "mesh_write.h"
-#include "notice.h"
 #include "output.h"
 #include "progress.h"
-#include "report.h"
+#include "terminal/json_report.h"
+#include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct conversion {
     const options *o;
+    read_request request;
     dataset data; /* owns what is joined, too */
     scalar field;
     block_list blocks;
@@ -35,16 +37,17 @@ typedef struct conversion {
 static int check_usage(const options *o) {
     if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
     int status = complex_write_check(o->output);
-    if (!status) status = input_overwrite_check(o, o->output);
+    if (!status) status = input_overwrite_check(o, NULL, o->output);
     return status ? status : output_check(o->output);
 }
 
 static int read_input(conversion *c) {
-    int has_choice = 0, status = input_read(c->o, &c->data);
-    if (!status) status = input_overwrite_check(c->o, c->o->output);
-    if (!status) status = input_has_choice(c->o, &c->data, &has_choice);
-    if (!status) status = effects_check_input(c->o, &c->data, !has_choice);
-    if (!status && has_choice) status = input_select(c->o, &c->data, &c->field);
+    int has_choice = 0, status = input_request(c->o, &c->request);
+    if (!status) status = input_read(&c->request, &c->data);
+    if (!status) status = input_overwrite_check(c->o, &c->data, c->o->output);
+    if (!status) status = input_has_choice(&c->request, &c->data, &has_choice);
+    if (!status) status = option_effects_check_input(c->o, &c->data, !has_choice);
+    if (!status && has_choice) status = input_select(&c->request, &c->data, &c->field);
     return status ? status : progress_status();
 }
 
@@ -65,8 +68,8 @@ static int cut(conversion *c) {
     if (!status && c->file.point_count > UINT32_MAX)
         return fail(STATUS_FAILED, "%s: %" PRIu64 " points are more than the 2^32 - 1 that a complex numbers",
                     c->o->operands[0], c->file.point_count);
-    if (!status) status = blocks_check_faces(&c->blocks, NULL, &c->faces);
-    if (!status) faces_tell(&c->faces);
+    if (!status) status = face_faults_find(&c->blocks, NULL, &c->faces);
+    if (!status) face_faults_tell(&c->faces);
     return status ? status : progress_status();
 }
 
@@ -221,13 +224,11 @@ static int join(conversion *c) {
 
 /* ---------------------------------------------------------------------------------------------------------- report */
 
-static json_t *count_json(uint64_t count) { return json_integer((json_int_t)count); }
-
 static int print_json(const conversion *c) {
     json_t *object = json_object(), *fields = json_array();
-    for (int n = 0; n < c->file.field_count; n++) json_array_append_new(fields, report_string(c->file.fields[n].name));
-    json_object_set_new(object, "input", report_string(c->o->operands[0]));
-    json_object_set_new(object, "output", report_string(c->o->output));
+    for (int n = 0; n < c->file.field_count; n++) json_array_append_new(fields, string_json(c->file.fields[n].name));
+    json_object_set_new(object, "input", string_json(c->o->operands[0]));
+    json_object_set_new(object, "output", string_json(c->o->output));
     json_object_set_new(object, "blocks", json_integer(c->blocks.count));
     json_object_set_new(object, "points", count_json(c->file.point_count));
     json_object_set_new(object, "cells", count_json(c->blocks.cell_count));
@@ -241,9 +242,9 @@ static int print_json(const conversion *c) {
     json_object_set_new(object, "surplus_cells", count_json(c->surplus));
     json_object_set_new(object, "folded_faces", count_json(c->faces.folded_faces));
     json_object_set_new(object, "fields", fields);
-    json_object_set_new(object, "total_ms", report_real(c->total_ms));
-    report_add_notices(object);
-    return report_print(object, 15);
+    json_object_set_new(object, "total_ms", real_json(c->total_ms));
+    json_object_set_new(object, "notices", notices_json());
+    return json_report_print(object);
 }
 
 static int print_report(const conversion *c) {

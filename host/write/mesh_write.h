@@ -52,8 +52,10 @@ typedef struct mesh_write_options {
     int field_count;
     const mesh_part *parts; /* of all vertices, in turn; with part_count 0 the mesh is one, with the mesh's origin */
     int part_count;
-    const double *origin_at; /* three world coordinates that become 0, 0, 0 in the file; NULL: world coordinates, of
-                                STL, which holds float32 alone, those relative to the mesh's origin */
+    const double *origin_at;    /* three world coordinates that become 0, 0, 0 in the file; NULL: world coordinates, of
+                                   STL, which holds float32 alone, those relative to the mesh's origin */
+    struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
+                                   at once */
 } mesh_write_options;
 
 /* 0 where path's ending (or options->format) is a format that can be written, with the fields that are given, else

@@ -43,14 +43,14 @@ static int fail_write(const char *name, int error) {
     return fail(STATUS_FAILED, "%s: cannot be written: %s; %s", name, strerror(error), advice(error));
 }
 
-/* Closes and frees; removes what has not been renamed. */
+/* Removes what has not been renamed; frees. */
 static void release(output *o) {
-    if (o->fd >= 0 && close(o->fd) != 0 && !o->error) o->error = errno;
-    if (o->temporary && !o->error && rename(o->temporary, o->path) != 0) o->error = errno;
+    if (o->fd >= 0) close(o->fd);
     if (o->temporary && o->error) unlink(o->temporary);
     if (o->lock >= 0) close(o->lock);
     free(o->temporary);
     free(o->path);
+    *o = (output){.fd = -1, .lock = -1};
 }
 
 int output_check(const char *path) {
@@ -66,7 +66,6 @@ int output_open(output *o, const char *path) {
     if (!o->error) return 0;
     int error = o->error;
     release(o);
-    *o = (output){.fd = -1, .lock = -1};
     return fail_write(path, error);
 }
 
@@ -156,9 +155,22 @@ void output_records(output *o, uint64_t count, size_t record_bytes, output_encod
     if (r.turn < count && !o->error) o->error = ENOMEM; /* no thread had memory for its buffer */
 }
 
+void output_finish(output *o) {
+    if (o->fd >= 0 && close(o->fd) != 0 && !o->error) o->error = errno;
+    o->fd = -1;
+}
+
 int output_close(output *o) {
+    output_finish(o);
     if (truncation_seen()) o->error = EFAULT; /* what was written may be zeros in place of an input file */
+    if (o->temporary && !o->error && rename(o->temporary, o->path) != 0) o->error = errno;
+    int status = o->error ? fail_write(o->name, o->error) : 0;
+    if (truncation_seen()) status = truncation_status();
     release(o);
-    if (truncation_seen()) return truncation_status();
-    return o->error ? fail_write(o->name, o->error) : 0;
+    return status;
+}
+
+void output_discard(output *o) {
+    o->error = ECANCELED;
+    release(o);
 }

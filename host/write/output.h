@@ -54,8 +54,14 @@ void output_bytes(output *o, const void *data, uint64_t bytes);
 /* Writes records 0 to count - 1, each of at most record_bytes bytes when encoded. */
 void output_records(output *o, uint64_t count, size_t record_bytes, output_encode *encode, const void *source);
 
+/* Ends writing; the file stays under its temporary name. A failure is told by output_close. */
+void output_finish(output *o);
+
 /* Puts the file under its name, or removes it. Returns 0 or a status with its text: STATUS_FAILED, or STATUS_INPUT
  * where an input file became shorter meanwhile. */
 int output_close(output *o);
+
+/* Removes the file in place of output_close. */
+void output_discard(output *o);
 
 #endif

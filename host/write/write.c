@@ -6,7 +6,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "formats.h"
-#include "output.h"
+#include "output_group.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,7 +174,7 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     if (!status) status = output_open(&o, path);
     if (!status) {
         f->write(&o, &shown);
-        status = output_close(&o);
+        status = options && options->group ? output_wait(&o, options->group) : output_close(&o);
     }
     free(parts);
     return status;

@@ -40,7 +40,7 @@ static inline int read_bytes(const char *path, const unsigned char *data, size_t
     unsigned char *exact = malloc(size + !size);
     memcpy(exact, data, size);
     read_request r = request_for(path);
-    mapping m = {exact, size};
+    mapping m = {.bytes = exact, .size = size};
     *out = (dataset){0};
     fail(0, "(no text)");
     int status = vtk_legacy_read(&r, &m, out);

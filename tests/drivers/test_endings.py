@@ -276,6 +276,10 @@ class Places(EndCase):
                 self.refuses(2, "extract", self.path(header), "--iso", "100", "--engine", "reference", "--format",
                              "ply", "-o", self.path(output), says="read as part of it")
             self.refuses(2, "tetrahedralize", self.path(header), "-o", self.path("same.vtu"), says="read as part of it")
+            os.link(self.path("samples.raw"), self.path("block_b0.ply"))
+            self.refuses(2, "extract", self.path(header), "--iso", "100", "--engine", "reference", "--blocks", "separate",
+                         "-o", self.path("block.ply"), says="block_b0.ply is a file that the input names")
+            os.remove(self.path("block_b0.ply"))
         self.expect(0, "extract", self.path("a.nhdr"), "--iso", "100", "--engine", "reference", "-o",
                     self.path("fine.ply"))
 

@@ -31,7 +31,7 @@ class SelftestCase(tool_case.Case):
 
     def right(self, *names):
         """Lines of vectors.txt that begin so."""
-        with open(os.path.join(SOURCE, "host", "tool", "vectors.txt"), encoding="utf-8") as file:
+        with open(os.path.join(SOURCE, "host", "tool", "selftest", "vectors.txt"), encoding="utf-8") as file:
             lines = file.read().splitlines()
         return [next(line for line in lines if line.startswith(name)) for name in names]
 
@@ -86,7 +86,7 @@ class Vectors(SelftestCase):
         self.refuses(2, "selftest", "a", says="--vectors")
 
     def test_file_of_the_tool(self):
-        script = os.path.join(SOURCE, "host", "tool", "vectors.py")
+        script = os.path.join(SOURCE, "host", "tool", "selftest", "vectors.py")
         done = subprocess.run([sys.executable, script, tool_case.TOOL, "--check"], stdout=subprocess.PIPE, text=True,
                               check=False)
         self.assertEqual(done.returncode, 0, done.stdout)

@@ -43,7 +43,7 @@ MUTANTS = [
            ("uint64_t fours = count / 4 * 4;", "uint64_t fours = count / 4 * 4 - 4 * (count > 7);",
             "four vertices are looked at one by one", {"same": "another way to the same bounds"}),
            ("count / SUMMARY_BLOCK + (count % SUMMARY_BLOCK > 0)", "count / SUMMARY_BLOCK", "the last block is dropped"),
-           ("XXH64_reset(&state, 0)", "XXH64_reset(&state, 1)", "hash: another seed"),
+           ("XXH64_reset(&state, before)", "XXH64_reset(&state, before + 1)", "hash: another seed"),
            ("vertex_count * 3 * sizeof(float)", "vertex_count * 2 * sizeof(float)", "hash: not of all positions")),
     *group("host/check/mesh_collapse.c",
            ("return a == b || b == c || c == a;", "return a == b || b == c;", "an edge of triangles is not looked at",

@@ -20,7 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const field_request any_field = {NULL, -1, 0, 0.0};
+static const read_request any_field = {.path = "f", .component = COMPONENT_OPEN};
 
 /* ------------------------------------------------------------------------------------------------ datasets to try on
  */
@@ -78,15 +78,16 @@ static void the_only_field_is_taken(void) {
     dataset d = {0};
     scalar s;
     add_field(add_block(&d, 2, 2, 2), "density", 0, 1, TC_F32, eight);
-    EXPECT(scalar_select(&d, "f", &any_field, &s) == 0, "%s", failure_text());
+    EXPECT(scalar_select(&d, &any_field, &s) == 0, "%s", failure_text());
     EXPECT(strcmp(s.name, "density") == 0 && s.component == -1 && !s.is_averaged, "another field");
     EXPECT(s.blocks[0].samples == eight && s.blocks[0].type == TC_F32, "samples are not used in place");
     EXPECT(!s.blocks[0].has_nodata && !s.blocks[0].blanked_points && !s.blocks[0].blanked_cells, "something missing");
-    field_request named = any_field;
-    named.name = "density";
-    EXPECT(scalar_select(&d, "f", &named, &s) == 0, "%s", failure_text());
-    named.name = "Density";
-    EXPECT(scalar_select(&d, "the file", &named, &s) == STATUS_USAGE, "a name in other letters is taken");
+    read_request named = any_field;
+    named.field = "density";
+    EXPECT(scalar_select(&d, &named, &s) == 0, "%s", failure_text());
+    named.path = "the file";
+    named.field = "Density";
+    EXPECT(scalar_select(&d, &named, &s) == STATUS_USAGE, "a name in other letters is taken");
     says("the file");
     says("density (point)");
     dataset_release(&d);
@@ -95,29 +96,29 @@ static void the_only_field_is_taken(void) {
 static void open_choices_list_what_there_is(void) {
     dataset d = {0};
     scalar s;
-    field_request request = any_field;
+    read_request request = any_field;
     dataset_block *b = add_block(&d, 2, 2, 2);
-    EXPECT(scalar_select(&d, "f", &any_field, &s) == STATUS_INPUT, "no field at all");
+    EXPECT(scalar_select(&d, &any_field, &s) == STATUS_INPUT, "no field at all");
     says("no field");
     add_field(b, "density", 0, 1, TC_F32, eight);
     add_field(b, "colour", 0, 3, TC_U8, triples);
     add_field(b, "material", 1, 1, TC_F32, eight);
-    EXPECT(scalar_select(&d, "f", &any_field, &s) == STATUS_USAGE, "one of three fields is taken");
+    EXPECT(scalar_select(&d, &any_field, &s) == STATUS_USAGE, "one of three fields is taken");
     says("density (point), colour (point, 3 components), material (cell)");
     says("--field");
-    request.name = "colour";
-    EXPECT(scalar_select(&d, "f", &request, &s) == STATUS_USAGE, "one of three components is taken");
+    request.field = "colour";
+    EXPECT(scalar_select(&d, &request, &s) == STATUS_USAGE, "one of three components is taken");
     says("--component");
     request.component = 3;
-    EXPECT(scalar_select(&d, "f", &request, &s) == STATUS_USAGE, "component 3 of 3 is there");
+    EXPECT(scalar_select(&d, &request, &s) == STATUS_USAGE, "component 3 of 3 is there");
     for (request.component = 0; request.component < 3; request.component++) {
-        EXPECT(scalar_select(&d, "f", &request, &s) == 0, "%s", failure_text());
+        EXPECT(scalar_select(&d, &request, &s) == 0, "%s", failure_text());
         EXPECT(s.component == request.component && s.blocks[0].type == TC_U8, "another component or type");
         for (int n = 0; n < 8; n++)
             EXPECT(((const uint8_t *)s.blocks[0].samples)[n] == 10 * request.component + n, "sample %d", n);
     }
-    request = (field_request){"density", 1, 0, 0.0};
-    EXPECT(scalar_select(&d, "f", &request, &s) == STATUS_USAGE, "component 1 of 1 is there");
+    request = (read_request){.path = "f", .field = "density", .component = 1};
+    EXPECT(scalar_select(&d, &request, &s) == STATUS_USAGE, "component 1 of 1 is there");
     dataset_release(&d);
 }
 
@@ -130,7 +131,7 @@ static void long_lists_are_cut(void) {
         snprintf(names[n], sizeof names[n], "a field with a rather long name %d", n);
         add_field(b, names[n], 0, 1, TC_F32, eight);
     }
-    EXPECT(scalar_select(&d, "f", &any_field, &s) == STATUS_USAGE, "one of a hundred");
+    EXPECT(scalar_select(&d, &any_field, &s) == STATUS_USAGE, "one of a hundred");
     says(", ...");
     dataset_release(&d);
 }
@@ -139,7 +140,7 @@ static void every_block_must_have_the_field(void) {
     dataset d = {0};
     scalar s;
     point_field p;
-    field_request request = any_field;
+    read_request request = any_field;
     dataset_block *b = add_block(&d, 2, 2, 2);
     add_field(b, "a", 0, 1, TC_F32, eight);
     add_field(b, "b", 0, 1, TC_F32, eight);
@@ -147,13 +148,13 @@ static void every_block_must_have_the_field(void) {
     add_field(b, "b", 1, 1, TC_F32, eight);
     add_field(b, "b", 0, 1, TC_F64, (const double[8]){8, 7, 6, 5, 4, 3, 2, 1});
     add_field(b, "c", 0, 1, TC_F32, eight);
-    EXPECT(scalar_select(&d, "f", &any_field, &s) == 0 && strcmp(s.name, "b") == 0, "b is not the only common one");
+    EXPECT(scalar_select(&d, &any_field, &s) == 0 && strcmp(s.name, "b") == 0, "b is not the only common one");
     EXPECT(s.blocks[1].type == TC_F64 && !s.is_averaged, "values of cells come before those of points");
-    request.name = "a";
-    EXPECT(scalar_select(&d, "f", &request, &s) == STATUS_USAGE, "a is not in block 1");
+    request.field = "a";
+    EXPECT(scalar_select(&d, &request, &s) == STATUS_USAGE, "a is not in block 1");
     says("every block");
-    request.name = "c";
-    EXPECT(scalar_select(&d, "f", &request, &s) == STATUS_USAGE, "c is not in block 0");
+    request.field = "c";
+    EXPECT(scalar_select(&d, &request, &s) == STATUS_USAGE, "c is not in block 0");
     EXPECT(point_field_select(&d, "f", "b", &p) == 0 && p.components == 1 && !p.is_averaged, "%s", failure_text());
     EXPECT(point_field_select(&d, "f", "a", &p) == STATUS_USAGE, "a is not in block 1");
     says("--carry");
@@ -171,18 +172,18 @@ static void missing_values_are_marked(void) {
     for (int nodata = 0; nodata < 2; nodata++) {
         dataset d = {0};
         scalar s;
-        field_request request = {NULL, -1, nodata, -9};
+        read_request request = {.path = "f", .component = COMPONENT_OPEN, .has_nodata = nodata, .nodata = -9};
         dataset_block *b = add_block(&d, 2, 2, 2);
         b->blanked_points = blanked;
         add_field(b, "v", 0, 1, TC_F32, values);
-        EXPECT(scalar_select(&d, "f", &request, &s) == 0, "%s", failure_text());
+        EXPECT(scalar_select(&d, &request, &s) == 0, "%s", failure_text());
         EXPECT(s.blocks[0].blanked_points == blanked && s.blocks[0].has_nodata == nodata && s.blocks[0].nodata == -9,
                "a structured block's samples are the library's to compare");
         make_unstructured(&d, b);
-        EXPECT(scalar_select(&d, "f", &request, &s) == 0, "%s", failure_text());
+        EXPECT(scalar_select(&d, &request, &s) == 0, "%s", failure_text());
         EXPECT(memcmp(s.blocks[0].blanked_points, nodata ? with_nodata : without, 8) == 0, "nodata %d: mask", nodata);
         b->fields[0].values = eight;
-        EXPECT(scalar_select(&d, "f", &request, &s) == 0, "%s", failure_text());
+        EXPECT(scalar_select(&d, &request, &s) == 0, "%s", failure_text());
         EXPECT(s.blocks[0].blanked_points == blanked, "nothing is missing, and yet there is a mask");
         dataset_release(&d);
     }
@@ -192,9 +193,9 @@ static void missing_cells_are_left_out(void) {
     static const int16_t cells[2] = {-9, 7}; /* side by side */
     dataset d = {0};
     scalar s;
-    field_request request = {NULL, -1, 1, -9};
+    read_request request = {.path = "f", .component = COMPONENT_OPEN, .has_nodata = 1, .nodata = -9};
     add_field(add_block(&d, 3, 2, 2), "v", 1, 1, TC_I16, cells);
-    EXPECT(scalar_select(&d, "f", &request, &s) == 0 && s.is_averaged, "%s", failure_text());
+    EXPECT(scalar_select(&d, &request, &s) == 0 && s.is_averaged, "%s", failure_text());
     EXPECT(s.blocks[0].blanked_cells && s.blocks[0].blanked_cells[0] && !s.blocks[0].blanked_cells[1], "cells' mask");
     EXPECT(s.blocks[0].type == TC_F32 && !s.blocks[0].has_nodata, "means are compared with nodata");
     for (int n = 0; n < 12; n++) {

@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
 """test_cli_blocks.py TOOL [reference] - the command line on grids of several blocks: joined or apart, fields carried"""
+import array
 import math
 import os
+import resource
+import struct
+import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
@@ -9,6 +13,34 @@ import tool_case
 from grid_files import bump, lattice, vti_text
 from meshes import ply_vertices
 from tool_case import GridCase
+
+
+def plot3d_noise(block_count, size, path, density_path):
+    """Grid and solution of cubes of size^3 points, in one file each, whose surfaces go through nearly all cells."""
+    def record(file, content):
+        mark = struct.pack("<i", len(content))
+        file.write(mark + content + mark)
+    places = lattice((size, size, size))
+    head = struct.pack(f"<{3 * block_count}i", *[size] * 3 * block_count)
+    density = array.array("f", [(n * 2654435761 >> 7) % 1000 / 1000 for n in range(len(places))]).tobytes()
+    with open(path, "wb") as grid, open(density_path, "wb") as solution:
+        for file in (grid, solution):
+            record(file, struct.pack("<i", block_count))
+            record(file, head)
+        for block in range(block_count):
+            shifts = (0, 0, block * size)
+            record(grid, b"".join(array.array("f", [p[axis] + shifts[axis] for p in places]).tobytes()
+                                  for axis in range(3)))
+            record(solution, struct.pack("<4f", 0.5, 0, 100, 0))
+            record(solution, density + bytes(4 * len(density)))
+
+
+def peak_memory(*arguments):
+    """(exit status, most resident bytes) of a run of the tool."""
+    child = subprocess.Popen([tool_case.TOOL, *arguments], stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, 1024 * usage.ru_maxrss
 
 
 class Blocks(GridCase):
@@ -52,6 +84,64 @@ class Blocks(GridCase):
                 vertices += part
             self.assertEqual((vertices, faces), (whole, whole_faces))
         self.assertEqual(len([name for name in self.files() if "_b" in name]), 6)
+
+    def test_separate_has_the_figures_of_joined(self):
+        for more in ([], ["--drop-degenerate"], ["--soup"], ["--normals", "--carry", "momentum-x"]):
+            extract = ["extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine", "reference", "--check",
+                       *more, "-o", self.path("a.ply")]
+            [joined] = self.report(*extract)["surfaces"]
+            report = self.report(*extract, "--blocks", "separate")
+            [separate] = report["surfaces"]
+            for surface in (joined, separate):
+                del surface["timings_ms"]
+                for key in "area", "volume":
+                    surface[key] = surface[key] and round(surface[key], 9)
+            self.assertNotEqual(separate.pop("hash"), joined.pop("hash"))  # of numbers that begin anew
+            self.assertEqual(separate, joined)
+            self.assertEqual(report["notices"], self.report(*extract)["notices"])
+
+    def test_separate_keeps_one_block(self):
+        """Blocks are written as they are extracted: no two surfaces are in memory."""
+        inputs = [self.path("n.xyz"), self.path("n.q")]
+        plot3d_noise(16, 28, *inputs)
+        peaks = {}
+        for blocks in "joined", "separate":
+            status, peaks[blocks] = peak_memory("extract", *inputs, "--field", "density", "--iso", "0.5", "--engine",
+                                                "reference", "--quiet", "--blocks", blocks, "-o", self.path("n.ply"))
+            self.assertEqual(status, 0)
+        mesh = os.path.getsize(self.path("n.ply"))
+        self.assertGreater(mesh, 20 << 20)
+        self.assertLess(peaks["separate"], peaks["joined"] - mesh // 2)
+
+    def test_separate_appears_whole_or_not_at_all(self):
+        """The second block's file is too large for the system: the first one's does not appear either."""
+        small, large = ((dims, lattice(dims), list(map(bump, lattice(dims)))) for dims in ((4, 4, 4), (12, 12, 12)))
+        inputs = self.write_plot3d("w", [small, large])
+        with open(self.path("w_b0.ply"), "wb") as before:
+            before.write(b"as it was")
+        sizes = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8192, sizes[1]))
+        try:
+            self.refuses(1, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine", "reference", "--blocks",
+                         "separate", "-o", self.path("w.ply"), says="w_b1.ply: cannot be written")
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, sizes)
+        self.expect(0, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine", "reference", "--blocks",
+                    "separate", "-o", self.path("w.ply"))
+        self.assertLess(os.path.getsize(self.path("w_b0.ply")), 8192)
+        self.assertGreater(os.path.getsize(self.path("w_b1.ply")), 8192)
+
+    def test_separate_of_more_blocks_than_files_may_be_open(self):
+        dims, most = (2, 2, 2), 64
+        inputs = self.write_plot3d("m", [(dims, lattice(dims), [0.0, 1.0] * 4)] * (2 * most))
+        files = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, files[1]))
+        try:
+            self.expect(0, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine", "reference", "--blocks",
+                        "separate", "-o", self.path("m.ply"))
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, files)
+        self.assertEqual(len([name for name in self.files() if name.startswith("m_b")]), 2 * most)
 
     def test_flat_blocks_are_skipped(self):
         flat = ((4, 4, 1), lattice((4, 4, 1)), list(map(bump, lattice((4, 4, 1)))))

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """test_cli_effects.py TOOL [reference] - options without effect, reports true of what is written, standard input
 
-Every row of the table of host/tool/effects.c has a case here, which the test finds in the source. Figures of reports are
-compared with files read back by code of the tests. Standard library only.
+Every row of the table of host/tool/command_line/option_effects.c has a case here, which the test finds in the source.
+Figures of reports are compared with files read back by code of the tests. Standard library only.
 """
 import gzip
 import json
@@ -19,7 +19,8 @@ from grid_files import HEXAHEDRON, hexahedra, lattice, vti_text, vtu_text
 from meshes import ply_read
 from tool_case import GridCase
 
-SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "host", "tool", "effects.c")
+SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "host", "tool", "command_line",
+                      "option_effects.c")
 RAW = ["--dims", "8,8,8", "--type", "u8"]
 VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],

@@ -62,7 +62,7 @@ int mapping_open(const char *path, mapping *m) {
     unsigned char *copy = malloc(files.sizes[n]);
     memcpy(copy, files.bytes[n], files.sizes[n]);
     files.mapped[files.mapped_count++] = copy;
-    *m = (mapping){copy, files.sizes[n]};
+    *m = (mapping){.bytes = copy, .size = files.sizes[n]};
     return 0;
 }
 

@@ -137,11 +137,12 @@ static void select_fields(dataset *d, const char *path, uint8_t choice, int comp
     point_field carried;
     const char **names = NULL;
     int count = common_field_names(d, &names);
-    const field_request wanted = {.name = count > 0 && choice & 0x80 ? names[choice % count] : NULL,
-                                  .component = component,
-                                  .has_nodata = choice & 0x40,
-                                  .nodata = choice};
-    if (scalar_select(d, path, &wanted, &s) == 0)
+    const read_request wanted = {.path = path,
+                                 .field = count > 0 && choice & 0x80 ? names[choice % count] : NULL,
+                                 .component = component,
+                                 .has_nodata = choice & 0x40,
+                                 .nodata = choice};
+    if (scalar_select(d, &wanted, &s) == 0)
         for (int n = 0; n < d->block_count; n++) {
             if (!d->blocks[n].point_count) continue;
             check_type(s.blocks[n].type, s.blocks[n].samples);

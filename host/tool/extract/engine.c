@@ -1,0 +1,201 @@
+#include "engine.h"
+
+#include "drivers/driver_trial.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "far.h"
+#include "input/cell_sizes.h"
+#include "library_status.h"
+#include "progress.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* library_status, with the way out where a device computes wrongly. */
+static int engine_status(tc_status status) {
+    if (status != TC_ERROR_WRONG_RESULT) return library_status(status);
+    return fail(STATUS_FAILED, "%s (--engine reference, or auto)", tc_message());
+}
+
+int engine_open(const options *o, tc_engine kind, engine *e) {
+    tc_context_options device;
+    tc_expert_options expert;
+    *e = (engine){0};
+    tc_context_options_init(&device);
+    tc_expert_options_init(&expert);
+    device.expert = &expert;
+    device.engine = kind;
+    device.device = o->device;
+    device.max_memory_bytes = kind == TC_ENGINE_OPENCL ? o->max_memory : 0;
+    device.progress = progress_update;
+    device.check_device = !o->verify; /* which compares more */
+    expert.child_trial = trial_in_child;
+    return engine_status(tc_context_create(&device, &e->context));
+}
+
+void engine_close(engine *e) {
+    tc_mesh_destroy(e->mesh);
+    for (int n = 0; n < e->block_count; n++) tc_grid_destroy(e->grids[n]);
+    free(e->grids);
+    free(e->parts);
+    free(e->joined.positions);
+    free(e->joined.normals);
+    free(e->joined.triangles);
+    tc_context_destroy(e->context);
+    *e = (engine){0};
+}
+
+/* Whether positions relative to that point keep the shapes of the cells in float32 (far.h). */
+static int origin_suits(const cell_range *cells, const double origin[3]) {
+    for (int axis = 0; axis < 3; axis++)
+        if (lies_far(cells->low[axis], cells->high[axis], cells->least[axis], origin[axis])) return 0;
+    return 1;
+}
+
+/* The origin of block n, which has chosen its own: that of the first block before it whose origin suits it too. */
+static int share_origin(const options *o, const block_list *blocks, int n, engine *e) {
+    double *own = e->parts[n].origin;
+    cell_range cells;
+    int first = 0;
+    cell_range_find(&blocks->blocks[n], 0, &cells);
+    while (first < n && (!e->grids[first] || !origin_suits(&cells, e->parts[first].origin))) first++;
+    if (memcmp(own, e->parts[first].origin, sizeof e->parts[first].origin) == 0) return 0;
+    memcpy(own, e->parts[first].origin, sizeof e->parts[first].origin);
+    tc_grid_destroy(e->grids[n]);
+    e->grids[n] = NULL;
+    return block_grid(o, blocks, n, e->context, own, &e->grids[n]);
+}
+
+int engine_upload(const options *o, const block_list *blocks, engine *e) {
+    e->grids = calloc((size_t)blocks->count + 1, sizeof *e->grids);
+    e->parts = calloc((size_t)blocks->count + 1, sizeof *e->parts);
+    if (!e->grids || !e->parts) return fail(STATUS_FAILED, "out of memory for %d blocks", blocks->count);
+    e->block_count = blocks->count;
+    for (int n = 0; n < blocks->count; n++) {
+        int status = block_grid(o, blocks, n, e->context, NULL, &e->grids[n]);
+        if (!status && e->grids[n]) status = library_status(tc_grid_origin(e->grids[n], e->parts[n].origin));
+        if (!status && e->grids[n] && n) status = share_origin(o, blocks, n, e);
+        if (status) return status;
+    }
+    return 0;
+}
+
+int engine_origins_differ(const engine *e, block_range blocks) {
+    const mesh_part *first = NULL;
+    for (int n = blocks.first; n < blocks.first + blocks.count; n++) {
+        if (!e->parts[n].vertex_count) continue;
+        if (first && memcmp(first->origin, e->parts[n].origin, sizeof first->origin) != 0) return 1;
+        first = &e->parts[n];
+    }
+    return 0;
+}
+
+int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
+    *counts = (tc_counts){.struct_size = sizeof *counts};
+    for (int n = 0; n < e->block_count; n++) {
+        tc_counts one = {.struct_size = sizeof one};
+        tc_status status = e->grids[n] ? tc_count(e->grids[n], how, &one) : TC_OK;
+        e->fails_alike = status == TC_ERROR_LIMIT;
+        if (status) return engine_status(status);
+        counts->vertex_count += one.vertex_count;
+        counts->triangle_count += one.triangle_count;
+        counts->active_cell_count += one.active_cell_count;
+        counts->mesh_bytes += one.mesh_bytes;
+        counts->classify_ms += one.classify_ms;
+    }
+    return 0;
+}
+
+/* --------------------------------------------------------------------------------------------------------- joining */
+
+/* The memory moved where it has to be, with room for count triples; NULL where there is none, and it is as it was. */
+static void *resized(void *memory, uint64_t count) {
+    enum { TRIPLE = 12 };
+    return count <= SIZE_MAX / TRIPLE ? realloc(memory, (size_t)count * TRIPLE) : NULL;
+}
+
+/* At least the sizes given, and so much more that several blocks rarely move what is there. */
+static int make_room(joined_mesh *j, uint64_t vertices, uint64_t triangles, int normals) {
+    void *positions = j->positions, *directions = j->normals, *indices = j->triangles;
+    if (vertices > j->vertex_room) {
+        uint64_t room = vertices + vertices / 2;
+        if ((positions = resized(j->positions, room))) j->positions = positions;
+        if (normals && (directions = resized(j->normals, room))) j->normals = directions;
+        if (positions && (directions || !normals)) j->vertex_room = room;
+    }
+    if (triangles > j->triangle_room) {
+        uint64_t room = triangles + triangles / 2;
+        if ((indices = resized(j->triangles, room))) j->triangles = indices;
+        if (indices) j->triangle_room = room;
+    }
+    int is_there = positions && indices && (directions || !normals);
+    return is_there ? 0 : fail(STATUS_FAILED, "out of memory for the surface of all blocks");
+}
+
+static int join(joined_mesh *j, const tc_mesh_data *part, int normals, tc_mesh_data *sum) {
+    uint64_t vertices = sum->vertex_count + part->vertex_count, triangles = sum->triangle_count + part->triangle_count;
+    if (vertices > UINT32_MAX)
+        return fail(STATUS_FAILED,
+                    "the blocks' surfaces have %" PRIu64 " vertices together, more than the 2^32 - 1 that one mesh "
+                    "holds; extract the blocks from files of their own",
+                    vertices);
+    int status = make_room(j, vertices, triangles, normals);
+    if (status) return status;
+    if (part->vertex_count)
+        memcpy(j->positions + 3 * sum->vertex_count, part->positions, 3 * part->vertex_count * sizeof *j->positions);
+    if (part->vertex_count && normals)
+        memcpy(j->normals + 3 * sum->vertex_count, part->normals, 3 * part->vertex_count * sizeof *j->normals);
+    uint32_t first = (uint32_t)sum->vertex_count, *to = j->triangles + 3 * sum->triangle_count;
+    for (uint64_t n = 0; n < 3 * part->triangle_count; n++) to[n] = part->triangles[n] + first;
+    if (!sum->vertex_count) memcpy(sum->origin, part->origin, sizeof sum->origin);
+    sum->vertex_count = vertices;
+    sum->triangle_count = triangles;
+    sum->active_cell_count += part->active_cell_count;
+    sum->timings.classify_ms += part->timings.classify_ms;
+    sum->timings.emit_ms += part->timings.emit_ms;
+    sum->timings.readback_ms += part->timings.readback_ms;
+    sum->timings.total_ms += part->timings.total_ms;
+    if (part->slab_count > sum->slab_count) sum->slab_count = part->slab_count;
+    return 0;
+}
+
+static int extract_block(engine *e, int n, const tc_extract_options *how, tc_mesh_data *data) {
+    *data = (tc_mesh_data){.struct_size = sizeof *data};
+    tc_status status = e->grids[n] ? tc_extract(e->grids[n], how, &e->mesh) : TC_OK;
+    if (!status && e->grids[n]) status = tc_mesh_get(e->mesh, data);
+    e->fails_alike = status == TC_ERROR_LIMIT;
+    e->parts[n].vertex_count = data->vertex_count;
+    e->parts[n].triangle_count = data->triangle_count;
+    return engine_status(status);
+}
+
+int engine_extract(engine *e, block_range blocks, const tc_extract_options *how, tc_mesh_data *data) {
+    tc_mesh_data part;
+    *data = (tc_mesh_data){.struct_size = sizeof *data};
+    if (blocks.count == 1 && e->grids[blocks.first]) return extract_block(e, blocks.first, how, data);
+    int status = make_room(&e->joined, 1, 1, how->normals);
+    e->fails_alike = status != 0;
+    for (int n = blocks.first; n < blocks.first + blocks.count && !status; n++) {
+        if ((status = extract_block(e, n, how, &part))) break;
+        status = join(&e->joined, &part, how->normals, data);
+        e->fails_alike = status != 0;
+    }
+    data->positions = e->joined.positions;
+    data->normals = how->normals ? e->joined.normals : NULL;
+    data->triangles = e->joined.triangles;
+    return status;
+}
+
+int engine_carry(engine *e, block_range blocks, const tc_extract_options *how, const point_field *field,
+                 float *values) {
+    for (int n = blocks.first; n < blocks.first + blocks.count; n++) {
+        const dataset_field *from = &field->blocks[n];
+        const tc_field carried = {sizeof carried, from->type, from->components, from->values};
+        uint64_t count = e->parts[n].vertex_count * (uint64_t)from->components;
+        int status = count ? engine_status(tc_interpolate_field(e->grids[n], how, &carried, values, count)) : 0;
+        if (status) return status;
+        values += count;
+    }
+    return 0;
+}

@@ -1,0 +1,86 @@
+#include "final_surface.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "terminal/notice.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+void final_surface_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, final_surface *out) {
+    *out = (final_surface){.mesh = *mesh, .parts = e->parts + blocks.first, .part_count = blocks.count};
+}
+
+/* The tuples of the vertices that the result has, from malloc; NULL with its failure's text without memory. */
+static float *gather(const collapsed_mesh *to, const float *values, size_t components) {
+    float *gathered = malloc(((size_t)to->vertex_count * components + 1) * sizeof *gathered);
+    if (!gathered) fail(STATUS_FAILED, "out of memory for the surface without triangles of zero area");
+    for (uint64_t v = 0; gathered && v < to->vertex_count; v++)
+        memcpy(gathered + v * components, values + to->sources[v] * components, components * sizeof *gathered);
+    return gathered;
+}
+
+/* Vertices and triangles of each block still follow each other. */
+static int divide(final_surface *shown) {
+    const collapsed_mesh *c = &shown->collapsed;
+    uint64_t end = 0, vertex = 0, triangle = 0;
+    mesh_part *parts = calloc((size_t)shown->part_count + 1, sizeof *parts);
+    if (!parts) return fail(STATUS_FAILED, "out of memory for %d blocks", shown->part_count);
+    for (int n = 0; n < shown->part_count; n++) {
+        memcpy(parts[n].origin, shown->parts[n].origin, sizeof parts[n].origin);
+        end += shown->parts[n].vertex_count;
+        for (; vertex < c->vertex_count && c->sources[vertex] < end; vertex++) parts[n].vertex_count++;
+        for (; triangle < c->triangle_count && c->triangles[3 * triangle] < vertex; triangle++)
+            parts[n].triangle_count++;
+    }
+    shown->parts = shown->own_parts = parts;
+    return 0;
+}
+
+int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
+    tc_mesh_data *m = &shown->mesh;
+    collapsed_mesh *c = &shown->collapsed;
+    int status = mesh_collapse(m->positions, m->vertex_count, m->triangles, m->triangle_count, c);
+    s->has_dropped = 1;
+    s->dropped_count += c->dropped_count;
+    s->crowded_edges += c->crowded_edges;
+    if (status || !c->dropped_count) return status;
+    shown->positions = gather(c, m->positions, 3);
+    if (m->normals && shown->positions) shown->normals = gather(c, m->normals, 3);
+    if (!shown->positions || (m->normals && !shown->normals)) return STATUS_FAILED;
+    m->positions = shown->positions;
+    m->normals = shown->normals;
+    m->triangles = c->triangles;
+    m->vertex_count = c->vertex_count;
+    m->triangle_count = c->triangle_count;
+    return divide(shown);
+}
+
+void final_surface_tell_dropped(const surface_report *s) {
+    if (s->crowded_edges)
+        notice("isovalue %s: without its triangles of zero area the surface has %" PRIu64 " edges of more than two "
+               "triangles, as it had there before",
+               s->iso->text, s->crowded_edges);
+    if (s->has_dropped && s->summary.degenerate_triangles)
+        notice("isovalue %s: %" PRIu64 " triangles of zero area are left: their corners are apart, on a line",
+               s->iso->text, s->summary.degenerate_triangles);
+}
+
+int final_surface_carry(const final_surface *shown, carried_fields *fields) {
+    for (int n = 0; n < fields->count && shown->collapsed.dropped_count; n++) {
+        float *values = gather(&shown->collapsed, fields->values[n], (size_t)fields->from[n].components);
+        if (!values) return STATUS_FAILED;
+        free(fields->values[n]);
+        fields->fields[n].values = fields->values[n] = values;
+    }
+    return 0;
+}
+
+void final_surface_release(final_surface *shown) {
+    collapsed_mesh_release(&shown->collapsed);
+    free(shown->positions);
+    free(shown->normals);
+    free(shown->own_parts);
+    *shown = (final_surface){0};
+}

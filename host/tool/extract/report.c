@@ -1,0 +1,166 @@
+/* report.c - each fact is formatted as JSON and as text; the same fact has the same place in both */
+#include "report.h"
+
+#include "output.h"
+#include "shortest.h"
+#include "terminal/json_report.h"
+#include "terminal/notice.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* ------------------------------------------------------------------------------------------------------------ JSON */
+
+/* Milliseconds to the microsecond. */
+static json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
+
+/* Whether the surface encloses one: it has no border, and one side of it is the outer one everywhere. */
+static int has_volume(const surface_report *s) {
+    return !s->topology.unbalanced_edges && !s->topology.invalid_triangles && !s->summary.nonfinite_vertices;
+}
+
+static void add_topology(json_t *object, const surface_report *s) {
+    const mesh_topology *t = &s->topology;
+    json_object_set_new(object, "boundary_edges", count_json(t->boundary_edges));
+    json_object_set_new(object, "nonmanifold_edges", count_json(t->nonmanifold_edges));
+    json_object_set_new(object, "nonmanifold_vertices", count_json(t->nonmanifold_vertices));
+    json_object_set_new(object, "misoriented_edges", count_json(t->misoriented_edges));
+    json_object_set_new(object, "coarse_vertices", count_json(s->coarse_vertices));
+    json_object_set_new(object, "euler_characteristic", json_integer((json_int_t)t->euler_characteristic));
+    json_object_set_new(object, "components", count_json(t->components));
+    json_object_set_new(object, "area", real_json(t->area));
+    json_object_set_new(object, "volume", has_volume(s) ? real_json(t->volume) : json_null());
+}
+
+/* An empty surface has none. */
+static int has_bounds(const surface_report *s) { return s->vertex_count > s->summary.nonfinite_vertices; }
+
+static void add_mesh(json_t *object, const surface_report *s) {
+    char hash[24];
+    snprintf(hash, sizeof hash, "%016" PRIx64, s->hash);
+    json_object_set_new(object, "degenerate_triangles", count_json(s->summary.degenerate_triangles));
+    json_object_set_new(
+        object, "bounds",
+        has_bounds(s) ? json_pack("[o, o]", reals_json(s->summary.bounds[0], 3), reals_json(s->summary.bounds[1], 3))
+                      : json_null());
+    json_object_set_new(object, "origin", s->has_origin ? reals_json(s->origin, 3) : json_null());
+    json_object_set_new(object, "hash", json_string(hash));
+}
+
+static json_t *surface_json(const surface_report *s) {
+    json_t *object = json_object(), *timings = json_object();
+    json_object_set_new(object, "iso", real_json(s->iso->value));
+    json_object_set_new(object, "vertices", count_json(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count));
+    if (s->soup_vertex_count) json_object_set_new(object, "shared_vertices", count_json(s->vertex_count));
+    json_object_set_new(object, "triangles", count_json(s->triangle_count));
+    json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
+    if (s->has_mesh) add_mesh(object, s);
+    if (s->has_dropped) json_object_set_new(object, "dropped_triangles", count_json(s->dropped_count));
+    json_object_set_new(timings, "classify", ms_json(s->classify_ms));
+    if (s->has_mesh) {
+        json_object_set_new(timings, "emit", ms_json(s->emit_ms));
+        json_object_set_new(timings, "readback", ms_json(s->readback_ms));
+    }
+    json_object_set_new(object, "timings_ms", timings);
+    if (s->has_topology) add_topology(object, s);
+    if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
+    return object;
+}
+
+static json_t *timings_json(const extract_report *r) {
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "device_start",
+                     ms_json(r->device_start_ms), "upload", ms_json(r->upload_ms), "write", ms_json(r->write_ms),
+                     "total", ms_json(r->total_ms));
+}
+
+int extract_report_json(const extract_report *r) {
+    json_t *surfaces = json_array(), *object = json_object();
+    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
+    json_object_set_new(object, "input", string_json(r->o->operands[0]));
+    json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
+    json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
+    json_object_set_new(object, "method", json_string(r->o->method == TC_METHOD_HYBRID ? "hybrid" : "tetra"));
+    json_object_set_new(object, "dims", r->dims ? integers_json(r->dims) : json_null());
+    json_object_set_new(object, "cells", count_json(r->cell_count));
+    json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
+    json_object_set_new(object, "timings_ms", timings_json(r));
+    json_object_set_new(object, "surfaces", surfaces);
+    json_object_set_new(object, "notices", notices_json());
+    return json_report_print(object);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ text */
+
+static void topology_text(const surface_report *s) {
+    const mesh_topology *t = &s->topology;
+    printf("  check       %s, %s: %" PRIu64 " boundary edges, %" PRIu64 " non-manifold edges, %" PRIu64
+           " non-manifold vertices, %" PRIu64 " misoriented edges\n",
+           t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
+           t->boundary_edges ? "open" : "closed", t->boundary_edges, t->nonmanifold_edges, t->nonmanifold_vertices,
+           t->misoriented_edges);
+    printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g", t->euler_characteristic,
+           t->components, t->area);
+    if (has_volume(s))
+        printf(", volume %.7g\n", t->volume);
+    else
+        printf(", %s: no volume\n", t->boundary_edges ? "open" : "not oriented");
+}
+
+static void bounds_text(const surface_report *s) {
+    printf("  bounds     ");
+    for (int end = 0; end < 2 && has_bounds(s); end++)
+        for (int axis = 0; axis < 3; axis++)
+            printf("%s %s", end && !axis ? " to" : "", shortest_coordinate(s->summary.bounds[end][axis]).text);
+    printf(has_bounds(s) ? "\n" : " none\n");
+}
+
+static void surface_text(const surface_report *s, const char *cells) {
+    const mesh_summary *m = &s->summary;
+    printf("isovalue %s\n", s->iso->text);
+    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles",
+           s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count, s->triangle_count);
+    if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
+    printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
+    if (s->soup_vertex_count)
+        printf("  soup        three vertices of its own for every triangle; hash and check are of %" PRIu64
+               " shared ones\n",
+               s->vertex_count);
+    if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
+    if (s->has_mesh) {
+        bounds_text(s);
+        if (!s->has_origin) printf("  origin      of each block its own\n");
+        if (s->has_origin && (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0))
+            printf("  origin      %s %s %s\n", shortest_number(s->origin[0]).text, shortest_number(s->origin[1]).text,
+                   shortest_number(s->origin[2]).text);
+        printf("  hash        %016" PRIx64 "\n", s->hash);
+        printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
+               s->readback_ms);
+    } else {
+        printf("  time        classify %.2f ms", s->classify_ms);
+    }
+    if (s->slab_count > 1) printf(", in %" PRIu32 " slabs", s->slab_count);
+    printf("\n");
+    if (s->has_topology) topology_text(s);
+    if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
+    if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
+}
+
+static void input_text(const extract_report *r) {
+    printf("%s: ", r->o->operands[0]);
+    if (r->block_count > 1) printf("%d blocks, ", r->block_count);
+    if (r->dims)
+        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->dims[0], r->dims[1], r->dims[2]);
+    else
+        printf("%" PRIu64 " points ", r->point_count);
+    printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
+           tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
+}
+
+void extract_report_text(const extract_report *r) {
+    input_text(r);
+    printf("%s\n", r->device[0] ? r->device : "reference engine");
+    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n], r->is_complex ? "tetrahedra" : "cells");
+    printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
+           r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
+}

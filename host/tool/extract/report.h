@@ -1,0 +1,66 @@
+/*
+ * report.h - what extract found out, as the JSON object of README.md or as text for people
+ *
+ * Numbers are printed so that they can be typed back: text has the fewest digits that read back the same double.
+ */
+#ifndef REPORT_H
+#define REPORT_H
+
+#include "mesh_check.h"
+#include "command_line/options.h"
+#include "tetracubes.h"
+
+/* Vertices where the numbers that coordinates are have few steps across a cell (precision.h). */
+typedef struct coarse_count {
+    uint64_t vertices; /* of all meshes that were looked at */
+    uint64_t coarse;   /* where it shows */
+    uint64_t lost;     /* where the shape is lost */
+    double fewest;     /* steps, where coarse is not 0 */
+} coarse_count;
+
+/* One isovalue's results: of one mesh, or of several, the sums. */
+typedef struct surface_report {
+    const typed_isovalue *iso;
+    uint64_t vertex_count, triangle_count, active_cell_count;
+    double classify_ms, emit_ms, readback_ms;
+    uint32_t slab_count;
+    int has_mesh;               /* 0: counted only; then the rest is not filled */
+    mesh_summary summary;       /* bounds in world space. This and the hash: not where no report is printed */
+    uint64_t hash;              /* of several meshes: mesh_hash_add of each in turn */
+    int has_origin;             /* 0: blocks that lie far from each other have origins of their own */
+    double origin[3];           /* that positions in memory, and so the hash, are relative to */
+    uint64_t soup_vertex_count; /* of the file: three of its own for every triangle; 0 where it shares them */
+    int has_dropped;
+    uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
+    uint64_t crowded_edges; /* that dropping has left: of more than two triangles */
+    int has_topology;
+    mesh_topology topology;
+    coarse_count mesh_numbers, file_numbers; /* float32 of the mesh; the numbers in the file */
+    uint64_t coarse_vertices;                /* with --check: where the shape is lost in one of them */
+    int is_relative;                         /* the file holds coordinates relative to the mesh's origin */
+    int has_verdict;
+    int verified;
+    char *path; /* of the file, or files, written, or NULL; from malloc */
+} surface_report;
+
+typedef struct extract_report {
+    const options *o;
+    tc_engine engine;    /* the one that made the surfaces, the last where --engine auto has changed it */
+    const int64_t *dims; /* of an input that is one structured block, else NULL */
+    int block_count;
+    int is_complex;    /* unstructured: active cells are tetrahedra */
+    const char *field; /* "" where it has no name */
+    tc_type type;
+    uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
+    char device[160];                                    /* "" for the reference engine */
+    double read_ms, upload_ms, write_ms, total_ms;
+    double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
+    surface_report *surfaces;
+    size_t surface_count;
+} extract_report;
+
+/* Prints the whole report on standard output. Returns 0 or STATUS_FAILED where memory runs out. */
+int extract_report_json(const extract_report *report);
+void extract_report_text(const extract_report *report);
+
+#endif

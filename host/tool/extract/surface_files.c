@@ -1,0 +1,158 @@
+#include "surface_files.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "input/input.h"
+#include "output.h"
+#include "shortest.h"
+#include "terminal/notice.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { ALL_BLOCKS = -1 };
+
+/* ----------------------------------------------------------------------------------------------------------- names */
+
+/* Where "_b0" goes: before the last dot of the name's last part, or at its end. */
+static const char *ending_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot : path + strlen(path);
+}
+
+/* The file of one isovalue and block, from malloc: with several isovalues every % stands for the isovalue as typed. */
+static char *file_name(const options *o, const typed_isovalue *iso, int block) {
+    const char *stand_in = o->isovalue_count > 1 ? iso->text : "%", *ending = ending_of(o->output);
+    char number[24] = "";
+    if (block != ALL_BLOCKS) snprintf(number, sizeof number, "_b%d", block);
+    size_t bytes = strlen(number) + 1;
+    for (const char *c = o->output; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
+    char *path = malloc(bytes), *at = path;
+    for (const char *c = o->output; path; c++) {
+        if (c == ending) at = stpcpy(at, number);
+        if (!*c) break;
+        at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
+    }
+    if (path)
+        *at = '\0';
+    else
+        fail(STATUS_FAILED, "out of memory for the name of the output");
+    return path;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- usage */
+
+static int check_names(const options *o) {
+    struct stat there;
+    if (o->separate_blocks && output_is_dash(o->output))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: -o - is one stream; name files");
+    if (o->separate_blocks && stat(o->output, &there) == 0 && !S_ISREG(there.st_mode))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: %s is no file; name files", o->output);
+    if (o->isovalue_count > 1 && !strchr(o->output, '%'))
+        return fail(STATUS_USAGE, "-o %s: with several isovalues the name needs a %%, which stands for the isovalue",
+                    o->output);
+    for (size_t a = 0; a < o->isovalue_count; a++)
+        for (size_t b = 0; b < a; b++)
+            if (strcmp(o->isovalues[a].text, o->isovalues[b].text) == 0)
+                return fail(STATUS_USAGE, "--iso: %s is given twice and both would be written to one file",
+                            o->isovalues[a].text);
+    return 0;
+}
+
+/* The files of an isovalue; before the input is read, that of the first block alone. */
+static int check_files(const options *o, const dataset *d, const typed_isovalue *iso) {
+    const int first = o->separate_blocks ? 0 : ALL_BLOCKS;
+    const int end = o->separate_blocks && d ? d->block_count : first + 1;
+    int status = 0;
+    for (int block = first; block < end && !status; block++) {
+        char *path = file_name(o, iso, block);
+        status = path ? input_overwrite_check(o, d, path) : STATUS_FAILED;
+        if (!status) status = output_check(path);
+        free(path);
+    }
+    return status;
+}
+
+int surface_files_check(const options *o, const dataset *d) {
+    const mesh_field some = {.name = "", .components = 1};
+    const mesh_write_options how = {
+        .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
+    if (!o->output) return 0;
+    int status = check_names(o);
+    if (!status) status = mesh_write_check(o->output, &how);
+    for (size_t n = 0; n < o->isovalue_count && !status; n++) status = check_files(o, d, &o->isovalues[n]);
+    return status;
+}
+
+/* --------------------------------------------------------------------------------------------------------- numbers */
+
+static mesh_write_options write_options(const options *o, const final_surface *mesh) {
+    return (mesh_write_options){.format = o->format,
+                                .soup = o->soup,
+                                .parts = mesh->parts,
+                                .part_count = mesh->part_count,
+                                .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+}
+
+/* STL holds float32 alone: its coordinates count from the mesh's origin. */
+static void tell_relative(const double *origin, int is_own) {
+    static const char why[] = "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to";
+    static const char what[] = "PLY, VTP and OBJ hold full coordinates";
+    if (is_own)
+        notice("%s each block's origin (--origin-at chooses one point; %s)", why, what);
+    else if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
+        notice("%s %s,%s,%s (--origin-at chooses the point; %s)", why, shortest_number(origin[0]).text,
+               shortest_number(origin[1]).text, shortest_number(origin[2]).text, what);
+}
+
+int surface_files_count_coarse(const options *o, const surface_source *source, const final_surface *mesh,
+                               surface_report *s) {
+    static const double world[3] = {0, 0, 0};
+    if (!o->output) return 0;
+    const mesh_write_options how = write_options(o, mesh);
+    const int has_doubles = mesh_write_has_doubles(o->output, &how), digits = has_doubles ? DBL_MANT_DIG : FLT_MANT_DIG;
+    const double *zero = how.origin_at ? how.origin_at : has_doubles ? world : mesh->mesh.origin;
+    const int has_own_origin = o->separate_blocks || !engine_origins_differ(source->engine, source->range);
+    if (mesh_write_is_relative(o->output, &mesh->mesh, &how)) s->is_relative = 1;
+    if (!has_doubles && !how.origin_at && has_own_origin) return 0; /* they are the mesh's own numbers */
+    return precision_count_file(source, zero, digits, o->check, &s->file_numbers);
+}
+
+void surface_files_tell_numbers(const options *o, int block_count, const surface_report *s) {
+    if (s->is_relative) tell_relative(s->origin, o->separate_blocks && block_count > 1);
+    precision_tell_file(s, options_given(o, "--origin-at"));
+}
+
+/* --------------------------------------------------------------------------------------------------------- writing */
+
+int surface_files_write(const options *o, const typed_isovalue *iso, int block, const final_surface *mesh,
+                        const carried_fields *fields, output_group *group) {
+    mesh_write_options how = write_options(o, mesh);
+    how.fields = fields->fields;
+    how.field_count = fields->count;
+    how.group = group;
+    char *path = file_name(o, iso, o->separate_blocks ? block : ALL_BLOCKS);
+    int status = path ? mesh_write(path, &mesh->mesh, &how) : STATUS_FAILED;
+    free(path);
+    return status;
+}
+
+/* "out_b0.ply to out_b2.ply" */
+char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count) {
+    if (!o->separate_blocks) return file_name(o, iso, ALL_BLOCKS);
+    char *first = file_name(o, iso, 0), *last = file_name(o, iso, block_count - 1), *text = NULL;
+    if (block_count < 2) {
+        free(last);
+        return first;
+    }
+    if (first && last && asprintf(&text, "%s to %s", first, last) < 0) {
+        text = NULL;
+        fail(STATUS_FAILED, "out of memory for the names of the output");
+    }
+    free(first);
+    free(last);
+    return text;
+}

@@ -1,0 +1,282 @@
+#include "blocks.h"
+
+#include "cell_types.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "input.h"
+#include "sample_types.h"
+#include "terminal/notice.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The status, the text of a failure then saying which block it is of. */
+static int block_status(int status, int n, int block_count) {
+    char text[1000];
+    if (!status || block_count == 1) return status;
+    snprintf(text, sizeof text, "%s", failure_text());
+    return fail(status, "%s (block %d)", text, n);
+}
+
+static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
+    const dataset_block *from = b->source;
+    tc_grid_options_init(grid);
+    memcpy(grid->dims, from->dims, sizeof grid->dims);
+    memcpy(grid->first_index, from->first, sizeof grid->first_index);
+    if (from->kind == GRID_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
+    for (int axis = 0; axis < 3 && from->kind == GRID_RECTILINEAR; axis++) {
+        grid->axes[axis] = from->axes[axis].f32;
+        grid->axes_f64[axis] = from->axes[axis].f64;
+    }
+    if (from->kind == GRID_CURVILINEAR) {
+        grid->points = from->points.f32;
+        grid->points_f64 = from->points.f64;
+    }
+    grid->blanked_samples = from->blanked_points;
+    grid->blanked_cells = from->blanked_cells;
+    if (!b->scalar) return;
+    grid->type = b->scalar->type;
+    grid->samples = b->scalar->samples;
+    grid->has_nodata = b->scalar->has_nodata;
+    grid->nodata = b->scalar->nodata;
+    grid->blanked_samples = b->scalar->blanked_points;
+    grid->blanked_cells = b->scalar->blanked_cells;
+}
+
+static int cut_structured(const options *o, prepared_block *b) {
+    tc_grid_options grid;
+    describe_grid(b, &grid);
+    void *none_missing = NULL; /* the library wants samples, of which only those that are missing matter */
+    if (!b->scalar) {
+        grid.type = TC_U8;
+        grid.samples = none_missing = calloc((size_t)b->source->point_count + 1, 1);
+        if (!none_missing)
+            return fail(STATUS_FAILED, "no memory to cut a grid of %" PRId64 " points", b->source->point_count);
+    }
+    tc_status status = tc_tetrahedralize_grid(&grid, &b->complex);
+    free(none_missing);
+    return input_status(o, status);
+}
+
+/* Reports a failed cut; names the option that helps where only cells that cannot be cut are at fault. */
+static int refuse_cells(const options *o, const tc_cells *cells, tc_status status) {
+    tc_cells others = *cells;
+    tc_tetrahedra complex = {.struct_size = sizeof complex};
+    char text[900];
+    snprintf(text, sizeof text, "%s", tc_message());
+    others.skip_unsupported = 1;
+    int is_help = status == TC_ERROR_DATA && !cells->skip_unsupported && !tc_tetrahedralize(&others, &complex);
+    uint64_t count = complex.unsupported_cell_count;
+    tc_tetrahedra_release(&complex);
+    if (is_help)
+        return fail(STATUS_INPUT, "%s: %s; --skip-unsupported leaves out the %" PRIu64 " cells that cannot be cut",
+                    o->operands[0], text, count);
+    return status == TC_ERROR_DATA ? fail(STATUS_INPUT, "%s: %s", o->operands[0], text) : input_status(o, status);
+}
+
+static int cut_unstructured(const options *o, prepared_block *b) {
+    const dataset_block *from = b->source;
+    const tc_cells cells = {.struct_size = sizeof cells,
+                            .point_count = (uint64_t)from->point_count,
+                            .points = from->points.f32,
+                            .points_f64 = from->points.f64,
+                            .cell_count = (uint64_t)from->cell_count,
+                            .types = from->cell_types,
+                            .offsets = from->cell_offsets,
+                            .connectivity = from->cell_points,
+                            .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
+                            .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells,
+                            .cell_faces = from->cell_faces,
+                            .face_offsets = from->face_offsets,
+                            .face_connectivity = from->face_points,
+                            .skip_unsupported = o->skip_unsupported};
+    tc_status status = tc_tetrahedralize(&cells, &b->complex);
+    return status ? refuse_cells(o, &cells, status) : 0;
+}
+
+/* Cubes of a structured block, none where it is flat; cells of three dimensions of an unstructured one. */
+static uint64_t solid_cells(const prepared_block *b) {
+    const int64_t *d = b->source->dims;
+    if (b->source->kind == GRID_UNSTRUCTURED) return (uint64_t)b->source->cell_count - b->complex.flat_cell_count;
+    return (uint64_t)(d[0] - 1) * (uint64_t)(d[1] - 1) * (uint64_t)(d[2] - 1);
+}
+
+static int is_flat(const dataset_block *b) {
+    return b->kind != GRID_UNSTRUCTURED && (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2);
+}
+
+/* Flat blocks are skipped as flat cells are; an input of nothing else the library refuses, with its reason. */
+static int all_are_flat(const dataset *d) {
+    int flat = 1;
+    for (int n = 0; n < d->block_count; n++) flat = flat && is_flat(&d->blocks[n]);
+    return flat;
+}
+
+static uint64_t count_set(const uint8_t *mask, int64_t count) {
+    uint64_t set = 0;
+    for (int64_t n = 0; mask && n < count; n++) set += mask[n] != 0;
+    return set;
+}
+
+static void tell(uint64_t count, const char *what) {
+    if (count) notice("%" PRIu64 " %s", count, what);
+}
+
+/* Whether the cell may be cut in more ways than one, linear or not. */
+static int is_ambiguous(uint8_t type) {
+    return cell_type_dimension(type) == 3 && !strstr(cell_type_name(type), "tetrahedron");
+}
+
+static int has_ambiguous_cells(const block_list *list) {
+    for (int n = 0; n < list->count; n++) {
+        const dataset_block *b = list->blocks[n].source;
+        for (int64_t cell = 0; b->kind == GRID_UNSTRUCTURED && cell < b->cell_count; cell++)
+            if (is_ambiguous(b->cell_types[cell])) return 1;
+    }
+    return 0;
+}
+
+/* Points of unstructured blocks that no cell has; 0 where memory for that runs out, as it is told only. */
+static uint64_t count_unused_points(const block_list *list) {
+    uint64_t unused = 0;
+    for (int n = 0; n < list->count; n++) {
+        const dataset_block *b = list->blocks[n].source;
+        if (b->kind != GRID_UNSTRUCTURED) continue;
+        uint8_t *used = calloc((size_t)b->point_count + 1, 1);
+        if (!used) return 0;
+        for (int64_t i = 0; i < b->cell_offsets[b->cell_count]; i++) used[b->cell_points[i]] = 1;
+        for (int64_t i = 0; b->cell_faces && i < b->face_offsets[b->cell_faces[b->cell_count]]; i++)
+            used[b->face_points[i]] = 1;
+        unused += (uint64_t)b->point_count - count_set(used, b->point_count);
+        free(used);
+    }
+    return unused;
+}
+
+static void tell_all(const block_list *list) {
+    uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, unsupported = 0,
+             surplus = 0, blanked_points = 0, blanked_cells = 0;
+    int all_cut = 1;
+    for (int n = 0; n < list->count; n++) {
+        const prepared_block *b = &list->blocks[n];
+        flat_blocks += (uint64_t)b->is_skipped;
+        flat += b->complex.flat_cell_count;
+        curved += b->complex.curved_cell_count;
+        inverted += b->complex.inverted_cell_count;
+        folded += b->complex.folded_cell_count;
+        left_out += b->complex.blanked_cell_count;
+        unsupported += b->complex.unsupported_cell_count;
+        surplus += b->complex.surplus_cell_count;
+        all_cut = all_cut && b->is_cut;
+        if (b->is_cut) continue;
+        blanked_points += count_set(b->source->blanked_points, b->source->point_count);
+        blanked_cells += count_set(b->source->blanked_cells, b->source->cell_count);
+    }
+    tell(flat_blocks, "blocks of one point along an axis are skipped");
+    tell(flat, "cells of fewer than three dimensions are skipped");
+    tell(curved, "quadratic or higher cells are taken as linear, by their corners");
+    tell(unsupported, "cells are left out: of a type that is not cut, or polyhedra whose faces are not closed");
+    tell(surplus, "cells have more points than their type: the first ones are taken");
+    tell(count_unused_points(list), "points are used by no cell");
+    tell(left_out, "cells are left out: blanked, or with a corner that is missing");
+    tell(inverted, "cells of negative volume are turned over");
+    tell(folded, "cells are folded: their tetrahedra overlap");
+    if (list->count > 1 && has_ambiguous_cells(list))
+        notice("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
+    tell(blanked_points, "points are blanked: cells with one of them are left out");
+    tell(blanked_cells, "blanked cells are left out");
+    if (!list->tetrahedron_count && all_cut) notice("nothing to contour: no cell of three dimensions is left");
+}
+
+static int cut(const options *o, prepared_block *b) {
+    if (!b->is_cut || b->is_skipped) return 0;
+    return b->source->kind == GRID_UNSTRUCTURED ? cut_unstructured(o, b) : cut_structured(o, b);
+}
+
+int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out) {
+    *out = (block_list){.blocks = calloc((size_t)d->block_count + 1, sizeof *out->blocks)};
+    if (!out->blocks) return fail(STATUS_FAILED, "out of memory for %d blocks", d->block_count);
+    const int flat = all_are_flat(d);
+    for (int n = 0; n < d->block_count; n++) {
+        prepared_block *b = &out->blocks[out->count++];
+        b->source = &d->blocks[n];
+        b->scalar = s ? &s->blocks[n] : NULL;
+        b->is_cut = all || d->blocks[n].kind == GRID_UNSTRUCTURED;
+        b->is_skipped = !flat && is_flat(b->source);
+        b->complex.struct_size = sizeof b->complex;
+        int status = block_status(cut(o, b), n, d->block_count);
+        if (status) return status;
+        uint64_t cells = solid_cells(b);
+        out->cell_count += cells;
+        out->tetrahedron_count += b->is_cut ? b->complex.tetrahedron_count : 5 * cells;
+    }
+    if (notice_wanted()) tell_all(out);
+    return 0;
+}
+
+void blocks_release(block_list *list) {
+    for (int n = 0; n < list->count; n++) tc_tetrahedra_release(&list->blocks[n].complex);
+    free(list->blocks);
+    *list = (block_list){0};
+}
+
+static tc_status complex_grid(const prepared_block *b, tc_context *context, const double *origin, tc_grid **grid) {
+    tc_tetrahedra_grid_options from;
+    if (!b->complex.tetrahedron_count) return TC_OK;
+    tc_tetrahedra_grid_options_init(&from);
+    from.point_count = (uint64_t)b->source->point_count;
+    from.points = b->source->points.f32;
+    from.points_f64 = b->source->points.f64;
+    if (origin) {
+        from.has_origin = 1;
+        memcpy(from.origin, origin, sizeof from.origin);
+    }
+    from.type = b->scalar->type;
+    from.samples = b->scalar->samples;
+    from.tetrahedron_count = b->complex.tetrahedron_count;
+    from.tetrahedra = b->complex.tetrahedra;
+    return tc_tetrahedra_grid_create(context, &from, grid);
+}
+
+int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
+               tc_grid **grid) {
+    const prepared_block *b = &list->blocks[n];
+    tc_grid_options from;
+    *grid = NULL;
+    if (b->is_skipped) return 0;
+    if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, origin, grid)), n, list->count);
+    describe_grid(b, &from);
+    if (origin) {
+        from.has_origin = 1;
+        memcpy(from.origin, origin, sizeof from.origin);
+    }
+    return block_status(input_status(o, tc_grid_create(context, &from, grid)), n, list->count);
+}
+
+static int has_nonfinite(const prepared_block *b) {
+    const int64_t count = b->source->point_count;
+    switch ((int)b->scalar->type) {
+#define FIND_CASE(type, name, c_type, ...)                                                                             \
+    case type:                                                                                                         \
+        for (int64_t n = 0; n < count; n++)                                                                            \
+            if (!isfinite(((const c_type *)b->scalar->samples)[n])) return 1;                                          \
+        return 0;
+        REAL_TYPES(FIND_CASE)
+#undef FIND_CASE
+    default:
+        return 0;
+    }
+}
+
+int blocks_may_touch(const block_list *list) {
+    for (int n = 0; n < list->count; n++) {
+        const prepared_block *b = &list->blocks[n];
+        if (b->is_cut || b->scalar->blanked_points || b->scalar->blanked_cells || b->scalar->has_nodata ||
+            has_nonfinite(b))
+            return 1;
+    }
+    return 0;
+}

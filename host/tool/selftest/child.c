@@ -1,0 +1,243 @@
+#include "child.h"
+
+#include "drivers/child_process.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "library_status.h"
+#include "mesh_compare.h"
+#include "shortest.h"
+#include "trials.h"
+#include "vectors.h"
+#include "volume.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the child is to do. */
+typedef struct selftest_job {
+    int group;          /* index in trial_groups, or VECTORS */
+    const char *device; /* NULL: the default */
+    int quick;
+    int first;           /* number of the first trial; those before are passed over */
+    const char *vectors; /* file; NULL: those that come with the tool */
+} selftest_job;
+
+/* A group's run. */
+typedef struct group_run {
+    const selftest_job *job;
+    const trial_group *group;
+    tc_context *reference;
+    tc_device_info info;
+    uint32_t work_items; /* that the device gets by default */
+    int number;          /* of the next trial */
+    uint32_t most_slabs;
+} group_run;
+
+/* ---------------------------------------------------------------------------------------------------------- trials */
+
+static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, tc_grid **grid,
+                               tc_mesh **mesh, tc_mesh_data *data) {
+    tc_extract_options how;
+    tc_extract_options_init(&how);
+    how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, selftest_exponent(t)) : t->isovalue;
+    how.normals = t->normals;
+    how.method = t->method;
+    data->struct_size = sizeof *data;
+    tc_status status = selftest_grid_create(v, context, grid);
+    if (!status) status = tc_extract(*grid, &how, mesh);
+    return status ? status : tc_mesh_get(*mesh, data);
+}
+
+static void compare_trial(const trial *t, const tc_mesh_data *device, const tc_mesh_data *reference, char *text,
+                          size_t bytes) {
+    if (!meshes_are_same(device, reference, text, bytes)) return;
+    if (t->is_known && (device->vertex_count != t->vertices || device->triangle_count != t->triangles))
+        snprintf(text, bytes, "%" PRIu64 " vertices and %" PRIu64 " triangles, should be %" PRIu64 " and %" PRIu64,
+                 device->vertex_count, device->triangle_count, t->vertices, t->triangles);
+}
+
+/* Returns 0, or an exit status where it could not be run; text: what is wrong, or "". */
+static int run_trial(group_run *r, const trial *t, tc_context *device, char *text, size_t bytes) {
+    tc_grid *grids[2] = {NULL, NULL};
+    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_mesh_data data[2] = {{0}, {0}};
+    selftest_volume volume;
+    int status = selftest_volume_make(t, &volume);
+    if (!status) status = library_status(extract_trial(t, r->reference, &volume, &grids[0], &meshes[0], &data[0]));
+    if (!status) {
+        if (extract_trial(t, device, &volume, &grids[1], &meshes[1], &data[1]))
+            snprintf(text, bytes, "%s", tc_message());
+        else
+            compare_trial(t, &data[1], &data[0], text, bytes);
+        if (data[1].slab_count > r->most_slabs) r->most_slabs = data[1].slab_count;
+    }
+    for (int e = 0; e < 2; e++) {
+        tc_mesh_destroy(meshes[e]);
+        tc_grid_destroy(grids[e]);
+    }
+    selftest_volume_release(&volume);
+    return status;
+}
+
+static void name_trial(const trial *t, const launch *l, char *name, size_t bytes) {
+    int length = snprintf(name, bytes, "%s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s",
+                          t->field ? t->field : "quotients", t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type),
+                          shortest_number(t->isovalue).text);
+    const struct {
+        const char *what;
+        uint64_t value;
+    } given[] = {{"work items", l->work_items},
+                 {"groups", l->work_groups},
+                 {"tile bricks", l->tile_bricks},
+                 {"polls", l->spin_limit},
+                 {"bytes", l->max_memory_bytes}};
+    const char *changes[] = {[CHANGE_STEPS] = "steps",
+                             [CHANGE_MISSING] = "missing",
+                             [CHANGE_SUBNORMAL] = "subnormal",
+                             [CHANGE_HUGE] = "huge",
+                             [CHANGE_MIDPOINTS] = "midpoints"};
+    const char *kinds[] = {"", ", rectilinear", ", curvilinear", ", tetrahedra"};
+    length +=
+        snprintf(name + length, bytes - (size_t)length, "%s%s%s%s%s%s%s", t->change ? ", " : "",
+                 t->change ? changes[t->change] : "", kinds[t->kind], t->method == TC_METHOD_HYBRID ? ", hybrid" : "",
+                 t->normals ? ", normals" : "", t->mirrored ? ", mirrored" : "", t->has_nodata ? ", nodata" : "");
+    for (size_t n = 0; n < sizeof given / sizeof *given; n++)
+        if (given[n].value)
+            length += snprintf(name + length, bytes - (size_t)length, ", %s %" PRIu64, given[n].what, given[n].value);
+    if (l->division) snprintf(name + length, bytes - (size_t)length, ", division %d", (int)l->division);
+}
+
+static void report_trial(const char *text) {
+    if (*text)
+        child_report("failed %s", text);
+    else
+        child_report("ok");
+}
+
+/* ----------------------------------------------------------------------------------------------------------- groups */
+
+static int open_device(const char *spec, const launch *l, tc_context **context) {
+    tc_context_options how;
+    tc_expert_options expert;
+    tc_context_options_init(&how);
+    tc_expert_options_init(&expert);
+    how.expert = &expert;
+    how.device = spec;
+    expert.work_items = l->work_items;
+    expert.work_groups = l->work_groups;
+    expert.tile_bricks = l->tile_bricks;
+    expert.spin_limit = l->spin_limit;
+    expert.division = l->division;
+    how.max_memory_bytes = l->max_memory_bytes;
+    return library_status(tc_context_create(&how, context));
+}
+
+/* Why the device is not launched so; NULL where it is. The kernels for one work-item are for compilers known to take
+ * them: no driver fails that does not. */
+static const char *launch_refusal(const group_run *r, const launch *l) {
+    if (l->work_items > r->info.max_work_group_size) return "the device has no groups so large";
+    if (l->work_items == 1 && r->work_items != 1) return "the device gets the kernels for groups";
+    if (l->division == TC_DIVISION_BUILT_IN && !r->info.rounds_division) return "the device does not round divisions";
+    return l->division == TC_DIVISION_FP64 && !r->info.has_fp64 ? "the device has no fp64" : NULL;
+}
+
+static int run_launch(group_run *r, const launch *l, int trial_count) {
+    tc_context *device = NULL;
+    const char *refusal = launch_refusal(r, l);
+    int status = 0;
+    for (int t = 0; t < trial_count && !status; t++) {
+        char name[300], text[700] = "";
+        const int number = r->number++;
+        if (number < r->job->first) continue;
+        name_trial(&r->group->trials[t], l, name, sizeof name);
+        child_report("trial %d %s", number, name);
+        if (!refusal && !device) status = open_device(r->job->device, l, &device);
+        if (!refusal && !status) status = run_trial(r, &r->group->trials[t], device, text, sizeof text);
+        if (refusal)
+            child_report("skipped %s", refusal);
+        else if (!status)
+            report_trial(text);
+    }
+    tc_context_destroy(device);
+    return status;
+}
+
+static int run_group(group_run *r) {
+    const trial_group *g = r->group;
+    const int launches = r->job->quick ? g->quick_launches : g->launch_count;
+    int status = 0;
+    for (int n = 0; n < launches && !status; n++)
+        status = run_launch(r, &g->launches[n], r->job->quick ? g->quick_trials : g->trial_count);
+    if (status || !g->wants_slabs || r->job->first) return status;
+    child_report("trial %d slabs are made", r->number);
+    report_trial(r->most_slabs < 2 ? "the bound on memory did not make slabs" : "");
+    return 0;
+}
+
+static int begin_group(group_run *r) {
+    tc_context_options how;
+    tc_context *device = NULL;
+    tc_tuning tuning = {.struct_size = sizeof tuning};
+    r->info.struct_size = sizeof r->info;
+    int status = open_device(r->job->device, &(launch){0}, &device);
+    if (!status) status = library_status(tc_context_device(device, &r->info));
+    if (!status) status = library_status(tc_context_tuning(device, &tuning));
+    r->work_items = tuning.work_items;
+    tc_context_destroy(device);
+    tc_context_options_init(&how);
+    how.engine = TC_ENGINE_REFERENCE;
+    return status ? status : library_status(tc_context_create(&how, &r->reference));
+}
+
+/* ---------------------------------------------------------------------------------------------------------- vectors */
+
+static int is_quick(const vector *v) { return v->dims[0] * v->dims[1] * v->dims[2] <= 128 * 128 * 128; }
+
+static int run_vectors(const selftest_job *job) {
+    vector_list list;
+    tc_context *device = NULL;
+    int number = 0, status = vectors_read(job->vectors, &list);
+    if (!status) status = open_device(job->device, &(launch){0}, &device);
+    for (int n = 0; n < list.count && !status; n++) {
+        const vector *v = &list.vectors[n];
+        char text[700] = "";
+        if (job->quick && !is_quick(v)) continue;
+        if (number++ < job->first) continue;
+        child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s, %s, %s", number - 1, v->field,
+                     v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), shortest_number(v->isovalue).text,
+                     v->method == TC_METHOD_HYBRID ? "hybrid" : "tetra", v->options);
+        status = vector_try(v, device, text, sizeof text);
+        if (!status) report_trial(text);
+    }
+    tc_context_destroy(device);
+    vectors_release(&list);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- main */
+
+int selftest_child(int argc, char **argv) {
+    if (argc != 5) return STATUS_USAGE;
+    const selftest_job job = {.group = atoi(argv[0]),
+                              .device = *argv[1] ? argv[1] : NULL,
+                              .quick = atoi(argv[2]),
+                              .first = atoi(argv[3]),
+                              .vectors = *argv[4] ? argv[4] : NULL};
+    if (job.group < VECTORS || job.group >= trial_group_count) return STATUS_USAGE;
+    child_begin();
+    group_run r = {.job = &job};
+    int status = 0;
+    if (job.group == VECTORS) {
+        status = run_vectors(&job);
+    } else {
+        r.group = &trial_groups[job.group];
+        status = begin_group(&r);
+        if (!status) status = run_group(&r);
+        tc_context_destroy(r.reference);
+    }
+    child_report("end %d %s", status, status ? failure_text() : "");
+    return 0;
+}
