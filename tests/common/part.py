@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def part_write(name, versions, figures, seconds, **details):
-    """figures: pairs of what was counted and the value, as tests/figures.py shows them. details may give another date."""
+    """figures: pairs of what was counted and the value, as tests/figures.py shows them. details may have a date."""
     folder = os.environ.get("TETRACUBES_RESULTS")
     if not folder:
         return
