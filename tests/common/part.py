@@ -1,4 +1,4 @@
-"""part.py - figures of a part of the long tier: PART.json in the folder that TETRACUBES_RESULTS names, if it names one"""
+"""part.py - figures of a part of the long tier: PART.json in the folder that TETRACUBES_RESULTS names, if it does"""
 import json
 import os
 import time
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def part_write(name, versions, figures, seconds, **details):
-    """figures: pairs of what was counted and the value, as tests/figures.py shows them."""
+    """figures: pairs of what was counted and the value, as tests/figures.py shows them. details may have a date."""
     folder = os.environ.get("TETRACUBES_RESULTS")
     if not folder:
         return

@@ -12,6 +12,7 @@ of this run. Needs root, debootstrap and a mirror of Debian: the one that apt us
 status 77 where that is missing. Chroots are made in TETRACUBES_CHROOTS, left out the folder for temporary files, about
 4 GB each, and removed.
 """
+import datetime
 import glob
 import json
 import os
@@ -185,8 +186,7 @@ def results_write(seen):
     folder = os.environ.get("TETRACUBES_RESULTS")
     if not folder:
         return
-    seen = seen + told_before(folder, [one["system"] for one in seen])
-    seen.sort(key=lambda one: ORDER.index(one["system"]))
+    seen = sorted(seen + told_before(folder, [one["system"] for one in seen]), key=lambda one: ORDER.index(one["system"]))
     lines = [{key: value for key, value in dict(line, system=one["system"]).items() if key != "hashes"}
              for one in seen for line in one["drivers"]]
     bare = [one for one in seen if one["commands"]]
@@ -198,8 +198,8 @@ def results_write(seen):
     versions_of = {f"{one['system']}, {name}": version for one in seen for name, version in one["versions"].items()
                    if name in ("gcc", "libexpat1")}
     part_write("systems", versions_of, figures, sum(line["seconds"] for one in seen for line in one["commands"]),
-               drivers=lines, systems=[{key: one[key] for key in ("system", "date", "commands", "versions")}
-                                       for one in seen])
+               date=max(one["date"] for one in seen), drivers=lines,
+               systems=[{key: one[key] for key in ("system", "date", "commands", "versions")} for one in seen])
 
 
 def main():

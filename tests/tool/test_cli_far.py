@@ -3,7 +3,7 @@
 
 A small grid of every kind is written twice, near zero and at UTM coordinates, in double precision. What is written of
 its surface must be the same shape at the right place: VTP and PLY in doubles, OBJ in text, STL relative to a point that
-is told or chosen. With `reference` what needs an OpenCL device is left out. Standard library only.
+is told or chosen.
 """
 import itertools
 import json

@@ -3,7 +3,7 @@
 
 --spacing and --origin for every kind of uniform input, --component magnitude, and what info says of an input that leaves
 a choice open: frames, values per sample, fields. By the reference engine. With TETRACUBES_DATA set, the inputs there
-that public reports are about are read too. Standard library only.
+that public reports are about are read too.
 """
 import bz2
 import math
