@@ -5,7 +5,7 @@
  * The device is started on a second thread while the input is read: neither needs the other, and a compressed volume
  * takes as long as a driver.
  *
- * Whatever fails in the main engine, --engine auto gives to the reference engine, which goes on from there: its meshes
+ * With --engine auto, the reference engine takes over where the main engine fails, and goes on from there: its meshes
  * are the same.
  *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
@@ -64,8 +64,8 @@ static int read_input(job *j) {
     return status ? status : progress_status();
 }
 
-/* Where the main engine has failed: with --engine auto the reference takes its place, with what has been uploaded,
- * unless it would fail alike. Returns the status that is left. */
+/* Called when the main engine has failed. With --engine auto the reference takes its place, and gets the blocks that
+ * were uploaded, unless it would fail in the same way. Returns 0, or the status that stays. */
 static int fall_back(job *j, int status) {
     if (status != STATUS_FAILED || j->main.fails_alike || progress_cancelled()) return status;
     if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
@@ -78,7 +78,7 @@ static int fall_back(job *j, int status) {
     return status || !j->blocks.count ? status : engine_upload(j->o, &j->blocks, &j->main);
 }
 
-/* The second thread: texts of failures are each thread's own, so this one's is handed over. */
+/* Runs on the second thread. Every thread has a failure text of its own, so this one's is copied for the first. */
 static void *device_start(void *argument) {
     job *j = argument;
     double begin = now_ms();
@@ -134,7 +134,7 @@ static int upload(job *j) {
     return status;
 }
 
-/* The part of a call before its first kernel: the first call makes the kernels ready. */
+/* The first call makes the kernels ready: what it took beyond the kernels' own time belongs to the device's start. */
 static void add_device_start(job *j, double begin_ms, double kernels_ms) {
     j->report.device_start_ms += now_ms() - begin_ms - kernels_ms;
 }
@@ -191,7 +191,7 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
     return status;
 }
 
-/* What comes of the mesh that the engine has made. */
+/* The mesh that the engine has made is verified, counted, checked and written. */
 static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, final_surface *mesh, int is_last) {
     job *j = w->j;
     surface_report *s = w->s;
