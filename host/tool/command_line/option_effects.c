@@ -71,7 +71,6 @@ typedef struct effect {
     const char *text; /* behind the input's name, where that was read */
 } effect;
 
-#define READS    (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)
 #define NO_MESH  "--count makes no mesh: leave out "
 #define NOT_RAW  " describes raw input: give --dims NX,NY,NZ too, or leave it out"
 #define NO_FIELD " is for the values of one field, and none is chosen: see --field and --component"
