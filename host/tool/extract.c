@@ -165,8 +165,8 @@ typedef struct surface_job {
     output_group files; /* complete, but not under their names yet */
 } surface_job;
 
-/* All that is told of a surface, once the last of its meshes is made. */
-static int tell_surface(surface_job *w) {
+/* Tells all that there is to tell of a surface, and judges it, once the last of its meshes is made. */
+static int judge_surface(surface_job *w) {
     job *j = w->j;
     surface_report *s = w->s;
     int status = surface_tell_empty(&j->data, &j->field, s);
@@ -203,7 +203,7 @@ static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *m
     status = precision_count_mesh(&source, j->o->check, &s->mesh_numbers);
     if (!status) status = surface_files_count_coarse(j->o, &source, mesh, s);
     if (!status && j->o->check) status = surface_check(&mesh->mesh, s);
-    if (!status && is_last) status = tell_surface(w);
+    if (!status && is_last) status = judge_surface(w);
     if (status || (status = progress_status())) return status;
     if (s->has_verdict && !s->verified) w->is_good = 0;
     return w->is_good && j->o->output ? write_mesh(w, blocks, made, mesh, is_last) : 0;
@@ -230,11 +230,10 @@ static int publish(surface_job *w) {
     double begin = now_ms();
     if (!w->is_good) j->failed_count++;
     if (!w->is_good || !j->o->output) return 0;
-    int status = output_group_publish(&w->files);
-    j->report.write_ms += now_ms() - begin;
-    if (status) return status;
     w->s->path = surface_files_describe(j->o, w->s->iso, j->blocks.count);
-    return w->s->path ? 0 : STATUS_FAILED;
+    int status = w->s->path ? output_group_publish(&w->files) : STATUS_FAILED;
+    j->report.write_ms += now_ms() - begin;
+    return status;
 }
 
 static int make_surface(job *j, surface_report *s) {
