@@ -9,8 +9,8 @@
 /* The exit status (exit_status.h) that a status of the library means; records tc_message() as the failure's text. */
 int library_status(tc_status status);
 
-/* A driver has failed: the process should then end without giving it occasion to tidy up. library_status says so
- * itself of a device that fails. From any thread. */
+/* Remembers that a driver has failed; the process should then end without letting it tidy up, which could crash or
+ * hang. library_status does so where a device fails. From any thread. */
 void driver_distrust(void);
 int driver_is_distrusted(void);
 

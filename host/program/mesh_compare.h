@@ -4,8 +4,8 @@
 
 #include "tetracubes.h"
 
-/* Nonzero where counts, positions, normals and triangles are the same bytes; else text, a buffer of `bytes` bytes, says
- * what differs first. */
+/* Nonzero where counts, positions, normals and triangles are the same bytes. Else `text`, of so many bytes, says what
+ * differs first. */
 int meshes_are_same(const tc_mesh_data *device, const tc_mesh_data *reference, char *text, size_t bytes);
 
 #endif

@@ -84,7 +84,7 @@ static void start_waiting(void) {
         if (sigaction(numbers[n], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaddset(&waited_for, numbers[n]);
     pthread_sigmask(SIG_BLOCK, &waited_for, NULL);
-    sigfillset(&all); /* handlers run in other threads, whose calls of the system they interrupt */
+    sigfillset(&all); /* other threads run the handlers, which are to interrupt those threads' system calls */
     pthread_sigmask(SIG_SETMASK, &all, &old);
     int is_there = pthread_create(&waiting, NULL, wait_for_signals, NULL) == 0;
     pthread_sigmask(SIG_SETMASK, &old, NULL);
@@ -110,7 +110,8 @@ void progress_begin(int quiet) {
 
 int progress_update(void *user, const char *stage, double fraction) {
     (void)user;
-    truncation_watch(); /* what builds kernels may have put in front a handler of its own, which serves one fault */
+    truncation_watch(); /* compilers of kernels may have installed a handler of their own, which serves one fault only
+                         */
     double now = now_ms();
     if (state.shown && now - state.begin_ms >= PATIENCE_MS && now - state.last_ms >= REDRAW_MS) {
         fprintf(stderr, "\r\033[K%s %3.0f%%", stage, 100.0 * fraction);

@@ -1,8 +1,8 @@
 /*
  * commands.h - the commands of the tool, one file each
  *
- * A command prints its results on standard output and returns an exit status (exit_status.h); for any but 0 the text
- * to print is in failure.h.
+ * A command prints its results on standard output and returns an exit status (exit_status.h). Where that is not 0, main
+ * prints failure_text() (failure.h).
  */
 #ifndef COMMANDS_H
 #define COMMANDS_H

@@ -5,7 +5,7 @@
  * The device is started on a second thread while the input is read: neither needs the other, and a compressed volume
  * takes as long as a driver.
  *
- * Whatever fails in the main engine, --engine auto gives to the reference engine, which goes on from there: its meshes
+ * With --engine auto, the reference engine takes over where the main engine fails, and goes on from there: its meshes
  * are the same.
  *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
@@ -64,8 +64,8 @@ static int read_input(job *j) {
     return status ? status : progress_status();
 }
 
-/* Where the main engine has failed: with --engine auto the reference takes its place, with what has been uploaded,
- * unless it would fail alike. Returns the status that is left. */
+/* Called when the main engine has failed. With --engine auto the reference takes its place, and gets the blocks that
+ * were uploaded, unless it would fail in the same way. Returns 0, or the status that stays. */
 static int fall_back(job *j, int status) {
     if (status != STATUS_FAILED || j->main.fails_alike || progress_cancelled()) return status;
     if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
@@ -78,7 +78,7 @@ static int fall_back(job *j, int status) {
     return status || !j->blocks.count ? status : engine_upload(j->o, &j->blocks, &j->main);
 }
 
-/* The second thread: texts of failures are each thread's own, so this one's is handed over. */
+/* Runs on the second thread. Every thread has a failure text of its own, so this one's is copied for the first. */
 static void *device_start(void *argument) {
     job *j = argument;
     double begin = now_ms();
@@ -134,7 +134,7 @@ static int upload(job *j) {
     return status;
 }
 
-/* The part of a call before its first kernel: the first call makes the kernels ready. */
+/* The first call makes the kernels ready: what it took beyond the kernels' own time belongs to the device's start. */
 static void add_device_start(job *j, double begin_ms, double kernels_ms) {
     j->report.device_start_ms += now_ms() - begin_ms - kernels_ms;
 }
@@ -165,8 +165,8 @@ typedef struct surface_job {
     output_group files; /* complete, but not under their names yet */
 } surface_job;
 
-/* All that is told of a surface, once the last of its meshes is made. */
-static int tell_surface(surface_job *w) {
+/* Tells all that there is to tell of a surface, and judges it, once the last of its meshes is made. */
+static int judge_surface(surface_job *w) {
     job *j = w->j;
     surface_report *s = w->s;
     int status = surface_tell_empty(&j->data, &j->field, s);
@@ -191,7 +191,7 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
     return status;
 }
 
-/* What comes of the mesh that the engine has made. */
+/* The mesh that the engine has made is verified, counted, checked and written. */
 static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, final_surface *mesh, int is_last) {
     job *j = w->j;
     surface_report *s = w->s;
@@ -203,7 +203,7 @@ static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *m
     status = precision_count_mesh(&source, j->o->check, &s->mesh_numbers);
     if (!status) status = surface_files_count_coarse(j->o, &source, mesh, s);
     if (!status && j->o->check) status = surface_check(&mesh->mesh, s);
-    if (!status && is_last) status = tell_surface(w);
+    if (!status && is_last) status = judge_surface(w);
     if (status || (status = progress_status())) return status;
     if (s->has_verdict && !s->verified) w->is_good = 0;
     return w->is_good && j->o->output ? write_mesh(w, blocks, made, mesh, is_last) : 0;
@@ -230,11 +230,10 @@ static int publish(surface_job *w) {
     double begin = now_ms();
     if (!w->is_good) j->failed_count++;
     if (!w->is_good || !j->o->output) return 0;
-    int status = output_group_publish(&w->files);
-    j->report.write_ms += now_ms() - begin;
-    if (status) return status;
     w->s->path = surface_files_describe(j->o, w->s->iso, j->blocks.count);
-    return w->s->path ? 0 : STATUS_FAILED;
+    int status = w->s->path ? output_group_publish(&w->files) : STATUS_FAILED;
+    j->report.write_ms += now_ms() - begin;
+    return status;
 }
 
 static int make_surface(job *j, surface_report *s) {

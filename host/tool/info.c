@@ -52,7 +52,7 @@ static json_t *suggestions_json(const facts *f) {
     return array;
 }
 
-/* The one structured block that the object's dims, first, spacing and matrix are of; NULL where there is none. */
+/* The block that has dims, first, spacing and matrix: the only one, if it is structured; else NULL. */
 static const dataset_block *only_block(const dataset *d) {
     return d->block_count == 1 && d->blocks->kind != GRID_UNSTRUCTURED ? d->blocks : NULL;
 }
@@ -160,7 +160,7 @@ static void print_text(const facts *f) {
     print_field(f);
 }
 
-/* Fields are told of once, in whatever blocks they are; that which is chosen elsewhere. */
+/* A notice for each field that was rounded in some block; input_select gives that of the chosen one. */
 static void tell_rounded(const facts *f) {
     const dataset_block *first = f->d->blocks;
     for (int n = 0; f->d->block_count && n < first->field_count; n++) {
@@ -188,7 +188,7 @@ static int find_statistics(facts *f) {
     return 0;
 }
 
-/* Reads what is there, whatever is left open, and the field's samples where nothing is. */
+/* Reads the input also where the options leave a choice open; the field's samples only where they do not. */
 static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     read_request request;
     int status = input_request(o, &request);

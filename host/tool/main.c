@@ -138,7 +138,7 @@ static void print_formats(const char *before, FILE *out) {
 static void print_command_help(const command *c, FILE *out) {
     fprintf(out, "%s\n\n%s\n\nOptions:\n", c->usage, c->text);
     options_print(c->bit, out);
-    if (c->bit & (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)) print_formats("\nInput formats:", out);
+    if (c->bit & READS) print_formats("\nInput formats:", out);
     if (c->help) c->help(out);
 }
 

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A child ends with its driver's first fault, and another goes on behind the trial: this often in a group. */
+/* A child ends with its driver's first fault, and another one goes on with the next trial: so many times in a group. */
 enum { FAULTS_MOST = 8 };
 
 /* A group while it runs. */
@@ -160,7 +160,7 @@ static json_t *group_json(const selftest_results *all, int group) {
                      "seconds", real_json(round(ms) / 1000));
 }
 
-/* With the trial of its opening, as the driver may end this process too. */
+/* The device is first opened in a child process, as the driver could end this one. */
 static int describe_device(const char *spec, tc_device_info *info) {
     tc_context_options how;
     tc_expert_options expert;

@@ -88,7 +88,7 @@ static double uniform_f64(const dataset_block *b, const int64_t p[3], int r) {
     return ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
 }
 
-/* Whether float32 would move points by more than 2^-12 of a cell: at the corners, where numbers are largest. */
+/* Whether float32 would move points by more than 2^-12 of a cell. Looks at the corners, where numbers are largest. */
 static int uniform_needs_f64(const dataset_block *b) {
     for (int corner = 0; corner < 8; corner++)
         for (int r = 0; r < 3; r++) {

@@ -243,7 +243,7 @@ MUTANTS = [
             "--spacing changes nothing"),
            ("host/read/read.c", "test_cli_images", "if (d->blocks[n].kind != GRID_UNIFORM)", "if (0)",
             "--spacing is taken where points have coordinates"),
-           ("host/tool/command_line/options.c", "test_cli_images", 'if (strcmp(text, "magnitude") == 0) return 0;', "",
+           ("host/tool/command_line/parse_value.c", "test_cli_images", 'if (strcmp(text, "magnitude") == 0) return 0;', "",
             "--component magnitude is refused")),
     *point("info of what needs a choice",
            ("host/tool/info.c", "test_cli_images", "request.describe = 1;", "request.describe = 0;",

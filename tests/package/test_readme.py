@@ -191,28 +191,42 @@ def included(path, name, source, rooms):
     return next((place / name for place in places if (place / name).exists()), None)
 
 
+def circle_in(includes):
+    """What is left of {path: what it includes} once paths that include none of the others are taken out, again and again."""
+    left = dict(includes)
+    while ends := [path for path in left if not any(other in left for other in left[path])]:
+        for path in ends:
+            del left[path]
+    return sorted(left)
+
+
 def test_rooms(source, text):
-    """No file includes what the table does not allow."""
+    """No file includes what the table does not allow; no rooms, and no files of the tool, include each other."""
     rows = re.findall(r"^\| `((?:host/|kernels)[\w/]*)` \| .* \| (.*?) ?\|$", text, re.MULTILINE)
     rooms = {source / name: allowed for name, allowed in rows}
     expect(len(rooms) >= 15, f"host/README.md: only {len(rooms)} rooms")
     folders = {path.parent for path in (source / "host").rglob("*.c")} - rooms.keys()
     expect(not folders, f"host/README.md: these rooms are left out: {sorted(map(str, folders))}")
     places = [*rooms, source / "kernels"]
-    count = 0
+    over_rooms, over_files = {}, {}
     for path in sorted((source / "host").rglob("*.[ch]")):
         own = room_of(path, places)
         for name in re.findall(r'^#include "([^"]+)"', path.read_text(encoding="utf-8"), re.MULTILINE):
             found = included(path, name, source, places)
             other = room_of(found, places) if found else None
+            if found and found.stem != path.stem and path.is_relative_to(source / "host" / "tool"):
+                over_files.setdefault(path.with_suffix(""), set()).add(found.with_suffix(""))
             if other is None or other in (own, source / "host" / "include"):
                 continue
-            count += 1
+            over_rooms.setdefault(own, set()).add(other)
             wanted = f"`{other.relative_to(source)}`"
             whole = "all of `host/lib`" in rooms[own] and other.is_relative_to(source / "host" / "lib")
             expect(wanted in rooms[own] or whole, f"{path.relative_to(source)} includes {name} of {wanted}, which "
                                                   "host/README.md does not allow its room")
-    expect(count > 100, f"only {count} includes over rooms found")
+    expect(sum(map(len, over_rooms.values())) > 30, f"only {over_rooms} found")
+    for what, includes in ("rooms", over_rooms), ("files of host/tool", over_files):
+        circle = circle_in(includes)
+        expect(not circle, f"{what} include each other: {[str(path.relative_to(source)) for path in circle]}")
 
 
 def test_paths(source, pages):

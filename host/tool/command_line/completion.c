@@ -1,4 +1,4 @@
-/* completion.c - see completion.h; texts in single quotes, so that the shell takes them as they are */
+/* completion.c - texts are printed in single quotes, so that the shell takes them as they are */
 #include "completion.h"
 
 #include "exit_status.h"

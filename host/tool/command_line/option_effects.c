@@ -1,5 +1,4 @@
-/* option_effects.c - one table of options without effect, each row with the case in which it is so; see
- * option_effects.h */
+/* option_effects.c - one table: an option, and the case in which it has no effect */
 #include "option_effects.h"
 
 #include "exit_status.h"
@@ -67,12 +66,11 @@ typedef struct effect {
     unsigned commands;
     const char *option;
     enum moment moment;
-    int (*is_vain)(const situation *s);
+    int (*has_no_effect)(const situation *s);
     enum verdict verdict;
     const char *text; /* behind the input's name, where that was read */
 } effect;
 
-#define READS    (COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE)
 #define NO_MESH  "--count makes no mesh: leave out "
 #define NOT_RAW  " describes raw input: give --dims NX,NY,NZ too, or leave it out"
 #define NO_FIELD " is for the values of one field, and none is chosen: see --field and --component"
@@ -139,7 +137,7 @@ static int check(const situation *s) {
     for (int verdict = REFUSED; verdict <= TOLD; verdict++) /* no notice of a run that is refused */
         for (const effect *e = table; e < table + sizeof table / sizeof *table; e++) {
             if (!(e->commands & s->o->bit) || e->moment != moment || (int)e->verdict != verdict) continue;
-            if (!options_given(s->o, e->option) || !e->is_vain(s)) continue;
+            if (!options_given(s->o, e->option) || !e->has_no_effect(s)) continue;
             if (verdict == REFUSED) return fail(STATUS_USAGE, "%s%s%s", input, separator, e->text);
             notice("%s%s%s", input, separator, e->text);
         }

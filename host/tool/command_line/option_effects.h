@@ -2,7 +2,7 @@
  * option_effects.h - options that have no effect beside the other options, or on the input that was read
  *
  * One table (option_effects.c) has them all: options that can only be a mistake are refused, the rest give a notice.
- * What readers and writers of files know alone (fields that are not there, formats that hold no fields) they refuse
+ * What only readers and writers of files know (fields that are not there, formats that hold no fields), they refuse
  * themselves.
  */
 #ifndef OPTION_EFFECTS_H

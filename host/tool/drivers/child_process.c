@@ -22,7 +22,7 @@ extern char **environ;
 
 enum { REPORT_FILE = 3, ARGUMENTS_MOST = 8, LINE_BYTES = 1200, POLL_MS = 20 };
 
-/* Text that comes in pieces, cut into lines; one that is too long goes on without its rest. */
+/* Text that comes in pieces, cut into lines. The end of a line that is too long is dropped. */
 typedef struct line_reader {
     int file; /* -1: at its end */
     size_t count;
@@ -36,8 +36,8 @@ typedef struct child {
     void *user;
     child_end *end;
     double begin_ms, told_ms; /* when it began, and reported last */
-    double told_cpu_ms;       /* what it had used of the processor then */
-    double busy_ms, cpu_ms;   /* when it had last used the processor, and for how long by then */
+    double told_cpu_ms;       /* processor time that it had used by then */
+    double busy_ms, cpu_ms;   /* when it last used the processor; how much of it by then */
 } child;
 
 /* ------------------------------------------------------------------------------------------------------------ start */

@@ -26,7 +26,7 @@ typedef struct child_end {
 } child_end;
 
 /* Runs the program with these arguments (the first is a command; NULL ends them), and hands every line that it reports
- * to `line`; waits until it ends, at most so long, and until it hangs: no line for silent_ms, in which it used the
+ * to `line`. Waits until it ends. Ends it after most_ms, or when it hangs: no line for silent_ms, in which it used the
  * processor all the time or, in the second half, not at all. */
 void child_run(char *const arguments[], double most_ms, double silent_ms, void (*line)(void *user, const char *text),
                void *user, child_end *end);
@@ -37,7 +37,7 @@ int child_was_ended(const child_end *end);
 /* How it ended: "signal 6 (Aborted)", "exit status 1", "time ran out". */
 void child_end_text(const child_end *end, char *text, size_t bytes);
 
-/* In the child, first: ties it to its parent. Then a line for that. */
+/* In the child: the first call ties it to its parent, the second reports a line. */
 void child_begin(void);
 void child_report(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -17,8 +17,8 @@ static size_t count_names(const char *text) {
     return count;
 }
 
-/* How far the next name goes: as far as the longest name of a field that fits, as names may have commas, also behind
- * point: or cell:; else to the next comma. */
+/* The length of the next name. Names of fields may have commas: the longest field's name that fits is taken, also
+ * behind point: or cell:. Where none fits, the name ends at the next comma. */
 static size_t name_length(const char *text, const char *const *known, int known_count) {
     const size_t prefix = field_prefix(text);
     size_t longest = 0;
@@ -33,13 +33,13 @@ static size_t name_length(const char *text, const char *const *known, int known_
     return longest ? longest : strcspn(text, ",");
 }
 
-enum { STEPS_MOST = 4096 }; /* of float32, within the range of a field: fewer show */
+enum { STEPS_MOST = 4096 }; /* steps of float32 within the range of a field: where there are fewer, they show */
 
-/* Of float32 among such values: half of the distance of two neighbours. */
+/* The rounding error of float32 among such values: half a step. */
 static double step_between(double low, double high) { return fmax(fmax(fabs(low), fabs(high)) * 0x1p-24, 0x1p-150); }
 
-/* The least and the greatest finite value of a component in all blocks. Ends early, with 0, where the values differ by
- * so much that float32 does no harm: the range is then not the whole one. */
+/* Finds the least and the greatest finite value of a component in all blocks. Returns 0, and ends early, once the
+ * values differ by so much that float32 does no harm. */
 static int has_narrow_range(const dataset *d, const point_field *from, int component, double range[2]) {
     range[0] = INFINITY;
     range[1] = -INFINITY;
@@ -57,8 +57,8 @@ static int has_narrow_range(const dataset *d, const point_field *from, int compo
     return range[0] <= range[1];
 }
 
-/* Whether a component of the field is constant, or nearly so once it is float32; gives a notice of that, as such values
- * are of no use. */
+/* Whether float32 hardly tells apart the values of some component. Gives a notice of that, and of a field that is
+ * constant, as such values are of no use. */
 static int tell_narrow(const dataset *d, const point_field *from) {
     int constant_count = 0, is_narrow = 0;
     double value = 0;

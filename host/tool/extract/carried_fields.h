@@ -14,7 +14,7 @@ typedef struct carried_fields {
     point_field *from;  /* what the input has */
     mesh_field *fields; /* of the vertices of the mesh last carried to */
     float **values;
-    uint8_t *is_narrow; /* whose values float32 hardly tells apart, as has been told */
+    uint8_t *is_narrow; /* whose values float32 hardly tells apart, which has been told */
     carried_range *ranges;
     int count;
 } carried_fields;
@@ -30,7 +30,7 @@ void carried_fields_begin(carried_fields *c);
 int carried_fields_interpolate(carried_fields *c, engine *e, block_range blocks, const tc_extract_options *how,
                                const tc_mesh_data *mesh);
 
-/* Notices where float32, as which values are carried, is too coarse for those of the surface's meshes. */
+/* Values are carried as float32: notices where that is too coarse for them, in all meshes of the surface. */
 void carried_fields_tell(const carried_fields *c);
 
 #endif

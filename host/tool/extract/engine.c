@@ -53,7 +53,7 @@ static int origin_suits(const cell_range *cells, const double origin[3]) {
     return 1;
 }
 
-/* The origin of block n, which has chosen its own: that of the first block before it whose origin suits it too. */
+/* Gives block n, which has an origin of its own, the origin of the first block before it that suits it too. */
 static int share_origin(const options *o, const block_list *blocks, int n, engine *e) {
     double *own = e->parts[n].origin;
     cell_range cells;
@@ -109,13 +109,14 @@ int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
 
 /* --------------------------------------------------------------------------------------------------------- joining */
 
-/* The memory moved where it has to be, with room for count triples; NULL where there is none, and it is as it was. */
+/* The memory with room for count triples, moved where it has to be. NULL where there is no room; the memory is then as
+ * it was. */
 static void *resized(void *memory, uint64_t count) {
     enum { TRIPLE = 12 };
     return count <= SIZE_MAX / TRIPLE ? realloc(memory, (size_t)count * TRIPLE) : NULL;
 }
 
-/* At least the sizes given, and so much more that several blocks rarely move what is there. */
+/* Room for at least so many, and half as many more: later blocks then rarely move what is there. */
 static int make_room(joined_mesh *j, uint64_t vertices, uint64_t triangles, int normals) {
     void *positions = j->positions, *directions = j->normals, *indices = j->triangles;
     if (vertices > j->vertex_room) {

@@ -28,15 +28,15 @@ typedef struct engine {
     int block_count;
     tc_mesh *mesh; /* of one block, used for each in turn */
     joined_mesh joined;
-    int fails_alike; /* what failed last, a limit of meshes or the host's memory, would fail any engine */
+    int fails_alike; /* what failed last would fail in any engine: a limit of meshes, or the host's memory */
 } engine;
 
 /* Picks the device of the options, for the OpenCL engine. To be closed in any case. */
 int engine_open(const options *o, tc_engine kind, engine *e);
 void engine_close(engine *e);
 
-/* Makes the blocks' samples available to the device. Blocks that lie near each other share an origin, so that surfaces
- * that meet have the same vertices there. */
+/* Makes a grid of every block for the device. Blocks that lie near each other share an origin, so that vertices are the
+ * same where their surfaces meet. */
 int engine_upload(const options *o, const block_list *blocks, engine *e);
 
 /* Whether positions of some of the blocks are relative to another origin than those of others. */

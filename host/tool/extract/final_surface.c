@@ -12,7 +12,7 @@ void final_surface_begin(const engine *e, block_range blocks, const tc_mesh_data
     *out = (final_surface){.mesh = *mesh, .parts = e->parts + blocks.first, .part_count = blocks.count};
 }
 
-/* The tuples of the vertices that the result has, from malloc; NULL with its failure's text without memory. */
+/* The values of the vertices that are left, from malloc; NULL, with the failure's text set, without memory. */
 static float *gather(const collapsed_mesh *to, const float *values, size_t components) {
     float *gathered = malloc(((size_t)to->vertex_count * components + 1) * sizeof *gathered);
     if (!gathered) fail(STATUS_FAILED, "out of memory for the surface without triangles of zero area");

@@ -24,7 +24,7 @@ static double reach_of(const cell_range *cells, const coordinate_numbers *number
     return fmax(fabs(cells->low[axis] - numbers->zero[axis]), fabs(cells->high[axis] - numbers->zero[axis]));
 }
 
-/* Whether some vertex may lie where a cell has few steps: looks at cells, at all of them or at some. */
+/* Whether some vertex may lie in a cell of few steps. Looks at all cells, or at some thousands. */
 static int may_be_coarse(const surface_source *s, const double *zero, int digits, int all) {
     for (int n = s->range.first; n < s->range.first + s->range.count; n++) {
         const coordinate_numbers numbers = numbers_of(s, n, zero, digits);
@@ -82,7 +82,7 @@ int precision_count_mesh(const surface_source *s, int check, coarse_count *sum) 
     return notice_wanted() || check ? count_coarse(s, NULL, FLT_MANT_DIG, check, sum) : 0;
 }
 
-/* Coordinates beyond float32, where the file has no other. */
+/* Fails where coordinates are beyond float32. */
 static int check_reach(const surface_source *s, const double *zero) {
     for (int n = s->range.first; n < s->range.first + s->range.count; n++) {
         const coordinate_numbers numbers = numbers_of(s, n, zero, FLT_MANT_DIG);

@@ -1,8 +1,8 @@
 /*
- * precision.h - whether numbers are fine enough for the shapes that they describe
+ * precision.h - whether float32, or the numbers in a file, are fine enough for the shape of the surface
  *
- * Far from the point that coordinates count from, steps of floating-point numbers grow. Where a cell is only a few
- * steps thick, its part of the surface is a caricature, and nothing else shows it.
+ * Steps between floating-point numbers grow with the distance from the point that coordinates count from. Where a cell
+ * is only a few steps thick, the surface in it is distorted, and no other check finds that.
  */
 #ifndef PRECISION_H
 #define PRECISION_H
@@ -25,11 +25,11 @@ enum { COARSE_STEPS_LEAST = 8 }; /* across a cell: with fewer the shape is lost 
  * notices are not wanted. Returns 0 or STATUS_FAILED. */
 int precision_count_mesh(const surface_source *s, int check, coarse_count *sum);
 
-/* The same of numbers of so many binary digits, 24 or 53, that a file's coordinates are, which count from zero.
- * STATUS_USAGE where coordinates are beyond float32 and the file has no other. */
+/* The same for the coordinates in a file, which count from `zero` and have so many binary digits: 24 or 53. Returns
+ * STATUS_USAGE where coordinates are beyond float32 and the file has nothing larger. */
 int precision_count_file(const surface_source *s, const double zero[3], int digits, int check, coarse_count *sum);
 
-/* Notices of what was counted over all meshes of the surface; is_chosen: coordinates count from --origin-at. */
+/* Notices of what was counted over all meshes of the surface. is_chosen: coordinates count from --origin-at. */
 void precision_tell_mesh(const surface_report *s);
 void precision_tell_file(const surface_report *s, int is_chosen);
 

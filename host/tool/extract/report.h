@@ -10,7 +10,7 @@
 #include "command_line/options.h"
 #include "tetracubes.h"
 
-/* Vertices where the numbers that coordinates are have few steps across a cell (precision.h). */
+/* Vertices in cells that are only few steps of floating-point numbers thick (precision.h). */
 typedef struct coarse_count {
     uint64_t vertices; /* of all meshes that were looked at */
     uint64_t coarse;   /* where it shows */
@@ -18,7 +18,7 @@ typedef struct coarse_count {
     double fewest;     /* steps, where coarse is not 0 */
 } coarse_count;
 
-/* One isovalue's results: of one mesh, or of several, the sums. */
+/* One isovalue's results: those of its mesh, or sums over its meshes. */
 typedef struct surface_report {
     const typed_isovalue *iso;
     uint64_t vertex_count, triangle_count, active_cell_count;
@@ -45,7 +45,7 @@ typedef struct surface_report {
 
 typedef struct extract_report {
     const options *o;
-    tc_engine engine;    /* the one that made the surfaces, the last where --engine auto has changed it */
+    tc_engine engine;    /* the one that made the surfaces; with --engine auto the last one */
     const int64_t *dims; /* of an input that is one structured block, else NULL */
     int block_count;
     int is_complex;    /* unstructured: active cells are tetrahedra */

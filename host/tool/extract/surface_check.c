@@ -19,8 +19,8 @@ int surface_verify(engine *reference_engine, block_range blocks, const tc_extrac
     return 0;
 }
 
-/* A surface can be no better than its input. Where each misoriented edge lies in a face whose two cells are on one side
- * of it, and nothing else is wrong, *good is set. */
+/* A surface can be no better than its input. *good is set where the cells explain all faults: each misoriented edge
+ * lies in a face that has both its cells on the same side, and nothing else is wrong. */
 static int explain_faults(const block_list *blocks, const surface_report *s, int *good) {
     const mesh_topology *t = &s->topology;
     void (*tell)(const char *format, ...) __attribute__((format(printf, 1, 2)));

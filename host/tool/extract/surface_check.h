@@ -12,8 +12,8 @@ int surface_verify(engine *reference, block_range blocks, const tc_extract_optio
 /* Checks a mesh itself, and adds to s what it is like. Returns 0 or a status. */
 int surface_check(const tc_mesh_data *m, surface_report *s);
 
-/* Judges what all meshes of the surface are like; *good: whether it is what its input lets it be. Returns 0 or a
- * status. */
+/* Judges the sums over all meshes of the surface. *good: no fault is left that the input does not explain. Returns 0 or
+ * a status. */
 int surface_judge(const block_list *blocks, const surface_report *s, int *good);
 
 #endif

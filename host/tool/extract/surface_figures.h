@@ -5,8 +5,8 @@
 #include "final_surface.h"
 #include "precision.h"
 
-/* Adds those of a mesh, as it is written, to those of its surface. What only a report shows is left out where none is
- * printed. */
+/* Adds the figures of a mesh, as it is written, to those of its surface. What only a report shows is left out where no
+ * report is printed. */
 void surface_add_mesh(const options *o, const surface_source *made, const final_surface *mesh, surface_report *s);
 
 #endif

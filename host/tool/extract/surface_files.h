@@ -1,5 +1,5 @@
 /*
- * surface_files.h - the files of extract: their names, what can be refused before any work, and writing
+ * surface_files.h - the files of extract: their names, checks before any work, writing
  *
  * One file per isovalue, or with --blocks separate one per isovalue and block, named by "_b0", "_b1", ... before the
  * ending.
@@ -16,13 +16,13 @@
  * where a file cannot be written. d is NULL before the input is read: then less is known of it. */
 int surface_files_check(const options *o, const dataset *d);
 
-/* Adds to s what has to be told of the numbers that the mesh's file will have. STATUS_USAGE where float32 does not
- * reach that far. */
+/* Adds to s where the numbers in the mesh's file will be coarse. Returns STATUS_USAGE where coordinates are beyond
+ * float32 and the file has nothing larger. */
 int surface_files_count_coarse(const options *o, const surface_source *source, const final_surface *mesh,
                                surface_report *s);
 
-/* Tells which point the file's coordinates count from where that is no matter of course, and where its numbers are
- * coarse (precision.h). */
+/* Notices: which point the file's coordinates count from, where it is not the input's own; where its numbers are coarse
+ * (precision.h). */
 void surface_files_tell_numbers(const options *o, int block_count, const surface_report *s);
 
 /* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file waits in

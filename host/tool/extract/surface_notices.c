@@ -60,7 +60,7 @@ int surface_tell_empty(const dataset *d, const scalar *field, const surface_repo
 /* --------------------------------------------------------------------------------------------------------- zero area
  */
 
-/* Samples that equal the isovalue as it is interpolated with: in float for types that a float holds. */
+/* Samples that equal the isovalue, or of f32 samples the float that it is rounded to when vertices are interpolated. */
 static int count_ties(const dataset *d, const scalar *field, double isovalue, uint64_t *ties) {
     sample_array *arrays = input_samples(d, field);
     if (!arrays) return STATUS_FAILED;
@@ -71,7 +71,7 @@ static int count_ties(const dataset *d, const scalar *field, double isovalue, ui
     return 0;
 }
 
-/* Of the samples, beside their distance from the isovalue: where one is so far away, crossings fall onto others. */
+/* Whether some sample is so far from the isovalue that the vertices beside it fall onto other samples. */
 static int has_far_sample(const double range[2], double isovalue) {
     const double near = fmax(fabs(isovalue), fmin(range[1] - isovalue, isovalue - range[0]));
     return range[1] - range[0] > 0x1p20 * near;

@@ -2,6 +2,7 @@
 
 #include "cell_types.h"
 #include "input/statistics.h"
+#include "input/used_points.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
 
@@ -58,12 +59,6 @@ static bounds bounds_of(const dataset_block *b) {
         include(&all, p);
     }
     return all;
-}
-
-static uint64_t count_set(const uint8_t *mask, int64_t count) {
-    uint64_t set = 0;
-    for (int64_t n = 0; mask && n < count; n++) set += mask[n] != 0;
-    return set;
 }
 
 static void count_types(const dataset_block *b, uint64_t counts[CELL_TYPES]) {

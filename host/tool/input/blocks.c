@@ -6,6 +6,7 @@
 #include "input.h"
 #include "sample_types.h"
 #include "terminal/notice.h"
+#include "used_points.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The status, the text of a failure then saying which block it is of. */
+/* Returns the status; the text of a failure then says which block it is of. */
 static int block_status(int status, int n, int block_count) {
     char text[1000];
     if (!status || block_count == 1) return status;
@@ -49,7 +50,7 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
 static int cut_structured(const options *o, prepared_block *b) {
     tc_grid_options grid;
     describe_grid(b, &grid);
-    void *none_missing = NULL; /* the library wants samples, of which only those that are missing matter */
+    void *none_missing = NULL; /* the library wants samples, and looks only at which are missing */
     if (!b->scalar) {
         grid.type = TC_U8;
         grid.samples = none_missing = calloc((size_t)b->source->point_count + 1, 1);
@@ -108,17 +109,12 @@ static int is_flat(const dataset_block *b) {
     return b->kind != GRID_UNSTRUCTURED && (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2);
 }
 
-/* Flat blocks are skipped as flat cells are; an input of nothing else the library refuses, with its reason. */
+/* Flat blocks are skipped, as flat cells are. Where all blocks are flat, they go to the library, which refuses them
+ * with its reason. */
 static int all_are_flat(const dataset *d) {
     int flat = 1;
     for (int n = 0; n < d->block_count; n++) flat = flat && is_flat(&d->blocks[n]);
     return flat;
-}
-
-static uint64_t count_set(const uint8_t *mask, int64_t count) {
-    uint64_t set = 0;
-    for (int64_t n = 0; mask && n < count; n++) set += mask[n] != 0;
-    return set;
 }
 
 static void tell(uint64_t count, const char *what) {
@@ -139,7 +135,7 @@ static int has_ambiguous_cells(const block_list *list) {
     return 0;
 }
 
-/* Points of unstructured blocks that no cell has; 0 where memory for that runs out, as it is told only. */
+/* Points of unstructured blocks that no cell has. It is only for a notice: 0 where memory runs out. */
 static uint64_t count_unused_points(const block_list *list) {
     uint64_t unused = 0;
     for (int n = 0; n < list->count; n++) {

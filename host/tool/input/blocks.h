@@ -13,7 +13,7 @@ typedef struct prepared_block {
     const dataset_block *source;
     const scalar_block *scalar; /* NULL: coordinates only */
     int is_cut;
-    int is_skipped;        /* structured and flat, among others that are not */
+    int is_skipped;        /* structured and flat, while other blocks are not */
     tc_tetrahedra complex; /* of those that are cut */
 } prepared_block;
 

@@ -28,7 +28,8 @@ static int cell_points(const prepared_block *b, int64_t cell, int64_t points[COR
     return CORNERS_MOST;
 }
 
-/* Of a uniform block without its offset, beside which a double may have no room for a cell. */
+/* A point of a uniform or rectilinear block. Of a uniform one without the matrix's offset, which may be so large that a
+ * double has no room for a cell beside it. */
 static void point_position(const dataset_block *b, int64_t point, double out[3]) {
     const int64_t at[3] = {point % b->dims[0], point / b->dims[0] % b->dims[1], point / b->dims[0] / b->dims[1]};
     for (int axis = 0; axis < 3; axis++) {

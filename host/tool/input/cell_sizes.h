@@ -11,7 +11,7 @@ typedef struct cell_range {
                                0; infinite where all are */
 } cell_range;
 
-/* Of all cells, or where `all` is 0 of some thousands taken evenly. */
+/* Looks at all cells, or, where `all` is 0, at some thousands spread evenly. */
 void cell_range_find(const prepared_block *b, int all, cell_range *out);
 
 /* Where coordinates count from, and how many binary digits they have: 24 or 53. */
@@ -23,9 +23,8 @@ typedef struct coordinate_numbers {
 /* The distance from such a number to the next. */
 double step_at(double value, int digits);
 
-/* For every point, how many steps of its coordinates the cells that have it are thick: of the thickest cell, across its
- * thinnest direction; 0 where none is known. From malloc; NULL, with STATUS_FAILED's text set, where memory runs out.
- */
+/* For every point: how many steps of its coordinates its thickest cell measures in that cell's thinnest direction; 0
+ * where that is not known. From malloc; NULL, with STATUS_FAILED's text set, where memory runs out. */
 float *cell_steps(const prepared_block *b, const coordinate_numbers *numbers);
 
 #endif

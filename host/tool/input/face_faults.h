@@ -1,8 +1,8 @@
 /*
  * face_faults.h - how the cells of unstructured blocks meet: checked on the tetrahedra that they are cut into
  *
- * Cells are turned each by its own volume, so that neighbours which overlap run against each other. Structured blocks
- * are turned whole: their tetrahedra fit, folded or not.
+ * Every unstructured cell is oriented by its own volume, so that neighbours that overlap contradict each other. A
+ * structured block is oriented as a whole: its tetrahedra fit, folded or not.
  */
 #ifndef FACE_FAULTS_H
 #define FACE_FAULTS_H

@@ -21,7 +21,7 @@ int input_select(const read_request *request, dataset *d, scalar *out);
  * where no block has such a cell; from malloc, NULL with its failure's text without memory. */
 struct sample_array *input_samples(const dataset *d, const scalar *field);
 
-/* The notice that 64-bit integers of a field, one that is used, are no longer what the file says. */
+/* The notice that 64-bit integers of a field that is used were rounded to doubles. */
 void input_tell_rounded(const char *name);
 
 /* The notice that a field of cells was averaged. */
@@ -31,11 +31,12 @@ void input_tell_average(const dataset *d, const char *name);
  * replace what it is made from. d is NULL before the inputs are read. */
 int input_overwrite_check(const options *o, const dataset *d, const char *path);
 
-/* *has: whether a field is named, or there is just one and nothing to choose in it: where input_select can succeed
- * though the command can do without. Returns 0 or STATUS_FAILED. */
+/* *has: whether input_select can succeed: a field is named, or there is just one and nothing to choose in it. For
+ * commands that can do without a field. Returns 0 or STATUS_FAILED. */
 int input_has_choice(const read_request *request, const dataset *d, int *has);
 
-/* A failure of the library that grids as a file describes them are to blame for; of raw input the options are. */
+/* The exit status of a failure of the library with the input's grid: the file is to blame, or of raw input the options.
+ */
 int input_status(const options *o, tc_status status);
 
 #endif

@@ -1,4 +1,4 @@
-/* statistics.h - range, histogram and sensible isovalues of the samples that are finite and present */
+/* statistics.h - range, histogram and isovalues worth trying, of the samples that are finite and not missing */
 #ifndef STATISTICS_H
 #define STATISTICS_H
 
@@ -14,7 +14,7 @@ typedef struct sample_array {
     const uint8_t *blanked; /* one per sample, nonzero: missing; NULL: none */
     int has_nodata;         /* samples equal to nodata are missing */
     double nodata;
-    const uint8_t *used; /* one per sample, zero: of no cell, as if it were not there; NULL: all are */
+    const uint8_t *used; /* one per sample; zero: no cell uses it, it does not count; NULL: all are used */
 } sample_array;
 
 /*

@@ -2,6 +2,12 @@
 
 #include "cell_types.h"
 
+uint64_t count_set(const uint8_t *mask, int64_t count) {
+    uint64_t set = 0;
+    for (int64_t n = 0; mask && n < count; n++) set += mask[n] != 0;
+    return set;
+}
+
 static void mark_cell(const dataset_block *b, int64_t cell, uint8_t *used) {
     const uint8_t type = b->cell_types[cell];
     const int64_t begin = b->cell_offsets[cell], all = b->cell_offsets[cell + 1] - begin;

@@ -6,9 +6,11 @@
 
 enum point_use { POINTS_NONE_USED, POINTS_SOME_USED, POINTS_ALL_USED };
 
-/* Sets used[n], which is zero, to 1 where a cell of three dimensions that is not blanked has the point as a corner.
- * blanked_cells may be NULL. Structured blocks without such cells are not gone through: used may stay as it is where
- * all points are. */
+/* Sets used[n], zero so far, to 1 where a cell of three dimensions that is not blanked has the point as a corner.
+ * blanked_cells may be NULL. Where all points of a structured block are used, or none, `used` may stay as it is. */
 enum point_use used_points_mark(const dataset_block *b, const uint8_t *blanked_cells, uint8_t *used);
+
+/* How many of a mask's points or cells are set; 0 where there is no mask. */
+uint64_t count_set(const uint8_t *mask, int64_t count);
 
 #endif

@@ -135,8 +135,8 @@ static int open_device(const char *spec, const launch *l, tc_context **context) 
     return library_status(tc_context_create(&how, context));
 }
 
-/* Why the device is not launched so; NULL where it is. The kernels for one work-item are for compilers known to take
- * them: no driver fails that does not. */
+/* Why the device is not launched so; NULL where it is. Only compilers that are known to take the kernels for one
+ * work-item get them: a driver without them does not fail. */
 static const char *launch_refusal(const group_run *r, const launch *l) {
     if (l->work_items > r->info.max_work_group_size) return "the device has no groups so large";
     if (l->work_items == 1 && r->work_items != 1) return "the device gets the kernels for groups";

@@ -36,8 +36,9 @@ static void scatter_missing(const trial *t, size_t count, void *samples) {
     }
 }
 
-/* Half way between two numbers of float32, or as near as quotients come: for an odd d of 24 bits the n whose n 2^25 is
- * 1 or -1 modulo d. A sample -n beside d - n, isovalue 0, makes the quotient n / d; each pair stands in a row in x. */
+/* Quotients half way between two numbers of float32, or as near as quotients come. Such is n / d for an odd d of 24
+ * bits and the n for which n 2^25 is 1 or -1 modulo d. A sample -n beside a sample d - n makes that quotient at
+ * isovalue 0; each pair stands in a row along x. */
 static void midpoint_samples(size_t count, float *samples) {
     for (size_t pair = 0; pair < count / 2; pair++) {
         uint64_t d = 0x800001u + 2 * (pair * 2654435761u % 0x3ffff0u), inverse = 1;
@@ -49,7 +50,7 @@ static void midpoint_samples(size_t count, float *samples) {
     if (count & 1) samples[count - 1] = 1;
 }
 
-/* Subnormal samples, or such as overflow when they are subtracted. */
+/* Subnormal samples, or samples so large that their differences overflow. */
 static void scale(const trial *t, size_t count, void *samples) {
     const int is_small = t->change == CHANGE_SUBNORMAL, exponent = selftest_exponent(t);
     for (size_t n = 0; n < count; n++) {

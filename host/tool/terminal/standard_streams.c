@@ -14,7 +14,7 @@ static struct { FILE *out, *err, *null; } original;
 
 static int is_null_device(const struct stat *s) { return S_ISCHR(s->st_mode) && s->st_rdev == makedev(1, 3); }
 
-/* Whether what is written to the output ends up where the descriptor's does. */
+/* Whether the output leads to the same file as the descriptor. */
 static int is_written_to(const char *path, int fd) {
     struct stat named, standard;
     if (output_is_dash(path)) {

@@ -1,9 +1,9 @@
 /*
- * standard_streams.h - where results and messages go when a file is written to standard output, or to standard error,
- * itself
+ * standard_streams.h - where results and messages go while the mesh itself is written to standard output or standard
+ * error
  *
- * A report behind a mesh would spoil it. Results then go to standard error, messages of a file on standard error to
- * standard output, and nowhere where both are the file's.
+ * A report behind a mesh would spoil the file. Where the file takes standard output, results go to standard error.
+ * Where it takes standard error, messages go to standard output. Where it takes both, neither is printed.
  */
 #ifndef STANDARD_STREAMS_H
 #define STANDARD_STREAMS_H
@@ -12,7 +12,7 @@
  * (/dev/stdout, a FIFO, the file that the shell has opened). NULL: none. */
 void streams_choose(const char *output);
 
-/* Sets them back: failures are told in any case, as the file is then not whole. */
+/* Sets them back. Failures are then told on standard error in any case: the file is not whole. */
 void streams_restore(void);
 
 /* STATUS_FAILED with the text that standard output does not take the results, for this errno. */

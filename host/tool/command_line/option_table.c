@@ -1,0 +1,130 @@
+#include "option_table.h"
+
+#include "mesh_write.h"
+#include "option_values.h"
+#include "sample_types.h"
+
+#define TYPE_CHOICE(type, name, ...) [type] = #name,
+static const char *const type_choices[SAMPLE_TYPE_COUNT + 1] = {SAMPLE_TYPES(TYPE_CHOICE)};
+#define TYPE_BEHIND_BLANK(type, name, ...) " " #name
+#define TYPE_BEFORE_BLANK(type, name, ...) #name " "
+
+static const char *const endian_choices[] = {"little", "big", NULL};
+static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
+static const char *const method_choices[] = {"tetra", "hybrid", NULL};
+#define FORMAT_CHOICE(name, ...) #name,
+static const char *const format_choices[] = {MESH_FORMATS(FORMAT_CHOICE) NULL};
+static const char *const blocks_choices[] = {"joined", "separate", NULL};
+
+#define REPORTS (READS | COMMAND_DEVICES | COMMAND_SELFTEST)
+#define ALL     (REPORTS | COMMAND_GENERATE)
+#define IN(m)   offsetof(options, m)
+
+/* clang-format off */
+const option option_table[] = {
+    {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
+     "isovalue, or several with commas between: samples >= V are inside"},
+    {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
+     "mesh to write: .ply, .vtp, .stl or .obj (left out: only the report); with\n"
+     "several isovalues, % in FILE stands for the isovalue as typed; - is standard\n"
+     "output (give --format): the report then goes to standard error"},
+    {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
+     "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
+     "standard output"},
+    {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
+     "unstructured grid to write: .vtu; - is standard output"},
+    {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
+     "ply, vtp, stl or obj, whatever FILE ends in"},
+    {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
+     "field to contour, of data with several, see 'tetracubes info'; values of\n"
+     "cells are averaged to the points between them; point:NAME and cell:NAME\n"
+     "choose where both have a field of that name (else that of the points)"},
+    {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
+     "other fields, interpolated onto the vertices (PLY, VTP); a name that the\n"
+     "file needs itself, as Normals, gets _ behind"},
+    {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
+     "of data in several blocks: joined (default): one mesh; separate: one\n"
+     "file per block, FILE with _b0, _b1, ... before its ending"},
+    {"--normals", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(normals), NULL,
+     "write a unit normal per vertex, from the gradient of the samples (PLY, OBJ,\n"
+     "VTP); structured grids only"},
+    {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
+     "write three vertices of its own for every triangle, none shared"},
+    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT, VALUE_POINT, IN(origin_at), NULL,
+     "write coordinates relative to this point of the input's space (default: the\n"
+     "input's own; STL, which holds float32 alone, of data far from zero relative\n"
+     "to a point near it, which is told)"},
+    {"--drop-degenerate", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(drop_degenerate), NULL,
+     "leave out triangles of zero area, as samples that equal the isovalue make:\n"
+     "their edges without length are contracted, what was closed stays closed"},
+    {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
+     "classify only: count vertices, triangles and active cells, make no mesh"},
+    {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,
+     "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
+     "ambiguous cases the tetrahedra decide: fewer triangles, structured grids"},
+    {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
+     "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
+     "the reference where there is no device, or it fails or gives wrong results"},
+    {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
+     "an index, platform:device, cpu, gpu or part of a name, see\n"
+     "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
+    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_BOUND, IN(max_memory), NULL,
+     "bound on device buffers, in bytes or with K, M, G, T (powers of 1024):\n"
+     "less memory means smaller slabs, never another result"},
+    {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
+     "extract with the reference engine too and compare every byte"},
+    {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
+     "check the mesh itself: manifold, oriented; Euler characteristic, area, of\n"
+     "closed surfaces volume (boundary edges are reported, they are no fault)"},
+    {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
+     "samples equal to V are missing, as are NaN and infinities: a cell with\n"
+     "a missing corner is left out; of f32 samples and of scaled ones the float\n"
+     "nearest to V counts; of vectors one component equal to V is enough"},
+    {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
+     "leave out cells of types that are not cut, and polyhedra whose faces are\n"
+     "not closed, with a notice, instead of refusing the input"},
+    {"--component", NULL, "C", READS, VALUE_COMPONENT, IN(component), NULL,
+     "which value, from 0, of data with several values per sample; or magnitude:\n"
+     "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
+    {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
+     "which volume, from 0, of data with a fourth axis"},
+    {"--dims", NULL, "NX,NY,NZ", READS, VALUE_DIMS, IN(dims), NULL,
+     "raw input: samples along x, y and z, x fastest"},
+    {"--dims", NULL, "NX,NY,NZ", COMMAND_GENERATE, VALUE_DIMS, IN(dims), NULL,
+     "samples along x, y and z"},
+    {"--type", NULL, "T", READS, VALUE_CHOICE, IN(type), type_choices,
+     "raw input:" SAMPLE_TYPES(TYPE_BEHIND_BLANK)},
+    {"--type", NULL, "T", COMMAND_GENERATE, VALUE_CHOICE, IN(type), type_choices,
+     SAMPLE_TYPES(TYPE_BEFORE_BLANK) "(integers truncate and saturate)"},
+    {"--endian", NULL, "E", READS, VALUE_CHOICE, IN(big_endian), endian_choices,
+     "raw input: little (default) or big"},
+    {"--skip", NULL, "BYTES", READS, VALUE_SIZE, IN(skip), NULL,
+     "raw input: bytes before the first sample"},
+    {"--spacing", NULL, "X,Y,Z", READS, VALUE_SPACING, IN(spacing), NULL,
+     "distance of samples along the axes of a uniform grid, in place of what the\n"
+     "file says, whose directions stay; raw input without it: 1,1,1"},
+    {"--origin", NULL, "X,Y,Z", READS, VALUE_POINT, IN(origin), NULL,
+     "position of the first sample of a uniform grid (of VTK's: of index 0,0,0),\n"
+     "in place of what the file says; raw input without it: 0,0,0"},
+    {"--seed", NULL, "S", COMMAND_GENERATE, VALUE_NUMBER, IN(seed), NULL,
+     "of noise, a whole number, default 0"},
+    {"--quick", NULL, NULL, COMMAND_SELFTEST, VALUE_NONE, IN(quick), NULL,
+     "some trials of every group; of vectors those up to 128 x 128 x 128"},
+    {"--vectors", NULL, NULL, COMMAND_SELFTEST, VALUE_NONE, IN(vectors), NULL,
+     "compare with a list of hashes: that of a FILE behind, else the tool's own"},
+    {"--timeout", NULL, "SECONDS", COMMAND_SELFTEST, VALUE_NUMBER, IN(timeout), NULL,
+     "no trial goes on longer: those that are left then fail"},
+    {"--junit", NULL, "FILE", COMMAND_SELFTEST, VALUE_TEXT, IN(junit), NULL,
+     "write a JUnit file too: a suite per group, a case per trial"},
+    {"--json", NULL, NULL, REPORTS, VALUE_NONE, IN(json), NULL,
+     "print the results as one JSON object"},
+    {"--quiet", NULL, NULL, READS | COMMAND_GENERATE, VALUE_NONE, IN(quiet), NULL,
+     "no progress, no notices, no report but that of --json"},
+    {"--help", "-h", NULL, ALL, VALUE_NONE, IN(help), NULL,
+     "print this"},
+};
+/* clang-format on */
+
+const size_t option_table_count = sizeof option_table / sizeof *option_table;
+
+_Static_assert(sizeof option_table / sizeof *option_table <= OPTION_TABLE_MOST, "options.given has a bit for each");

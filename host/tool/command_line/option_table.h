@@ -1,0 +1,41 @@
+/*
+ * option_table.h - the table of options, which parsing, --help, completion and the manual page are made of
+ */
+#ifndef OPTION_TABLE_H
+#define OPTION_TABLE_H
+
+#include <stddef.h>
+
+typedef enum value_kind {
+    VALUE_NONE,      /* int, set to 1 */
+    VALUE_TEXT,      /* const char * */
+    VALUE_CHOICE,    /* int, the index in choices */
+    VALUE_ISOVALUES, /* appended to isovalues */
+    VALUE_NODATA,    /* double nodata, and has_nodata */
+    VALUE_INDEX,     /* int, from 0 */
+    VALUE_COMPONENT, /* the same, or COMPONENT_MAGNITUDE */
+    VALUE_NUMBER,    /* uint64_t */
+    VALUE_SIZE,      /* uint64_t bytes, K M G T */
+    VALUE_BOUND,     /* the same, above 0 */
+    VALUE_DIMS,      /* int64_t[3], from 1 */
+    VALUE_SPACING,   /* double[3], above 0 */
+    VALUE_POINT,     /* double[3] */
+} value_kind;
+
+typedef struct option {
+    const char *name;
+    const char *short_name; /* or NULL */
+    const char *value;      /* as --help shows it */
+    unsigned commands;
+    value_kind kind;
+    size_t place; /* in struct options */
+    const char *const *choices;
+    const char *help; /* lines split by \n */
+} option;
+
+extern const option option_table[];
+extern const size_t option_table_count;
+
+enum { OPTION_TABLE_MOST = 64 }; /* rows: a bit of options.given each */
+
+#endif

@@ -1,0 +1,70 @@
+/*
+ * option_values.h - the command line as values: a command sees only this
+ *
+ * option_table.c has the options, and says where in the struct each value goes.
+ */
+#ifndef OPTION_VALUES_H
+#define OPTION_VALUES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Bits: which commands know an option. */
+enum command_bit {
+    COMMAND_EXTRACT = 1,
+    COMMAND_INFO = 2,
+    COMMAND_DEVICES = 4,
+    COMMAND_GENERATE = 8,
+    COMMAND_SELFTEST = 16,
+    COMMAND_TETRAHEDRALIZE = 32,
+};
+
+/* Commands that read an input. */
+enum { READS = COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE };
+
+/* Of --engine: the device, and the reference where there is none or it fails. */
+enum { ENGINE_AUTO = 2 };
+
+typedef struct typed_isovalue {
+    double value;  /* finite */
+    char text[48]; /* as typed */
+} typed_isovalue;
+
+typedef struct options {
+    const char *command;
+    enum command_bit bit;
+    char **operands; /* what is no option: input files, the field of generate */
+    int operand_count;
+
+    typed_isovalue *isovalues;
+    size_t isovalue_count;
+    const char *output; /* NULL where not given, as all texts */
+    const char *format;
+    const char *device;
+    int engine; /* a tc_engine, or ENGINE_AUTO */
+    int method; /* a tc_method */
+    const char *field;
+    const char *carry;   /* names with commas between */
+    int separate_blocks; /* a file for each */
+    int skip_unsupported;
+    int has_nodata;
+    double nodata;
+    int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
+    uint64_t max_memory;  /* 0 where not given */
+    uint64_t seed;
+
+    int64_t dims[3]; /* zeros where not given */
+    int type;        /* a tc_type, -1 where not given */
+    int big_endian;
+    uint64_t skip;
+    double spacing[3], origin[3];
+    double origin_at[3]; /* where given: coordinates of the output are relative to it */
+
+    uint64_t given;    /* bit n: row n of the table stood on the command line */
+    uint64_t timeout;  /* seconds; 0 where not given */
+    const char *junit; /* NULL where not given */
+    int quick, vectors;
+    int verify, check, json, count, soup, normals, drop_degenerate, quiet, help;
+} options;
+
+#endif
