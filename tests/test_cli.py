@@ -500,7 +500,7 @@ class Devices(Case):
         plain = {"POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"} if "TEST_PLAIN_GROUPS" in os.environ else None
         result = self.expect(0, "selftest", env=plain)
         self.assertEqual(result.stdout.splitlines()[-1], "PASS", result.stdout)
-        report = self.report("selftest", "--quick")
+        report = self.report("selftest", "--quick", env=plain)
         self.assertEqual(set(report), {"device", "groups", "pass", "platform", "driver", "version", "tetracubes"})
         self.assertIs(report["pass"], True)
         for group in report["groups"]:
