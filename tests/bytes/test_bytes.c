@@ -111,13 +111,13 @@ static bool case_wanted(const bytes_case *c, tier t) {
                          : t != PLANTED || c == cases;
 }
 
-static bool variant_wanted(const bytes_case *c, const variant *v, tier t) {
-    if (v->work_items == 1 && !takes_alone) return false;
+static bool variant_wanted(const bytes_case *c, const variant *v, tier t, bool groups) {
+    if (groups != (v->work_items != 1) || (!groups && !takes_alone)) return false;
     if (v->memory && !(c->flags & CASE_DEEP)) return false;
     if (t >= SMALL && c->flags & CASE_DEEP && !v->memory && v != variants) return false;
     if (v->division && (c->kind == CASE_COMPLEX || c->type != TC_F32 || t != WHOLE)) return false;
     if (t >= SMALL && !v->small) return false;
-    if (t == GROUPS && v->work_items == 1) return false;
+    if (t == GROUPS && !groups) return false;
     return v->work_items == 1 || (c->groups * 32 & v->work_items);
 }
 
@@ -155,22 +155,23 @@ static void variant_compare(const bytes_case *c, const variant *v, case_data *da
     EXPECT(hash == wanted, "%s: hash %016" PRIx64 ", the reference's is %016" PRIx64, what, hash, wanted);
 }
 
-static void case_run(const bytes_case *c, tc_context *reference, tier t) {
+/* In the variants of one work-item per group, or in those of many. */
+static void case_run(const bytes_case *c, tc_context *reference, tier t, bool groups) {
     case_data data;
     char name[120];
     uint64_t memory = 0;
     snprintf(name, sizeof name, "%s", case_name(c));
     case_fill(c, t >= SMALL, &data);
     uint64_t wanted = hash_of(reference, &data, false, NULL, name);
-    if (t == DRIVER) variant_compare(c, &for_driver, &data, wanted, &memory, t);
+    if (t == DRIVER && !groups) variant_compare(c, &for_driver, &data, wanted, &memory, t);
     for (int n = 0; n < VARIANTS && t != DRIVER; n++) {
-        if (!variant_wanted(c, &variants[n], t)) continue;
+        if (!variant_wanted(c, &variants[n], t, groups)) continue;
         variant_compare(c, &variants[n], &data, wanted, &memory, t);
         done.used[n] = true;
     }
-    printf("case %s: %016" PRIx64 "\n", name, wanted);
+    if (!groups) printf("case %s: %016" PRIx64 "\n", name, wanted);
     fflush(stdout);
-    done.cases++;
+    done.cases += !groups;
     case_free(&data);
 }
 
@@ -200,8 +201,12 @@ int main(int argc, char **argv) {
     if (!device_exists()) return SKIPPED;
     device_tell();
     tc_context *reference = reference_open();
-    for (int n = 0; n < case_count; n++)
-        if (case_wanted(&cases[n], t) && strstr(case_name(&cases[n]), text)) case_run(&cases[n], reference, t);
+    for (int groups = 0; groups < 2; groups++) {
+        if (groups) groups_begin();
+        for (int n = 0; n < case_count; n++)
+            if (case_wanted(&cases[n], t) && strstr(case_name(&cases[n]), text))
+                case_run(&cases[n], reference, t, groups);
+    }
     for (int n = 0; n < VARIANTS; n++) used += done.used[n];
     EXPECT(done.slab_meshes > 1 || t >= GROUPS || *text || !takes_alone, "%ld meshes made in slabs", done.slab_meshes);
     printf("figures %ld cases, %d variants, %ld meshes, %ld in slabs\n", done.cases, used, done.meshes,

@@ -209,7 +209,7 @@ static void test_mode(const tc_context_options *options, tc_context *reference, 
 
 /* The most memory, of some, in which the kind is extracted in several slabs. */
 static uint64_t slabs_memory(tc_context_options options, kind k, tc_type type, const tc_extract_options *how) {
-    for (uint64_t bytes = 16 << 20; bytes > 1 << 14; bytes -= bytes / 16) {
+    for (uint64_t bytes = 16 << 20; bytes > 1 << 14; bytes -= bytes / 4) {
         uint32_t slabs = 0;
         tc_mesh *mesh = NULL;
         tc_mesh_data data = {.struct_size = sizeof data};
@@ -251,6 +251,7 @@ int main(void) {
     EXPECT(tc_tetrahedralize_grid(&grid, &cut) == TC_OK, "%s", tc_message());
     test_mode(&options, reference, CASES, "whole");
     test_slabs(options, reference, "slabs");
+    groups_begin();
     tc_expert_options expert;
     tc_expert_options_init(&expert);
     options.expert = &expert;
