@@ -1,4 +1,4 @@
-"""table_check_files.py - mutants of the mesh checker, the readers and the writers"""
+"""table_check_files.py - mutants of the mesh checker, mesh repair, the readers and the writers"""
 from mutant import group
 
 LIMITS = {"tests": ("test_limits",)}
@@ -44,7 +44,7 @@ MUTANTS = [
            ("count / SUMMARY_BLOCK + (count % SUMMARY_BLOCK > 0)", "count / SUMMARY_BLOCK", "the last block is dropped"),
            ("XXH64_reset(&state, 0)", "XXH64_reset(&state, 1)", "hash: another seed"),
            ("vertex_count * 3 * sizeof(float)", "vertex_count * 2 * sizeof(float)", "hash: not of all positions")),
-    *group("host/check/mesh_collapse.c",
+    *group("host/repair/mesh_collapse.c",
            ("return a == b || b == c || c == a;", "return a == b || b == c;", "an edge of triangles is not looked at",
             RESULTS),
            ("return is_at_end ? third : end;", "return is_at_end ? end : third;",
@@ -53,7 +53,7 @@ MUTANTS = [
             "dropped triangles keep vertices", RESULTS),
            ("if (edges[n] == edges[n - 1]) edges[crowded++]", "if (edges[n] != edges[n - 1]) edges[crowded++]",
             "crowded edges: those that are not", RESULTS)),
-    *group("host/check/mesh_separate.c",
+    *group("host/repair/mesh_separate.c",
            ("const uint64_t end = previous_corner(edge);", "const uint64_t end = next_corner(edge);",
             "the way around leads astray", RESULTS),
            ("if (j->is_touched[from] || j->is_touched[to] || !is_conflict(j, c, a)) continue;",
