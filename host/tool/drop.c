@@ -57,10 +57,10 @@ int surface_drop_degenerate(shown_surface *shown, surface_report *s) {
 }
 
 void surface_tell_dropped(const shown_surface *shown, const surface_report *s) {
-    if (shown->collapsed.crowded_edges)
+    if (shown->collapsed.nonmanifold_edges)
         notice("isovalue %s: without its triangles of zero area the surface has %" PRIu64 " edges of more than two "
                "triangles, as it had there before",
-               s->iso->text, shown->collapsed.crowded_edges);
+               s->iso->text, shown->collapsed.nonmanifold_edges);
     if (s->has_dropped && s->summary.degenerate_triangles)
         notice("isovalue %s: %" PRIu64 " triangles of zero area are left: their corners are apart, on a line",
                s->iso->text, s->summary.degenerate_triangles);
