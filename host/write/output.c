@@ -157,7 +157,7 @@ void output_records(output *o, uint64_t count, size_t record_bytes, output_encod
 }
 
 int output_close(output *o) {
-    if (truncation_seen()) o->error = EFAULT; /* what was written may be zeros in place of an input file */
+    if (truncation_seen()) o->error = EFAULT; /* zeros may have been written where pages of an input file were lost */
     release(o);
     if (truncation_seen()) return truncation_status();
     return o->error ? fail_write(o->name, o->error) : 0;
