@@ -15,7 +15,7 @@ typedef struct sums {
     const uint8_t *blanked_cells;
     const dataset_field *of_cells;
     double *total;   /* components per point */
-    uint32_t *cells; /* around the point; saturates, as no mesh gets there */
+    uint32_t *cells; /* present cells around the point; saturates */
 } sums;
 
 static int is_present(const sums *s, int64_t cell, const int64_t *points, int64_t point_count) {

@@ -3,7 +3,7 @@
  * structured and unstructured grids
  *
  * Source: VTK's file formats document, and its vtkDataReader and descendants where that is silent: keywords in any
- * case, ASPECT_RATIO for SPACING, EXTENT in place of DIMENSIONS, BLANKING (0 hides a point), CELL_DATA of flat grids
+ * case, ASPECT_RATIO for SPACING, EXTENT for DIMENSIONS, BLANKING (0 hides a point), CELL_DATA of flat grids
  * with a cell per square. First comes the geometry, then attributes of points and cells; once these begin the geometry
  * is fixed, and each of its sections may appear once.
  */
@@ -94,7 +94,7 @@ static int read_header(legacy *r) {
 
 /* ------------------------------------------------------------------------------------------------------ geometry */
 
-/* Coordinates in their own precision; integers of 32 bits and more become doubles. */
+/* Coordinates in the precision of the file; integers of 32 bits and more become doubles. */
 static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t components, coordinates *out) {
     void *values = NULL;
     uint64_t unfit = 0;
@@ -104,7 +104,7 @@ static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t 
     const int is_narrow = type == LEGACY_BIT || (type < SAMPLE_TYPE_COUNT && !type_is_wide((tc_type)type));
     const int wanted = is_narrow ? TC_F32 : TC_F64;
     if ((status = legacy_array(r, what, type, count, components, wanted, &values, &unfit))) return status;
-    const int is_real = element_is_real(type); /* of integers the unfit ones are rounded */
+    const int is_real = element_is_real(type); /* unfit integers are only rounded */
     if (unfit && is_real)
         return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite; correct them", unfit, what);
     if (wanted == TC_F32)
