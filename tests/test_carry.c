@@ -175,7 +175,8 @@ static void test_fields(tc_context *context, tc_context *reference) {
     const tc_field field = {sizeof field, TC_F32, 1, fields[TC_F32]};
     for (int more = -1; more <= 1; more += 2) {
         memset(found, 0xa5, sizeof *found * (size_t)(vertices + 1));
-        EXPECT_REFUSED(tc_interpolate_field(grid, &how, &field, found, vertices + (uint64_t)more), TC_ERROR_ARGUMENT, "room");
+        EXPECT_REFUSED(tc_interpolate_field(grid, &how, &field, found, vertices + (uint64_t)more), TC_ERROR_ARGUMENT,
+                       "room");
         uint32_t first;
         memcpy(&first, found, sizeof first);
         EXPECT(first == 0xa5a5a5a5u, "written without room");

@@ -378,7 +378,8 @@ static void test_description(const tc_context *device) {
             EXPECT(!memcmp(&real, &told, sizeof real), "%s is described in two ways", told.name);
 }
 
-/* What host/include/README.md promises of a device's memory beyond samples and mesh, with what small buffers come to beside it. */
+/* What host/include/README.md promises of a device's memory beyond samples and mesh, with what small buffers come to
+ * beside it. */
 static void test_memory_per_sample(void) {
     const int64_t dims[3] = {256, 160, 160};
     const double promised[2] = {0.285, 0.41}, fixed = 200e3;

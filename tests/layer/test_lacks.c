@@ -40,8 +40,9 @@ static void test_carry(tc_context *context, const tc_grid_options *grid, const t
     for (int n = 0; n < SAMPLES; n++) field[n] = (float)random_between(0, 1);
     for (int n = 0; n < 2; n++) {
         tc_grid *g = NULL;
-        EXPECT(!tc_grid_create(contexts[n], grid, &g) && !tc_interpolate_field(g, options, &carried, values[n], vertex_count), "%s",
-               tc_message());
+        EXPECT(!tc_grid_create(contexts[n], grid, &g) &&
+                   !tc_interpolate_field(g, options, &carried, values[n], vertex_count),
+               "%s", tc_message());
         tc_grid_destroy(g);
     }
     EXPECT(memcmp(values[0], values[1], sizeof *field * (size_t)vertex_count) == 0, "%s samples: carried values differ",
