@@ -87,7 +87,7 @@ int average_to_points(dataset *d, const dataset_block *b, const uint8_t *blanked
     s.cells = calloc(b->point_count ? (size_t)b->point_count : 1, sizeof *s.cells);
     void *values = s.total && s.cells ? dataset_allocate(d, count * sample_bytes(out->type)) : NULL;
     if (values) {
-        if (b->kind == GRID_UNSTRUCTURED)
+        if (b->kind == BLOCK_UNSTRUCTURED)
             add_unstructured(&s);
         else
             add_structured(&s);

@@ -29,10 +29,10 @@ typedef struct coordinates {
 
 static inline double coordinate_at(coordinates c, int64_t n) { return c.f64 ? c.f64[n] : (double)c.f32[n]; }
 
-enum grid_kind { GRID_UNIFORM, GRID_RECTILINEAR, GRID_CURVILINEAR, GRID_UNSTRUCTURED };
+enum block_kind { BLOCK_UNIFORM, BLOCK_RECTILINEAR, BLOCK_CURVILINEAR, BLOCK_UNSTRUCTURED };
 
 typedef struct dataset_block {
-    enum grid_kind kind;
+    enum block_kind kind;
     int64_t point_count, cell_count;
 
     int64_t dims[3];     /* all but unstructured: points along x, y, z; cells are cubes between them */

@@ -284,7 +284,7 @@ static int load_block(const pairing *p, int64_t n, arena *memory, char *names, d
     dataset_block *block;
     int status = dataset_block_add(out, &block);
     if (status) return status;
-    block->kind = GRID_CURVILINEAR;
+    block->kind = BLOCK_CURVILINEAR;
     block->point_count = (int64_t)from->points;
     block->cell_count = 1;
     for (int a = 0; a < 3; a++) {

@@ -96,7 +96,7 @@ static int refuse_unknown(const char *path, const mapping *file) {
 static int check_placement(const read_request *request, const dataset *d) {
     const char *option = request->has_spacing ? "--spacing" : request->has_origin ? "--origin" : NULL;
     for (int n = 0; option && n < d->block_count; n++)
-        if (d->blocks[n].kind != GRID_UNIFORM)
+        if (d->blocks[n].kind != BLOCK_UNIFORM)
             return fail(STATUS_USAGE,
                         "%s: its points have coordinates of their own, and %s is for uniform grids: leave it out",
                         request->path, option);

@@ -245,7 +245,7 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
         if (!status) status = average_to_points(d, b, out->blanked_cells, &one, &at_points);
         if (status) return status;
         one = at_points;
-    } else if (b->kind == GRID_UNSTRUCTURED || (nodata.is_there && !is_value)) {
+    } else if (b->kind == BLOCK_UNSTRUCTURED || (nodata.is_there && !is_value)) {
         if ((status = mask_missing(d, b, &one, &nodata, &out->blanked_points))) return status;
     } else {
         out->has_nodata = nodata.is_there;

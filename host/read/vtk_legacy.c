@@ -59,11 +59,11 @@ static int read_version(legacy *r) {
 static int read_kind(legacy *r) {
     static const struct {
         const char *name;
-        enum grid_kind kind;
-    } kinds[] = {{"STRUCTURED_POINTS", GRID_UNIFORM},
-                 {"RECTILINEAR_GRID", GRID_RECTILINEAR},
-                 {"STRUCTURED_GRID", GRID_CURVILINEAR},
-                 {"UNSTRUCTURED_GRID", GRID_UNSTRUCTURED}};
+        enum block_kind kind;
+    } kinds[] = {{"STRUCTURED_POINTS", BLOCK_UNIFORM},
+                 {"RECTILINEAR_GRID", BLOCK_RECTILINEAR},
+                 {"STRUCTURED_GRID", BLOCK_CURVILINEAR},
+                 {"UNSTRUCTURED_GRID", BLOCK_UNSTRUCTURED}};
     char word[LEGACY_WORD];
     int status = legacy_need(r, "DATASET", word);
     if (status) return status;
@@ -175,10 +175,10 @@ static int read_blanking(legacy *r) {
 }
 
 enum {
-    IMAGES = 1 << GRID_UNIFORM,
-    RECTILINEAR = 1 << GRID_RECTILINEAR,
-    CURVILINEAR = 1 << GRID_CURVILINEAR,
-    UNSTRUCTURED = 1 << GRID_UNSTRUCTURED,
+    IMAGES = 1 << BLOCK_UNIFORM,
+    RECTILINEAR = 1 << BLOCK_RECTILINEAR,
+    CURVILINEAR = 1 << BLOCK_CURVILINEAR,
+    UNSTRUCTURED = 1 << BLOCK_UNSTRUCTURED,
     STRUCTURED = IMAGES | RECTILINEAR | CURVILINEAR
 };
 
@@ -224,7 +224,7 @@ static int count_structured(legacy *r) {
             return legacy_fail(r, "has DIMENSIONS of more than 2^63 points; it is damaged");
         if (b->dims[a] > 1) cells *= b->dims[a] - 1;
     }
-    if (b->kind == GRID_CURVILINEAR && (!has_points(b) || b->point_count != points))
+    if (b->kind == BLOCK_CURVILINEAR && (!has_points(b) || b->point_count != points))
         return legacy_fail(r, "has %" PRId64 " POINTS, but DIMENSIONS of %" PRId64, b->point_count, points);
     b->point_count = points;
     b->cell_count = cells;
@@ -233,20 +233,20 @@ static int count_structured(legacy *r) {
 
 static int check_geometry(legacy *r) {
     dataset_block *b = r->block;
-    if (b->kind == GRID_UNSTRUCTURED) return has_points(b) ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
+    if (b->kind == BLOCK_UNSTRUCTURED) return has_points(b) ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
     int status = count_structured(r);
     if (status) return status;
     for (int a = 0; a < 3; a++) {
         b->matrix[a][a] = r->spacing[a]; /* of images alone, as the defaults are */
         b->matrix[a][3] = r->origin[a];
-        if (b->kind == GRID_RECTILINEAR && r->axis_counts[a] != b->dims[a])
+        if (b->kind == BLOCK_RECTILINEAR && r->axis_counts[a] != b->dims[a])
             return legacy_fail(r, "has %" PRId64 " coordinates along axis %d, but DIMENSIONS of %" PRId64 " there",
                                r->axis_counts[a], a + 1, b->dims[a]);
     }
     if (r->blanking_count && r->blanking_count != b->point_count)
         return legacy_fail(r, "has BLANKING of %" PRId64 " points, but %" PRId64 " points", r->blanking_count,
                            b->point_count);
-    return b->kind == GRID_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
+    return b->kind == BLOCK_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
 }
 
 /* POINT_DATA and CELL_DATA, which end the geometry. */

@@ -447,10 +447,10 @@ static int load_block(xml_reader *r, const xml_piece *piece, const char *names) 
     memcpy(block->dims, piece->dims, sizeof block->dims);
     memcpy(block->first, piece->first, sizeof block->first);
     int status = 0;
-    if (block->kind == GRID_UNIFORM) status = set_matrix(r, block);
-    if (block->kind == GRID_RECTILINEAR) status = load_axes(r, piece, block);
-    if (block->kind == GRID_CURVILINEAR || block->kind == GRID_UNSTRUCTURED) status = load_points(r, piece, block);
-    if (block->kind == GRID_UNSTRUCTURED && !status) status = load_cells(r, piece, block);
+    if (block->kind == BLOCK_UNIFORM) status = set_matrix(r, block);
+    if (block->kind == BLOCK_RECTILINEAR) status = load_axes(r, piece, block);
+    if (block->kind == BLOCK_CURVILINEAR || block->kind == BLOCK_UNSTRUCTURED) status = load_points(r, piece, block);
+    if (block->kind == BLOCK_UNSTRUCTURED && !status) status = load_cells(r, piece, block);
     return status ? status : load_fields(r, piece, names, block);
 }
 

@@ -133,11 +133,11 @@ static int refuse_type(const xml_document *doc, const char *type) {
 static int begin_file(header_parser *p, const char *name, const char **attributes) {
     static const struct {
         const char *name;
-        enum grid_kind kind;
-    } types[] = {{"ImageData", GRID_UNIFORM},
-                 {"RectilinearGrid", GRID_RECTILINEAR},
-                 {"StructuredGrid", GRID_CURVILINEAR},
-                 {"UnstructuredGrid", GRID_UNSTRUCTURED}};
+        enum block_kind kind;
+    } types[] = {{"ImageData", BLOCK_UNIFORM},
+                 {"RectilinearGrid", BLOCK_RECTILINEAR},
+                 {"StructuredGrid", BLOCK_CURVILINEAR},
+                 {"UnstructuredGrid", BLOCK_UNSTRUCTURED}};
     xml_document *doc = p->doc;
     const char *type = attribute(attributes, "type"), *order = attribute(attributes, "byte_order"),
                *header = attribute(attributes, "header_type"), *compressor = attribute(attributes, "compressor");
@@ -170,7 +170,7 @@ static int begin_grid(header_parser *p, const char **attributes) {
     xml_document *doc = p->doc;
     int status = 0;
     p->in_grid = 1;
-    if (doc->kind != GRID_UNIFORM) return 0;
+    if (doc->kind != BLOCK_UNIFORM) return 0;
     if ((status = parse_vector(doc, attributes, "Origin", doc->origin, 3)) ||
         (status = parse_vector(doc, attributes, "Spacing", doc->spacing, 3)))
         return status;
@@ -185,7 +185,7 @@ static int begin_piece(header_parser *p, const char **attributes) {
     xml_piece *piece = &pieces[doc->piece_count++];
     *piece = (xml_piece){.first_array = doc->array_count};
     p->in_piece = 1;
-    if (doc->kind != GRID_UNSTRUCTURED) return parse_extent(doc, attribute(attributes, "Extent"), piece);
+    if (doc->kind != BLOCK_UNSTRUCTURED) return parse_extent(doc, attribute(attributes, "Extent"), piece);
     int status = parse_count(doc, attributes, "NumberOfPoints", &piece->point_count);
     return status ? status : parse_count(doc, attributes, "NumberOfCells", &piece->cell_count);
 }

@@ -45,7 +45,7 @@ typedef struct xml_piece {
 typedef struct xml_document {
     const char *path;
     const unsigned char *bytes, *end; /* of the file */
-    enum grid_kind kind;
+    enum block_kind kind;
     int swapped;         /* the other byte order than this machine's */
     size_t header_bytes; /* 4 or 8: of each number in front of binary data */
     char compressor[40]; /* "" where binary data is not compressed */

@@ -36,7 +36,7 @@ int blocks_check_faces(const block_list *list, const double *isovalue, complex_f
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
         complex_faces faces = {0};
-        if (b->source->kind != GRID_UNSTRUCTURED) continue;
+        if (b->source->kind != BLOCK_UNSTRUCTURED) continue;
         int status = check_block(b, isovalue, &faces);
         if (status) return status;
         sum->folded_faces += faces.folded_faces;

@@ -53,12 +53,12 @@ static json_t *suggestions_json(const facts *f) {
 
 /* The one structured block that the object's dims, first, spacing and matrix are of; NULL where there is none. */
 static const dataset_block *only_block(const dataset *d) {
-    return d->block_count == 1 && d->blocks->kind != GRID_UNSTRUCTURED ? d->blocks : NULL;
+    return d->block_count == 1 && d->blocks->kind != BLOCK_UNSTRUCTURED ? d->blocks : NULL;
 }
 
 static void add_grid(json_t *object, const dataset_block *b) {
     double spacing[3];
-    int is_uniform = b && b->kind == GRID_UNIFORM;
+    int is_uniform = b && b->kind == BLOCK_UNIFORM;
     for (int axis = 0; axis < 3; axis++) spacing[axis] = is_uniform ? describe_spacing(b, axis) : 0.0;
     json_object_set_new(object, "dims", b ? report_integers(b->dims) : json_null());
     json_object_set_new(object, "first", b ? report_integers(b->first) : json_null());

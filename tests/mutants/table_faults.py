@@ -234,7 +234,7 @@ MUTANTS = [
     *point("spacing, origin and length of any input",
            ("host/read/world.c", "test_cli_images", "a < 3 && request->has_spacing; a++", "a < 0; a++",
             "--spacing changes nothing"),
-           ("host/read/read.c", "test_cli_images", "if (d->blocks[n].kind != GRID_UNIFORM)", "if (0)",
+           ("host/read/read.c", "test_cli_images", "if (d->blocks[n].kind != BLOCK_UNIFORM)", "if (0)",
             "--spacing is taken where points have coordinates"),
            ("host/tool/options.c", "test_cli_images", 'if (strcmp(text, "magnitude") == 0) return 0;', "",
             "--component magnitude is refused")),
