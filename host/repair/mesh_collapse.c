@@ -19,7 +19,7 @@
 #include "half_edges.h"
 #include "mesh_separate.h"
 
-enum { NO_MEMBER = UINT32_MAX };
+enum { NO_MEMBER = UINT32_MAX, UNUSED = UINT32_MAX };
 
 /* Corners and half-edges are those of the local triangles (half_edges.h). */
 typedef struct job {
@@ -38,7 +38,7 @@ typedef struct job {
     uint64_t *fans;             /* union-find over corners */
     uint8_t *stays_together;    /* of members: whether all their corners are one fan */
 
-    uint32_t *vertex_indices; /* in the result: of vertices that are no members */
+    uint32_t *vertex_indices; /* in the result: of vertices that are no members; UNUSED: no kept triangle uses it */
     uint32_t *fan_indices;    /* of corners that are roots: their fan's vertex */
 } job;
 
@@ -191,14 +191,29 @@ static int is_kept_root(const job *j, uint64_t corner) {
     return !j->is_dropped[corner / 3] && j->fans[corner] == corner;
 }
 
+/* Marks the vertices of dropped triangles that no kept triangle uses, as those of a spike whose ring became a point. */
+static void mark_unused(job *j) {
+    uint64_t n = 0;
+    for (uint64_t c = 0; c < 3 * j->local_count; c++)
+        if (j->is_dropped[c / 3]) j->vertex_indices[vertex_at(j, c)] = UNUSED;
+    for (uint64_t t = 0; t < j->triangle_count; t++) {
+        const int local = n < j->local_count && j->local[n] == t;
+        for (uint64_t c = 0; c < 3 && !(local && j->is_dropped[n]); c++) j->vertex_indices[j->triangles[3 * t + c]] = 0;
+        n += (uint64_t)local;
+    }
+}
+
+static int is_kept_single(const job *j, uint64_t v) {
+    return j->members[v] == NO_MEMBER && j->vertex_indices[v] != UNUSED;
+}
+
 /* Gives the vertices of the result their indices: in the order of their sources, the fans of one source by their lowest
  * corner. Returns how many there are. */
 static uint64_t index_vertices(job *j) {
     uint64_t count = 0;
     for (uint64_t v = 0; v < j->vertex_count; v++) {
         const uint32_t m = j->members[v];
-        j->vertex_indices[v] = (uint32_t)count;
-        if (m == NO_MEMBER) count++;
+        if (is_kept_single(j, v)) j->vertex_indices[v] = (uint32_t)count++;
         for (uint64_t n = m == NO_MEMBER ? 1 : j->starts[m]; m != NO_MEMBER && n < j->starts[m + 1]; n++)
             if (is_kept_root(j, j->corners[n])) j->fan_indices[j->corners[n]] = (uint32_t)count++;
     }
@@ -208,7 +223,7 @@ static uint64_t index_vertices(job *j) {
 static void fill_sources(const job *j, uint32_t *sources) {
     for (uint64_t v = 0; v < j->vertex_count; v++) {
         const uint32_t m = j->members[v];
-        if (m == NO_MEMBER) *sources++ = (uint32_t)v;
+        if (is_kept_single(j, v)) *sources++ = (uint32_t)v;
         for (uint64_t n = m == NO_MEMBER ? 1 : j->starts[m]; m != NO_MEMBER && n < j->starts[m + 1]; n++)
             if (is_kept_root(j, j->corners[n])) *sources++ = (uint32_t)v;
     }
@@ -265,6 +280,7 @@ static int separate(const job *j, collapsed_mesh *mesh) {
 static int make_result(job *j, collapsed_mesh *result) {
     for (uint64_t n = 0; n < j->local_count; n++) result->dropped_count += j->is_dropped[n];
     result->triangle_count = j->triangle_count - result->dropped_count;
+    mark_unused(j);
     result->vertex_count = index_vertices(j);
     if (result->vertex_count > UINT32_MAX)
         return fail(STATUS_FAILED, "without triangles of zero area the mesh has more than 2^32 - 1 vertices");

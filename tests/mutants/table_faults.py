@@ -151,7 +151,7 @@ MUTANTS = [
             "if (0)\n        keep(text);", "JSON has no notices"),
            ("host/tool/input.c", "test_results, notices", 'notice("%s: %s", request.path, d->notices[n]);',
             'notice("%s: %s: %s", request.path, request.path, d->notices[n]);', "a notice names its file twice"),
-           ("host/read/select.c", "test_results, notices", "else if (!out->name && count == 1 && !names[0][0])",
+           ("host/read/select.c", "test_results, notices", "else if (is_unknown && count == 1 && !names[0][0])",
             "else if (0)", "a field without a name is offered as a choice")),
     *point("triangles of zero area, dropped",
            ("host/tool/extract.c", "test_results, dropped",
