@@ -116,7 +116,8 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     if (count < 0) return STATUS_FAILED;
     list_fields(d, names, count, list, sizeof list);
     *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANY_ASSOCIATION};
-    const dataset_absent *absent = wanted && !out->name ? find_absent(d, wanted) : NULL;
+    const int is_unknown = wanted && !out->name;
+    const dataset_absent *absent = is_unknown ? find_absent(d, wanted) : NULL;
     if (!count && !absent) absent = find_absent(d, NULL);
     if (absent)
         status = fail(STATUS_INPUT, "%s: %sthe array '%.60s' is left out: %s", path,
@@ -124,10 +125,10 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     else if (!count)
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
-    else if (!out->name && count == 1 && !names[0][0])
+    else if (is_unknown && count == 1 && !names[0][0])
         status = fail(STATUS_USAGE, "%s: no field is named '%s': its only one has no name; leave out %.*s", path,
                       wanted, (int)strcspn(option, " "), option);
-    else if (!out->name)
+    else if (is_unknown)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);
     else if (!wanted && count > 1)

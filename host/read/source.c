@@ -48,14 +48,14 @@ static int find_start(const source *from, const char *path, const mapping *m, ui
 }
 
 /* Whether `available` stored bytes, which are not packed, can hold what the header declares for this file. */
-static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element) {
+static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element_size) {
     switch (from->encoding) {
     case ENCODING_TEXT: /* a digit each and a space between */
-        if (available >= 2 * (bytes / element) - 1) return 0;
+        if (available >= 2 * (bytes / element_size) - 1) return 0;
         return fail(STATUS_INPUT,
                     "%s: holds %" PRIu64 " characters of text, too few for %" PRIu64
                     " numbers; the header is wrong or the file is cut",
-                    path, available, bytes / element);
+                    path, available, bytes / element_size);
     case ENCODING_HEX:
         if (available / 2 >= bytes) return 0;
         return fail(STATUS_INPUT,

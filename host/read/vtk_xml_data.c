@@ -153,12 +153,12 @@ static int note_unpacked(xml_document *doc, const xml_values *v) {
 static int open_plain(xml_document *doc, xml_values *v) {
     int good = 1;
     uint64_t held = take_number(doc, &v->data, &good);
-    size_t element = element_bytes(v->array->element);
+    size_t element_size = element_bytes(v->array->element);
     if (!good) return is_cut(v);
     if (held < v->bytes) return has_too_few(v, held);
     if (source_left(&v->data) < v->bytes) return has_too_few(v, source_left(&v->data));
     v->more = held > v->bytes;
-    if (!v->data.is_base64 && (!doc->swapped || element == 1) && (uintptr_t)v->data.at % element == 0) {
+    if (!v->data.is_base64 && (!doc->swapped || element_size == 1) && (uintptr_t)v->data.at % element_size == 0) {
         v->in_place = v->data.at;
         return 0;
     }
@@ -314,7 +314,7 @@ static int take_blocks(xml_values *v, unsigned char *to) {
 }
 
 int vtk_xml_take(xml_values *v, void *to) {
-    size_t element = element_bytes(v->array->element);
+    size_t element_size = element_bytes(v->array->element);
     int status = 0;
     if (!v->count) return 0;
     if (v->array->format == FORMAT_TEXT) return vtk_xml_take_text(v->array, v->count, v->label, to, &v->more);
@@ -322,7 +322,7 @@ int vtk_xml_take(xml_values *v, void *to) {
         status = take_blocks(v, to);
     else if (!source_take(&v->data, to, v->bytes))
         status = is_cut(v);
-    if (status || !v->doc->swapped || element == 1) return status;
+    if (status || !v->doc->swapped || element_size == 1) return status;
     layout swap = {.element = (int)element_sample_type(v->array->element), /* of 64-bit integers the bytes alone */
                    .swapped = 1,
                    .dims = {(int64_t)v->count, 1, 1},
