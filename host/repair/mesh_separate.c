@@ -134,15 +134,15 @@ static void find_fans(const job *j) {
 
 static const use *use_at(const job *j, const shared_edge *s, uint64_t n) { return &j->uses[s->first + n]; }
 
+/* The fan that a use belongs to at the lower or the higher vertex of its edge. */
+static uint64_t fan_at(const job *j, const use *u, int is_higher) {
+    return set_root(j->fans, u->is_down == is_higher ? u->index : next_corner(u->index));
+}
+
 /* Whether uses a and b of the edge lie in the same fans at both ends. */
 static int have_same_fans(const job *j, const shared_edge *s, uint64_t a, uint64_t b) {
-    uint64_t fans[2][2]; /* at the lower and the higher vertex */
-    for (int n = 0; n < 2; n++) {
-        const use *u = use_at(j, s, n ? b : a);
-        fans[n][u->is_down] = set_root(j->fans, u->index);
-        fans[n][!u->is_down] = set_root(j->fans, next_corner(u->index));
-    }
-    return fans[0][0] == fans[1][0] && fans[0][1] == fans[1][1];
+    const use *x = use_at(j, s, a), *y = use_at(j, s, b);
+    return fan_at(j, x, 0) == fan_at(j, y, 0) && fan_at(j, x, 1) == fan_at(j, y, 1);
 }
 
 /* Whether use a is the first of those with its fans, and these are neither one pair nor a single use. */
