@@ -34,7 +34,7 @@ tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options,
     tc_extract_options o;
     tc_field f = {0};
     uint64_t vertex_count = 0;
-    tc_status status = options_take(&f, sizeof f, field, "tc_interpolate_field: field");
+    tc_status status = struct_copy_in(&f, sizeof f, field, "tc_interpolate_field: field");
     if (!status) status = field_check(grid, &f, out, value_count);
     if (status) return status;
     const uint64_t components = (uint64_t)f.components;

@@ -9,6 +9,9 @@
 #include "opencl/kernel_kind.h"
 #include "grid/mesh.h"
 
+/* The caller's options, complete and checked. */
+tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
+
 /* The kind of the kernels that make the surface; emits: kernel 2 too. */
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
