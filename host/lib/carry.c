@@ -6,7 +6,8 @@
 #include "failure.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
-#include "surface.h"
+#include "extract.h"
+#include "surface/surface.h"
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))

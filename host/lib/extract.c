@@ -1,13 +1,15 @@
 /*
  * The public calls that make surfaces: arguments are checked, drivers vetted and tried, then surface.c takes over.
  */
+#include "extract.h"
+
 #include "opencl/context.h"
 #include "failure.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
 #include "structured/structured.h"
-#include "surface.h"
-#include "trial.h"
+#include "surface/surface.h"
+#include "trial/trial.h"
 #include "opencl/vetting.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "opencl/context.h"
 #include "failure.h"
 #include "base/float_environment.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "base/structs.h"
 
 void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options) {

@@ -1,14 +1,14 @@
 /*
  * The trial and its verdicts; the volume is made by trial_volume.c.
  */
-#include "trial.h"
+#include "trial/trial.h"
 
 #include "opencl/context.h"
 #include "failure.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
-#include "surface.h"
+#include "surface/surface.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -9,9 +9,6 @@
 #include "opencl/kernel_kind.h"
 #include "grid/mesh.h"
 
-/* The caller's options, complete and checked. */
-tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
-
 /* The kind of the kernels that make the surface; emits: kernel 2 too. */
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
@@ -29,8 +26,5 @@ void surface_carries(tc_grid *grid);
 
 /* Carries a field to the vertices; *vertex_count: how many there are. */
 tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
-
-/* As surface_count, by kernels that are vetted and tried first (extract.c). */
-tc_status surface_count_vetted(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
 
 #endif

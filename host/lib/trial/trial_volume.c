@@ -1,10 +1,10 @@
 /*
  * The volume of a trial: noise of full mantissas around the isovalue, some samples equal to it.
  */
-#include "trial.h"
+#include "trial/trial.h"
 
 #include "failure.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "sample_types.h"
 
 #include <math.h>
