@@ -8,9 +8,9 @@
  * Build options: VECTOR, an unsigned vector type, and WIDTH, its components; STREAMING, stores that pass the caches by.
  */
 #ifdef STREAMING
-#define STORE(value, place) __builtin_nontemporal_store(value, place)
+#define STORE(value, address) __builtin_nontemporal_store(value, address)
 #else
-#define STORE(value, place) (*(place) = (value))
+#define STORE(value, address) (*(address) = (value))
 #endif
 
 /* The sink keeps the loads from being dropped. It is hardly ever written, and never read. */

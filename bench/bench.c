@@ -23,10 +23,10 @@
 #include <string.h>
 
 #define PATIENCE_MS   4000.0
-#define WORKING_BYTES 2 /* per sample, of device and reference together; less, in fact */
+#define WORKING_BYTES 2 /* per sample: an upper bound for device and reference together */
 
-/* Cold extractions, one per line on standard input, until its end; where the line is "second", of the second surface,
- * which is no part of the report. */
+/* Makes a cold extraction for every line of standard input, until its end. A line "second" asks for one of the second
+ * surface, which is no part of the report. */
 static int take_turns(const measurement *m, case_result *result) {
     char line[256];
     double *times = NULL;
@@ -53,7 +53,7 @@ static int take_turns(const measurement *m, case_result *result) {
     return status;
 }
 
-/* Nonzero where a sweep may take so much more memory; else the case is marked as left out, with a notice. */
+/* Whether so many more bytes of memory may be taken in a sweep; if not, marks the case as left out, with a notice. */
 static int case_fits(const bench_options *o, uint64_t bytes, const measurement *m, case_result *result) {
     uint64_t available = o->sweep ? sweep_memory() : UINT64_MAX;
     if (bytes <= available) return 1;

@@ -163,8 +163,8 @@ static const option table[] = {
      "tetra, five tetrahedra per cell (the default), or hybrid, marching\n"
      "cubes with the same topology"},
     {"--grid", "G", take_grid,
-     "uniform (the default), rectilinear or curvilinear: where the samples\n"
-     "lie; of the others each is a little off its place on the first.\n"
+     "uniform (the default), rectilinear or curvilinear: the last two move\n"
+     "each sample a small step off its uniform position.\n"
      "tetrahedra, hexahedra: the curvilinear one as an unstructured grid"},
     {"--input", "FILE", take_input,
      "a volume file instead of fields; raw ones need --dims and --type"},
@@ -202,7 +202,7 @@ static int unknown_option(const char *typed) {
                 meant ? "did you mean " : "see 'tetracubes-bench --help'", meant ? meant : "");
 }
 
-/* One option at argv[*at], with its value; *at is left on the last argument used. */
+/* Parses the option at argv[*at] with its value; *at becomes the last argument used. */
 static int parse_option(int argc, char **argv, int *at, bench_options *o) {
     char name[64];
     const char *argument = argv[*at], *value = strchr(argument, '=');

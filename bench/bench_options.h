@@ -38,7 +38,7 @@ typedef struct bench_options {
     int json, tune, turns, help;
 } bench_options;
 
-/* Returns 0, or STATUS_USAGE with its text (failure.h). */
+/* Returns 0, or STATUS_USAGE with its message (failure.h). */
 int bench_options_parse(int argc, char **argv, bench_options *o);
 
 void bench_options_help(FILE *out);

@@ -5,7 +5,7 @@
 #include "samples.h"
 
 /* Makes the tetrahedra of samples that have their points: BENCH_TETRAHEDRA, five of each cube, or BENCH_HEXAHEDRA, the
- * cubes as cells of an unstructured grid. Returns 0 or an exit status with its text (failure.h). */
+ * cubes as cells of an unstructured grid. Returns 0 or an exit status with its message (failure.h). */
 int complex_make(samples *s);
 
 /* A grid of the samples, structured or not. */

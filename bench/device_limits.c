@@ -1,10 +1,10 @@
 /*
  * device_limits.c - runs the kernels of bandwidth.cl in a few access shapes and keeps the fastest
  *
- * The buffer is far larger than any cache. Where the device shares the host's memory it lies in huge pages, as the
- * limit should not depend on page tables; all of it is written before anything is timed, since untouched pages read
- * too fast and write too slowly. A pass is as many launches as last PASS_MS, timed by the host's clock; the best of
- * PASSES counts. Contents never matter.
+ * The buffer is far larger than any cache. Where the device shares the host's memory it lies in huge pages, so that the
+ * limit does not depend on page tables. All of it is written before anything is timed, as untouched pages read too fast
+ * and write too slowly. A pass is as many launches as take PASS_MS, timed by the host's clock; the best of PASSES
+ * counts. The contents do not matter.
  */
 #include "device_limits.h"
 

@@ -9,7 +9,7 @@ typedef struct device_limits {
     double read_gbps, write_gbps;
 } device_limits;
 
-/* Measures on the context's own queue, about a second. Returns 0 or STATUS_FAILED with its text (failure.h). */
+/* Measures on the context's own queue, about a second. Returns 0 or STATUS_FAILED with its message (failure.h). */
 int device_limits_measure(tc_context *context, device_limits *out);
 
 #endif

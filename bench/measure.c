@@ -15,17 +15,6 @@
 
 #define LEAST_REPEATS 3
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-spread spread_of(double *values, int count) {
-    if (count == 0) return (spread){0};
-    qsort(values, (size_t)count, sizeof *values, by_value);
-    double median = (values[(count - 1) / 2] + values[count / 2]) / 2.0;
-    return (spread){median, values[0], values[count - 1]};
-}
 
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
@@ -50,7 +39,7 @@ void measure_begin(tc_context *context, const samples *s, tc_method method, doub
     memcpy(result->dims, dims, sizeof result->dims);
 }
 
-/* A grid that nothing was extracted from. The wait keeps an upload under way out of the times that follow. */
+/* A grid that nothing was extracted from. Waits for the queue: an upload must not reach into the times that follow. */
 static int grid_make(const measurement *m, tc_grid **grid) {
     int status = library_status(samples_open(m->samples, m->context, grid));
     if (!status && clFinish(tc_context_cl_queue(m->context))) status = fail(STATUS_FAILED, "the device's queue failed");

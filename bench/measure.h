@@ -1,22 +1,20 @@
 /*
  * measure.h - one case: verified against the reference, then timed
  *
- * Times are the library's own, tc_timings. Every timed first extraction is the first on a new grid, so that nothing is
- * known of the samples beforehand; what tc_grid_create takes is not counted. It is *cold* when its mesh is new too (its
- * memory is allocated and first touched within the timed part, and given back outside it) and *warm* when the mesh of
- * the one before is reused; the context keeps its working buffers in both. A *second* extraction follows a first, warm
- * one on the same grid, at another isovalue.
+ * Times are the library's own, tc_timings; what tc_grid_create takes is not counted. There are three kinds:
+ *   cold     the first extraction on a new grid into a new mesh, whose memory is allocated and first touched within the
+ *            timed part and released outside it
+ *   warm     the first extraction on a new grid into the mesh of the extraction before
+ *   second   another isovalue on the same grid, after a warm one
+ * On a new grid nothing is known of the samples. The context keeps its working buffers in all three.
  */
 #ifndef MEASURE_H
 #define MEASURE_H
 
 #include "device_limits.h"
 #include "samples.h"
+#include "spread.h"
 #include "tetracubes.h"
-
-typedef struct spread {
-    double median, min, max;
-} spread;
 
 /* Warm extractions. */
 typedef struct stage_times {
@@ -57,11 +55,11 @@ typedef struct measurement {
 void measure_begin(tc_context *context, const samples *s, tc_method method, double iso, double second_iso,
                    measurement *m, case_result *result);
 
-/* What the larger one of the two meshes takes. */
+/* *bytes: what the larger of the two meshes takes. */
 int measure_mesh_bytes(const measurement *m, uint64_t *bytes);
 
-/* Compares every byte of the first surface with the reference's, and the hash of the second with its hash on a grid
- * not visited before; fills the surfaces and reference_ms. STATUS_CHECK where they differ. */
+/* Compares every byte of the first surface with the reference's, and the hash of the second with its hash on a new
+ * grid; fills the surfaces and reference_ms. STATUS_CHECK where they differ. */
 int measure_verify(const measurement *m, case_result *result);
 
 /* Milliseconds of one cold extraction. */
@@ -79,7 +77,5 @@ int measure_warm_times(const measurement *m, const device_limits *limits, case_r
 
 const char *method_name(tc_method method);
 
-/* Sorts the values. */
-spread spread_of(double *values, int count);
 
 #endif

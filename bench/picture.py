@@ -79,19 +79,19 @@ def frame(mesh):
     bounds = mesh.GetBounds()
     centre = [(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 for axis in range(3)]
     size = max(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3))
-    place = vtk.vtkTransform()
-    place.Scale(1 / size, 1 / size, 1 / size)
-    place.Translate(*(-c for c in centre))
-    return place
+    transform = vtk.vtkTransform()
+    transform.Scale(1 / size, 1 / size, 1 / size)
+    transform.Translate(*(-c for c in centre))
+    return transform
 
 
-def actor_of(mesh, colour, place):
+def actor_of(mesh, colour, transform):
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputData(mesh)
     mapper.ScalarVisibilityOff()
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
-    actor.SetUserTransform(place)
+    actor.SetUserTransform(transform)
     front = actor.GetProperty()
     front.SetColor(*colour)
     front.SetSpecular(0.25)
@@ -105,9 +105,9 @@ def actor_of(mesh, colour, place):
     return actor
 
 
-def walls_of(mesh, place):
+def walls_of(mesh, transform):
     """Faint, lined by the grid."""
-    actor = actor_of(mesh, WALL, place)
+    actor = actor_of(mesh, WALL, transform)
     for side in (actor.GetProperty(), actor.GetBackfaceProperty()):
         side.SetColor(*WALL)
         side.SetOpacity(0.45)
@@ -121,13 +121,13 @@ def panel(arguments, index):
     """Renderer of one mesh, in its part of the window."""
     count = len(arguments.mesh)
     mesh = read_surface(arguments.mesh[index])
-    place = frame(mesh)
+    transform = frame(mesh)
     renderer = vtk.vtkRenderer()
     renderer.SetViewport(index / count, 0, (index + 1) / count, 1)
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor_of(mesh, COLOURS[index % len(COLOURS)], place))
+    renderer.AddActor(actor_of(mesh, COLOURS[index % len(COLOURS)], transform))
     if arguments.walls:
-        renderer.AddActor(walls_of(clipped(read_walls(arguments.walls), mesh), place))
+        renderer.AddActor(walls_of(clipped(read_walls(arguments.walls), mesh), transform))
     renderer.SetUseFXAA(True)
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()

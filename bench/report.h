@@ -12,7 +12,7 @@ typedef struct bench_report {
     int printed; /* by report_table */
 } bench_report;
 
-/* One object on standard output. Returns 0, or STATUS_FAILED with its text (failure.h). */
+/* One object on standard output. Returns 0, or STATUS_FAILED with its message (failure.h). */
 int report_json(const bench_report *report);
 
 /* The object that --dump prints: dims and type. */

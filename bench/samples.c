@@ -37,7 +37,7 @@ void samples_place(samples *s, bench_grid grid) {
     s->coordinate_bytes = grid >= BENCH_CURVILINEAR ? 12 * x * y * z : grid == BENCH_RECTILINEAR ? 4 * (x + y + z) : 0;
 }
 
-/* Of sample n along an axis of so many, and how far off it is put. */
+/* The uniform position of sample n of an axis, and the step that it is moved by. */
 static double axis_position(int64_t n, int64_t count) { return 2.0 * (double)n / (double)(count - 1) - 1.0; }
 
 static double axis_step(double position) { return 0.05 * sin(3.0 * position); }
@@ -74,7 +74,7 @@ static int points_make(samples *s) {
     return 0;
 }
 
-/* In huge pages, as the bandwidth is measured in, and as the readers, and numpy, have their arrays. */
+/* In huge pages: so does the measurement of bandwidth, and so do the readers and numpy with their arrays. */
 static int memory_make(uint64_t bytes, const char *what, void **out) {
     void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)

@@ -19,15 +19,15 @@ typedef struct samples {
 } samples;
 
 /* Describes samples of an analytic field, for samples_make to take the memory for; the matrix is the one that
- * `tetracubes generate` writes, so that hashes agree. Returns 0 or an exit status with its text (failure.h); out is to
- * be released in any case. */
+ * `tetracubes generate` writes, so that hashes agree. Returns 0 or an exit status with its message (failure.h); out is
+ * to be released in any case. */
 int samples_describe(const field *f, const int64_t dims[3], tc_type type, samples *out);
 
-/* Has the grid, described or read, be of this kind: samples_make then makes its coordinates, in [-1, 1] and a smooth
- * small step away. Ones that it has already are kept. */
+/* Sets the kind of the grid, described or read: samples_make then makes its coordinates, each a small smooth step off
+ * its uniform position in [-1, 1]. Coordinates that the grid has already are kept. */
 void samples_place(samples *s, bench_grid grid);
 
-/* Makes those described, and coordinates; samples of a file are there already. */
+/* Makes the samples that were described, and the coordinates. Samples of a file exist already. */
 int samples_make(samples *s);
 
 /* Samples of the file o->input, likewise. */

@@ -35,7 +35,7 @@ static uint64_t file_number(const char *path, const char *key) {
     return number;
 }
 
-/* What the control group that the process sees as its root has left; its page cache can be dropped. */
+/* The memory that is left in the control group which the process sees as its root. Its page cache counts as free. */
 static uint64_t group_memory(void) {
     uint64_t limit = file_number("/sys/fs/cgroup/memory.max", "");
     uint64_t used = file_number("/sys/fs/cgroup/memory.current", "");

@@ -1,10 +1,10 @@
-/* sweep.h - the cases that --sweep leaves out: too slow by rule, or too large for the memory that is free */
+/* sweep.h - which cases --sweep leaves out: those that take too long, and those too large for the free memory */
 #ifndef SWEEP_H
 #define SWEEP_H
 
 #include "field.h"
 
-/* Nonzero where the case is part of a sweep; the reference, which verifies it, decides what would take too long. */
+/* Nonzero where the case is part of a sweep. Left out is what would take the reference, which verifies it, too long. */
 int sweep_takes(const field *f, const int64_t dims[3], tc_type type);
 
 /* Bytes of memory that can be had without taking them from others: three quarters of what Linux, and the control group

@@ -117,8 +117,8 @@ def peers_text(result, peers):
     text = [f"Beside other filters: VTK {vtk['version']} without normals. Flying Edges has {vtk['threads']} threads, the "
             "others have one. Each side makes a new mesh on every repeat, and all take turns in one run; "
             "vtkMarchingCubes and scikit-image take turns with a second series of ours. Times are medians, ours with "
-            "the least and the greatest. In bold: how many times as long as ours it took; in the hybrid's column: how "
-            "many times as long as the hybrid Flying Edges took." + growth_text(peers), peers_table(uniform)]
+            "the least and the greatest. In bold: its time divided by ours; in the hybrid's column: Flying "
+            "Edges' time divided by the hybrid's." + growth_text(peers), peers_table(uniform)]
     if others:
         text += ["Grids that are not uniform. The other filter uses as many threads as it can, merges points, and has "
                  "its scalar tree for the second isovalue:", grid_peers_table(others)]
@@ -168,6 +168,23 @@ def left_out_text(result):
             for case in result.get("left_out", [])]
 
 
+# --------------------------------------------------------------------------------------------------------------- carry
+
+def carry_row(case):
+    emit, carry = case["emit_ms"], case["carry_ms"]
+    return [f"{case['field']} {size(case['dims'])} {case['type']}", f"{case['vertices']:,}", ms(emit), ms(carry),
+            f"{carry['median'] / emit['median']:.2f}", f"{case['reference_ms']:.0f}"]
+
+
+def carry_text(result):
+    """The cases of tetracubes-bench-carry."""
+    if "carry" not in result:
+        return []
+    head = ["samples", "vertices", "emit, ms", "carry, ms", "carry / emit", "carry by scalar C, ms"]
+    return ["Carrying a field of one float32 to the vertices, beside the emission of the surface into a kept mesh; both "
+            "take turns:", table(head, [carry_row(case) for case in result["carry"]])]
+
+
 # -------------------------------------------------------------------------------------------------------------- table 1
 
 def table1_row(row):
@@ -208,7 +225,8 @@ def headlines(result):
     """The section of a machine in bench/README.md."""
     return [machine_text(result), picture(result, "pictures"),
             *peers_text(result, list(filter(is_headline_peer, result.get("peers", [])))),
-            *cases_text(result, list(filter(is_headline_case, result["cases"]))), *table1_text(result)]
+            *cases_text(result, list(filter(is_headline_case, result["cases"]))), *carry_text(result),
+            *table1_text(result)]
 
 
 def brief_row(peer):
@@ -231,7 +249,7 @@ def brief(result):
 def everything(result):
     return [f"## {result['name']}", machine_text(result), picture(result, "../pictures"),
             *peers_text(result, result.get("peers", [])), *cases_text(result, result["cases"]), *left_out_text(result),
-            *table1_text(result)]
+            *carry_text(result), *table1_text(result)]
 
 
 def paragraphs(parts):

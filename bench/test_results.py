@@ -57,6 +57,9 @@ def test_partial(folder):
     for key in "peers", "vtk", "startup_ms", "peak_extra_mb":
         result.pop(key, None)
     result["cases"] = result["cases"][:1]
+    result["carry"] = [{"field": "sphere", "dims": [256, 256, 256], "type": "f32", "vertices": 328907, "repeats": 3,
+                        "emit_ms": {"median": 2.0, "min": 1.0, "max": 3.0},
+                        "carry_ms": {"median": 5.0, "min": 4.0, "max": 6.0}, "reference_ms": 200.0}]
     result["left_out"] = [{"field": "sphere", "dims": [1024, 1024, 1024], "type": "f32", "reason": "too large"}]
     partial = folder / "partial"
     partial.mkdir()
@@ -68,6 +71,7 @@ def test_partial(folder):
     expect(done.returncode == 0, f"partial results: {done.returncode} {done.stderr}")
     text = (partial / "README.md").read_text()
     expect("Left out: sphere 1024³ f32; too large." in text, "the case left out is not told of")
+    expect("| sphere 256³ f32 | 328,907 | 2.00 (1.00-3.00) | 5.00 (4.00-6.00) | 2.50 | 200 |" in text, "no row of carry")
     expect("Beside other filters" not in text, "a table of peers without peers")
 
 

@@ -1,12 +1,14 @@
 /*
  * tune.c - a search for launch parameters, one after the other
  *
- * It starts from what contexts launch with at present, then tries, for each parameter in turn, the smaller values of
- * its list and the larger ones beside the best so far, each way until one is far slower, and goes through the
- * parameters again until nothing changes. Two sets of parameters are compared by taking turns, extraction by
- * extraction, so that whatever else the machine does hits both; the figure is the mean over all cases, geometric, of
- * the ratio of their medians. A new set has to be clearly faster, twice: among equals the first stays. One that is far
- * slower in one case is given up. Every set's mesh has to be the reference's.
+ * The search starts from what contexts launch with at present. For each parameter in turn it tries the smaller values
+ * of its list, then the larger ones, each way until one is far slower; it goes through the parameters again until
+ * nothing changes.
+ *
+ * Two sets of parameters are compared by taking turns, extraction by extraction, so that whatever else the machine does
+ * meets both. The figure is the geometric mean, over all cases, of the ratio of their medians. A new set has to be
+ * clearly faster twice; otherwise the old one stays. A set that is far slower in one case is given up. Every set's mesh
+ * has to be the reference's.
  */
 #include "tune.h"
 
@@ -27,13 +29,13 @@
 
 enum { ROUNDS_MOST = 3, VALUES_MOST = 8 };
 
-/* Ratios of times; those of one set to itself are mostly closer to 1. */
+/* Ratios of times. One set compared with itself mostly comes closer to 1 than these. */
 static const double clearly_faster = 0.97, far_slower = 1.5;
 
 /* Values that are tried, ascending; per_unit: times the device's compute units. Zeros fill up the list. */
 static const struct {
     const char *name;
-    size_t place;
+    size_t offset; /* in tc_tuning */
     bool per_unit;
     uint32_t values[VALUES_MOST];
 } parameters[] = {
@@ -44,7 +46,7 @@ static const struct {
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 
 static uint32_t *tuning_value(tc_tuning *tuning, int parameter) {
-    return (uint32_t *)((char *)tuning + parameters[parameter].place);
+    return (uint32_t *)((char *)tuning + parameters[parameter].offset);
 }
 
 /* One set of parameters: its context, and the mesh whose memory is used again. */
@@ -106,7 +108,7 @@ static uint64_t hash_of(const tc_mesh_data *data) {
     return mesh_hash(data->positions, data->vertex_count, data->triangles, data->triangle_count);
 }
 
-/* Untimed, so that kernels are built and memory is there; and compared with the reference. */
+/* An extraction that is compared with the reference, not timed: it builds kernels and takes memory. */
 static int extract_first(const search *s, const tune_case *c, tc_grid *grid, setting *with) {
     tc_mesh_data data;
     int status = extract(s, grid, with, &data);
@@ -157,7 +159,7 @@ static int case_compare(const search *s, const tune_case *c, setting *a, setting
     return status;
 }
 
-/* Of one case alone where b is far slower in it. */
+/* *ratio: the mean over all cases; where b is far slower in one case, that of this case alone. */
 static int settings_compare(const search *s, setting *a, setting *b, double *ratio) {
     double sum = 0, of_case = 1;
     for (int n = 0; n < s->case_count; n++) {
@@ -180,27 +182,27 @@ static void show(const search *s, const tc_tuning *t, double ratio, const char *
     fflush(stdout);
 }
 
-/* Takes the place of the best where it is clearly faster: *ratio, of their times. A set that the device cannot do is
- * passed over. */
+/* Replaces the best where the new set is clearly faster; *ratio: its time by that of the best. A set that the device
+ * cannot run is passed over. */
 static int candidate_try(search *s, const tc_tuning *tuning, double *ratio) {
-    setting trial;
+    setting candidate;
     double again = 0;
     *ratio = 1;
-    int status = setting_open(s, tuning, &trial);
-    if (!status) status = settings_compare(s, &s->best, &trial, ratio);
-    if (!status && *ratio < clearly_faster) status = settings_compare(s, &s->best, &trial, &again);
+    int status = setting_open(s, tuning, &candidate);
+    if (!status) status = settings_compare(s, &s->best, &candidate, ratio);
+    if (!status && *ratio < clearly_faster) status = settings_compare(s, &s->best, &candidate, &again);
     *ratio = fmax(*ratio, again);
     if (progress_cancelled()) status = progress_status();
     if (!status) {
-        show(s, &trial.tuning, *ratio, *ratio < clearly_faster ? "  better" : "");
+        show(s, &candidate.tuning, *ratio, *ratio < clearly_faster ? "  better" : "");
         s->tried++;
     }
     if (!status && *ratio < clearly_faster) {
         setting before = s->best;
-        s->best = trial;
-        trial = before;
+        s->best = candidate;
+        candidate = before;
     }
-    setting_close(&trial);
+    setting_close(&candidate);
     return status == STATUS_CHECK || progress_cancelled() ? status : 0;
 }
 

@@ -5,7 +5,7 @@
 #include "bench_options.h"
 
 /* Tries them over the cases of the options, prints what it finds and has the library keep the best. Returns 0 or an
- * exit status with its text (failure.h); STATUS_CHECK where a mesh differs from the reference's. */
+ * exit status with its message (failure.h); STATUS_CHECK where a mesh differs from the reference's. */
 int tune_run(const bench_options *o);
 
 #endif

@@ -1,10 +1,10 @@
 /*
- * complex_check.c - faces of tetrahedra that are folded or crowded, by looking at the faces of every point
+ * complex_check.c - folded and non-manifold faces of tetrahedra, found by looking at the faces of every point
  *
- * Method. A face is kept at its lowest point, as the two others in the order in which its tetrahedron passes them, seen
- * from outside. Faces are grouped by that point with a counting sort, those of a point sorted by the two others: the
- * same face of several tetrahedra then lies side by side, and the order of the two tells the direction. Points are
- * sorted by several threads; sums of their counts do not depend on how many.
+ * Method. A face is kept at its lowest point, as the two other points in the order in which they are seen from outside
+ * its tetrahedron. A counting sort groups the faces by lowest point; then the faces of each point are sorted by the two
+ * others. The same face of several tetrahedra now lies side by side, and the order of its two points tells the
+ * direction. Several threads sort; the sums of what they count do not depend on how many threads there are.
  */
 #include "complex_check.h"
 
@@ -29,7 +29,7 @@ typedef struct workspace {
     uint64_t *starts; /* of each point's faces */
     face *faces;
     uint64_t next_chunk; /* shared by the threads, as the next two are */
-    uint64_t folded_faces, crowded_faces;
+    uint64_t folded_faces, nonmanifold_faces;
 } workspace;
 
 /* Opposite to corner n: counter-clockwise seen from outside a positive tetrahedron. */
@@ -82,7 +82,7 @@ static void group_faces(workspace *w) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- one point's */
+/* ----------------------------------------------------------------------------------------------- faces of one point */
 
 static uint64_t face_key(face f) {
     return f.next < f.previous ? (uint64_t)f.next << 32 | f.previous : (uint64_t)f.previous << 32 | f.next;
@@ -106,25 +106,25 @@ static void sort_faces(face *faces, uint64_t count) {
     }
 }
 
-static void inspect_point(face *faces, uint64_t count, uint64_t *folded, uint64_t *crowded) {
+static void inspect_point(face *faces, uint64_t count, uint64_t *folded, uint64_t *nonmanifold) {
     sort_faces(faces, count);
     for (uint64_t first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && face_key(faces[end]) == face_key(faces[first]);) end++;
         *folded += end - first == 2 && faces[first].next == faces[first + 1].next;
-        *crowded += end - first > 2;
+        *nonmanifold += end - first > 2;
     }
 }
 
 static void inspect_points(void *shared) {
     workspace *w = shared;
-    uint64_t folded = 0, crowded = 0, first;
+    uint64_t folded = 0, nonmanifold = 0, first;
     while ((first = __atomic_fetch_add(&w->next_chunk, 1, __ATOMIC_RELAXED) * CHUNK_POINTS) < w->point_count)
         for (uint64_t p = first; p < first + CHUNK_POINTS && p < w->point_count; p++) {
             uint64_t start = p ? w->starts[p - 1] : 0;
-            inspect_point(w->faces + start, w->starts[p] - start, &folded, &crowded);
+            inspect_point(w->faces + start, w->starts[p] - start, &folded, &nonmanifold);
         }
     __atomic_fetch_add(&w->folded_faces, folded, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&w->crowded_faces, crowded, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&w->nonmanifold_faces, nonmanifold, __ATOMIC_RELAXED);
 }
 
 int complex_check(uint64_t point_count, const uint32_t *tetrahedra, uint64_t tetrahedron_count, const uint8_t *sides,
@@ -142,7 +142,7 @@ int complex_check(uint64_t point_count, const uint32_t *tetrahedra, uint64_t tet
         parallel_run((point_count + CHUNK_POINTS - 1) / CHUNK_POINTS, inspect_points, &w);
     }
     result->folded_faces = w.folded_faces;
-    result->crowded_faces = w.crowded_faces;
+    result->nonmanifold_faces = w.nonmanifold_faces;
     int is_done = w.faces != NULL;
     free(w.starts);
     free(w.faces);

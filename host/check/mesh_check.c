@@ -8,9 +8,10 @@
  * what stays apart are different fans. No table of edges is ever made.
  *
  * Memory. Vertices are taken in windows, consecutive runs whose corners fit a buffer. The lowest and highest vertex of
- * every block of triangles is kept, so that a window reads only the blocks that reach into it: for meshes whose
- * numbering follows space, as extracted ones do, that is about one reading of the triangles in all; for any numbering
- * at most 33 (two windows in a row exceed one buffer).
+ * every block of triangles is kept, so that a window reads only the blocks that reach into it. Where the order of
+ * vertices follows space, as in extracted meshes, all windows together read the triangles about once. In any order they
+ * read them at most 33 times: the buffer holds at least a sixteenth of the corners, and two windows in a row together
+ * hold more than the buffer does.
  *
  * Components come from a union-find over vertices (Tarjan 1975, path halving; the lower index becomes the root).
  */
@@ -23,7 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifndef BLOCK_TRIANGLES /* the test makes both tiny, to have many of them in a small mesh */
+#ifndef BLOCK_TRIANGLES /* a test makes both tiny, to have many of them in a small mesh */
 #define BLOCK_TRIANGLES (UINT64_C(1) << 16)
 #define WINDOW_CORNERS  (UINT64_C(1) << 23) /* 64 MiB */
 #endif

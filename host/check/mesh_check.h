@@ -16,18 +16,19 @@ typedef struct mesh_topology {
     uint64_t nonmanifold_vertices; /* vertices whose triangles form more than one fan; a fan is joined through edges
                                       at the vertex, however many triangles such an edge has */
     uint64_t misoriented_edges;    /* edges with two triangles that pass them in the same direction */
-    uint64_t unbalanced_edges;     /* edges that are not passed as often in one direction as in the other: those of the
-                                      border, misoriented ones, and some of three triangles or more */
+    uint64_t unbalanced_edges;     /* edges that triangles pass more often in one direction than in the other:
+                                      boundary edges, misoriented ones, and some with three triangles or more */
     uint64_t orphan_vertices;      /* vertices that no triangle uses */
     uint64_t invalid_triangles;    /* an index out of range, or the same vertex twice */
     int64_t euler_characteristic;  /* vertices (orphans too) - edges + triangles */
     uint64_t components;           /* connected by shared vertices; orphans do not count */
     double area;                   /* this and volume: without triangles that have a non-finite corner */
-    double volume;                 /* enclosed, by the divergence theorem; positive where triangles face outward. No
-                                      volume where edges are unbalanced: that of a cone to the origin is added */
+    double volume;                 /* enclosed, by the divergence theorem; positive where triangles face outward.
+                                      Means nothing where edges are unbalanced: it then includes the cone between
+                                      these edges and the origin */
 } mesh_topology;
 
-/* What every report shows: cheap, one pass. */
+/* What every report shows; found in one cheap pass. */
 typedef struct mesh_summary {
     double bounds[2][3];           /* minimum and maximum corner of the finite vertices; zeros where there are none */
     uint64_t degenerate_triangles; /* of zero area: two corners or more at one position, or all on a line */
@@ -35,7 +36,7 @@ typedef struct mesh_summary {
 } mesh_summary;
 
 /* positions: 3 floats per vertex; triangles: 3 indices each; either may be NULL where its count is 0. Returns 0, or
- * STATUS_FAILED with its text (failure.h) where memory runs out. Takes about 12 bytes per vertex and a window on the
+ * STATUS_FAILED with its message (failure.h) where memory runs out. Takes about 12 bytes per vertex and a window on the
  * triangles of 64 MiB or a sixteenth of them, whichever is more. */
 int mesh_check(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count,
                mesh_topology *result);

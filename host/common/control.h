@@ -1,32 +1,32 @@
 /*
- * control.h - control characters in texts of files, which steer a terminal that they are printed on
+ * control.h - control characters in text from files: where they are printed, they steer the terminal
  *
- * Those below the blank, 127, and in UTF-8 those from 128 to 159 (C2 80 to C2 9F).
+ * They are the codes below 32, 127 and, in UTF-8, those from 128 to 159 (C2 80 to C2 9F).
  */
 #ifndef CONTROL_H
 #define CONTROL_H
 
 #include <stddef.h>
 
-/* Bytes of the control character that the text begins with; 0 where it begins with another, or is empty. */
+/* Bytes of the control character that the text begins with; 0 where it begins with none. */
 static inline size_t control_bytes(const char *text) {
     const unsigned char first = (unsigned char)text[0];
     if (first == 0xc2) return ((unsigned char)text[1] & 0xe0) == 0x80 ? 2 : 0;
     return first && (first < ' ' || first == 127);
 }
 
-/* Writes '?' over the bytes of control characters, but for tabs and ends of lines where these may stay. */
-static inline void control_mask(char *text, int may_break) {
+/* Overwrites every byte of a control character with '?'. keeps_lines: line feeds and tabs stay. */
+static inline void control_mask(char *text, int keeps_lines) {
     while (*text) {
-        const int stays = may_break && (*text == '\n' || *text == '\t');
+        const int stays = keeps_lines && (*text == '\n' || *text == '\t');
         size_t bytes = stays ? 0 : control_bytes(text);
         if (!bytes) text++;
         for (; bytes; bytes--) *text++ = '?';
     }
 }
 
-/* Moves behind the next byte or control character and writes it, control characters as %XX for each byte. Returns the
- * bytes written, 6 at most. */
+/* Copies the next byte, or the next control character as %XX for each of its bytes, and moves *from behind it. Returns
+ * the bytes written, at most 6. */
 static inline size_t control_encode(const char **from, char *to) {
     static const char digits[] = "0123456789ABCDEF";
     const size_t bytes = control_bytes(*from);

@@ -1,3 +1,4 @@
+/* failure.c - see failure.h */
 #include "failure.h"
 
 #include <stdarg.h>

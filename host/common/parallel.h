@@ -2,8 +2,8 @@
  * parallel.h - one function on several threads
  *
  * The work is divided by its own function: every thread takes the next share, under a lock or by an atomic counter,
- * until none is left. So it is done whatever the number of threads, and that number never shows in a result. All threads
- * have the calling one's floating-point environment.
+ * until none is left. So all of it is done with any number of threads, and the number never shows in a result. All
+ * threads have the floating-point environment of the caller.
  */
 #ifndef PARALLEL_H
 #define PARALLEL_H

@@ -38,13 +38,13 @@
 
 #define SAMPLE_TYPES(ROW) INTEGER_TYPES(ROW) REAL_TYPES(ROW)
 
-/* Their number: they are counted from 0 without a gap. */
+/* tc_type counts them from 0 without a gap. */
 #define TYPE_COUNTED(...) +1
 enum { SAMPLE_TYPE_COUNT = 0 SAMPLE_TYPES(TYPE_COUNTED) };
 #undef TYPE_COUNTED
 _Static_assert(SAMPLE_TYPE_COUNT == TC_F64 + 1, "a type of tetracubes.h has no row here, or more than one");
 
-/* Bytes of a sample; 0 for what is no type. */
+/* Bytes of a sample; 0 where it is none of the types. */
 static inline size_t sample_bytes(tc_type type) {
     switch (type) {
 #define TYPE_CASE(type, name, c_type, ...)                                                                             \
@@ -56,8 +56,8 @@ static inline size_t sample_bytes(tc_type type) {
     return 0;
 }
 
-/* Sets of types, a bit for each by its number: of those of floating point, whose samples may be NaN or infinite; and of
- * those that float32 does not hold every value of, which are interpolated in double. */
+/* Sets of types: bit t stands for type t. Real types are of floating point, so that samples may be NaN or infinite.
+ * Wide types have values that float32 does not hold; they are interpolated in double. */
 #define TYPE_REAL(type, ...)                       | 1u << type
 #define TYPE_WIDE_INTEGER(type, name, c_type, ...) | (sizeof(c_type) > sizeof(uint16_t)) << type
 #define TYPE_WIDE_REAL(type, name, c_type, ...)    | (sizeof(c_type) > sizeof(float)) << type
@@ -73,7 +73,7 @@ static inline int type_is_real(tc_type type) { return REAL_TYPE_SET >> (unsigned
 
 static inline int type_is_wide(tc_type type) { return WIDE_TYPE_SET >> (unsigned)type & 1; }
 
-/* Value n of an array, exact; of a type that there is. */
+/* Value n of an array, exact. The type has to be one of the table. */
 static inline double value_at(tc_type type, const void *values, uint64_t n) {
     switch (type) {
 #define TYPE_CASE(type, name, c_type, ...)                                                                             \

@@ -1,3 +1,4 @@
+/* shortest.c - see shortest.h */
 #include "shortest.h"
 
 #include <math.h>

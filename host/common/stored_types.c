@@ -1,3 +1,4 @@
+/* stored_types.c - see stored_types.h */
 #include "stored_types.h"
 
 #include <string.h>

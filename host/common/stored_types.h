@@ -1,13 +1,14 @@
 /*
  * stored_types.h - the types of numbers that files hold, and what each format calls them
  *
- * They are the sample types, by the same number (sample_types.h), and integers of 64 bits, which become f64. As there,
- * a list is a macro; in that of names a row is
+ * They are the sample types, with the same values (sample_types.h), and integers of 64 bits, which become f64. As
+ * there, a list is a macro; in the list of names a row is
  *
  *     ROW(type, nrrd, metaimage, nifti, ply, vtk_legacy, vtk_xml)
  *
- *     nrrd, metaimage, vtk_legacy    all its names, a bar before, between and behind; of NRRD the first is written
- *     nifti                          nifti1.h's name of the code; it stands for nothing but where that is included
+ *     nrrd, metaimage, vtk_legacy    all its names, with a bar before, between and after them; NRRD files are written
+ *                                    with the first
+ *     nifti                          nifti1.h's name of the code, which has a meaning only where that is included
  *     ply                            the word of a property
  *
  * Formats whose types are not all here (bits, texts, colours) have the others in tables of their own.
@@ -56,7 +57,7 @@ _Static_assert(ELEMENT_COUNT == 0 STORED_TYPES(ELEMENT_COUNTED), "a stored type 
 _Static_assert(ELEMENT_COUNT == 0 STORED_NAMES(ELEMENT_COUNTED), "a stored type has no names, or more than one row");
 #undef ELEMENT_COUNTED
 
-/* Bytes of one element; 1 of what is none. */
+/* Bytes of one element; 1 where there is no such type. */
 static inline size_t element_bytes(int element) {
     switch (element) {
 #define ELEMENT_CASE(element, name, c_type, ...)                                                                       \
@@ -78,11 +79,11 @@ static inline tc_type element_sample_type(int element) {
     return element < SAMPLE_TYPE_COUNT ? (tc_type)element : TC_F64;
 }
 
-/* Writes an integer, of that absolute value, as an element in this machine's byte order; one of floating point is none.
- * Returns 0 where the element cannot hold it. */
+/* Writes the integer of that absolute value and sign as an element in this machine's byte order. Returns 0 where the
+ * type cannot hold it, or is of floating point. */
 int element_put_integer(int element, uint64_t absolute, int is_negative, void *to);
 
-/* The names as a table, but for NIfTI's codes; to be found by names_have (header_text.h) where there are several. */
+/* The names of each type, without NIfTI's codes. names_have (header_text.h) searches a list with bars. */
 typedef struct stored_names {
     const char *nrrd, *metaimage, *ply, *vtk_legacy, *vtk_xml;
 } stored_names;

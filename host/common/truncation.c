@@ -1,3 +1,4 @@
+/* truncation.c - see truncation.h */
 #include "truncation.h"
 
 #include "exit_status.h"
@@ -14,18 +15,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t seen;
+static volatile sig_atomic_t page_lost;
 static uintptr_t page_bytes;
 
-/* Compilers of kernels (LLVM) have handlers of their own while they work, which hand a fault of another thread on by
- * raising the signal anew: it comes again as a fault. Anything else that the signal may mean ends the process, as it
- * would without this. */
+/* Compilers of kernels (LLVM) install handlers of their own while they work. These hand on a fault of another thread by
+ * raising the signal anew (SI_TKILL); the fault itself then comes again. For any other reason the signal ends the
+ * process, as it would without this handler. */
 static void replace_page(int number, siginfo_t *about, void *context) {
     (void)context;
     void *page = (void *)((uintptr_t)about->si_addr & ~(page_bytes - 1)); // NOLINT(performance-no-int-to-ptr)
     if (about->si_code == BUS_ADRERR &&
         mmap(page, page_bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == page)
-        seen = 1;
+        page_lost = 1;
     else if (about->si_code != SI_TKILL || about->si_pid != getpid())
         signal(number, SIG_DFL);
 }
@@ -70,7 +71,7 @@ void truncation_watch_file(int file, const void *mapping) {
 
 static bool has_changed(const watched *w) {
     struct stat now;
-    if (!fstat(w->file, &now) && now.st_size < w->before.st_size) seen = 1;
+    if (!fstat(w->file, &now) && now.st_size < w->before.st_size) page_lost = 1;
     return !fstat(w->file, &now) &&
            (now.st_size != w->before.st_size || now.st_mtim.tv_sec != w->before.st_mtim.tv_sec ||
             now.st_mtim.tv_nsec != w->before.st_mtim.tv_nsec);
@@ -98,12 +99,12 @@ static int change_seen(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- answers */
 
-int truncation_seen(void) { return seen || change_seen(); }
+int truncation_seen(void) { return page_lost || change_seen(); }
 
-void truncation_note(void) { seen = 1; }
+void truncation_note(void) { page_lost = 1; }
 
 int truncation_status(void) {
-    if (seen)
+    if (page_lost)
         return fail(STATUS_INPUT, "an input file became shorter while it was read: try again when it is complete");
     if (change_seen())
         return fail(STATUS_INPUT, "an input file was written to while it was read: try again when it is complete");

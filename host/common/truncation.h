@@ -1,30 +1,31 @@
 /*
- * truncation.h - files that become shorter, or other ones, while they are mapped into memory
+ * truncation.h - files that become shorter, or are written to, while they are mapped into memory
  *
- * Reading a page that the file no longer has raises SIGBUS, in whatever thread it is. Such pages are made to read as
- * zeros from then on, and the loss is remembered: work goes on to the next place that asks, and fails there.
+ * Reading a page that the file no longer has raises SIGBUS in the reading thread. From then on such a page reads as
+ * zeros, and the loss is remembered: work goes on until somebody asks truncation_status, and fails there.
  *
- * What is written into a mapped file shows in its mapping, so that a surface may be made of samples that were never
- * there together. The size and the time of the last change tell it, as finely as the file system keeps time.
+ * What another program writes into a mapped file shows in the mapping, so that a surface could be made of samples that
+ * never were in the file together. The file's size and the time of its last change tell, as finely as the file system
+ * keeps time.
  */
 #ifndef TRUNCATION_H
 #define TRUNCATION_H
 
-/* From here on the process survives such reads; again after what may have set another handler of the signal. */
+/* Installs the handler of SIGBUS. To be called again after anything that may have installed another one. */
 void truncation_watch(void);
 
-/* From here on the open file is asked whether it has changed, until truncation_unwatch of its mapping; the descriptor
- * stays the caller's. A file that cannot be watched for want of descriptors is not. */
+/* Watches an open file for changes until its mapping is unwatched; the descriptor stays the caller's. Where descriptors
+ * or memory run out, the file is not watched. */
 void truncation_watch_file(int file, const void *mapping);
 void truncation_unwatch_file(const void *mapping);
 
 /* Nonzero where a page has been lost, or a watched file has changed. */
 int truncation_seen(void);
 
-/* For system calls that have met such a page themselves (EFAULT). */
+/* Remembers a lost page that a system call has met, which then fails with EFAULT. */
 void truncation_note(void);
 
-/* Where either is so, fails with STATUS_INPUT, else returns 0. */
+/* STATUS_INPUT, with its message, where truncation_seen; else 0. */
 int truncation_status(void);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct sums {
     const uint8_t *blanked_cells;
     const dataset_field *of_cells;
     double *total;   /* components per point */
-    uint32_t *cells; /* around the point; saturates, as no mesh gets there */
+    uint32_t *cells; /* present cells around the point; saturates */
 } sums;
 
 static int is_present(const sums *s, int64_t cell, const int64_t *points, int64_t point_count) {
@@ -87,7 +87,7 @@ int average_to_points(dataset *d, const dataset_block *b, const uint8_t *blanked
     s.cells = calloc(b->point_count ? (size_t)b->point_count : 1, sizeof *s.cells);
     void *values = s.total && s.cells ? dataset_allocate(d, count * sample_bytes(out->type)) : NULL;
     if (values) {
-        if (b->kind == GRID_UNSTRUCTURED)
+        if (b->kind == BLOCK_UNSTRUCTURED)
             add_unstructured(&s);
         else
             add_structured(&s);

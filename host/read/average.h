@@ -1,4 +1,4 @@
-/* average.h - values of cells as values at points */
+/* average.h - values of cells averaged to points */
 #ifndef AVERAGE_H
 #define AVERAGE_H
 

@@ -6,15 +6,15 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* How often a point of a face may stand in cells, on the average: two cells meet in a face, and a small file must not
- * ask for much memory. */
+/* In how many cells a face may be, on average. Two is what meshes have; without a bound a small file could ask for much
+ * memory. */
 enum { SHARED_MOST = 16 };
 
 typedef struct face_counts {
     int64_t faces, corners;
 } face_counts;
 
-/* Adds what a cell has. Returns 0 where the numbers are no stream that ends where they do. */
+/* Adds the faces and corners of a cell. Returns 0 where the numbers are not exactly one stream. */
 static int count_faces(const int64_t *from, const int64_t *end, face_counts *counts) {
     if (from == end) return 1;
     int64_t faces = *from++;
@@ -40,7 +40,7 @@ static int64_t *copy_faces(dataset_block *b, const int64_t *from, int64_t *offse
     return to;
 }
 
-/* Where the stream of a polyhedron begins and ends. Returns 0 where that is beyond it. */
+/* *end: where the stream of a polyhedron ends. Returns 0 where the bounds lie outside all the numbers. */
 static int stream_bounds(const int64_t *ends, int64_t cell, uint64_t length, int64_t *begin, int64_t *end) {
     *end = ends[cell];
     return *begin >= 0 && *end >= *begin && (uint64_t)*end <= length;

@@ -30,11 +30,11 @@ int data_names_is_pattern(const char *text);
  * *axes_per_file is left alone where not given. */
 int data_names_pattern(data_names *names, const char *header_path, const char *text, int64_t *axes_per_file);
 
-/* Maps one of the names as a file of the dataset. 0, or STATUS_INPUT where it cannot be, or where links lead out of the
- * folders that the header is named in and lies in. */
+/* Maps one of the files for the dataset. STATUS_INPUT where it cannot be opened, or where symbolic links lead out of
+ * both the folder that the header's path names and the one that the header really lies in. */
 int data_names_open(const char *header_path, const char *path, dataset *out, mapping *m);
 
-/* Leaves the first so many. */
+/* Keeps the first `count` names. */
 void data_names_cut(data_names *names, int64_t count);
 
 /* Frees and zeroes. */

@@ -71,7 +71,7 @@ int dataset_image_begin(dataset *d) {
     dataset_block *block = NULL;
     dataset_field *field = NULL;
     if (dataset_block_add(d, &block) || dataset_field_add(block, &field)) return STATUS_FAILED;
-    block->kind = GRID_UNIFORM;
+    block->kind = BLOCK_UNIFORM;
     field->name = "";
     d->frames = 1;
     return 0;

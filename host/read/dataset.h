@@ -15,14 +15,14 @@ typedef struct dataset_field {
     const char *name; /* "" where the format has no names */
     int on_cells;     /* a tuple per cell, not per point */
     int components;   /* values per tuple: 1 for a scalar */
-    tc_type type;     /* 64-bit integers have become f64, */
-    int is_rounded;   /* some of them to the nearest, as no double holds them */
-    int is_scaled;    /* f64: stored values by a slope and an intercept that have the precision of f32 */
+    tc_type type;     /* f64 where the file has 64-bit integers */
+    int is_rounded;   /* no double holds some of these integers: the nearest stands for them */
+    int is_scaled;    /* f64, made of stored values by a slope and an intercept that have the precision of f32 */
     const void *values;
     const char *meaning; /* of the components, "red, green, blue"; NULL where unknown */
 } dataset_field;
 
-/* Coordinates in the precision that the file has: one of the two leads anywhere. */
+/* Coordinates in the precision of the file: one of the two is NULL. */
 typedef struct coordinates {
     const float *f32;
     const double *f64;
@@ -30,14 +30,14 @@ typedef struct coordinates {
 
 static inline double coordinate_at(coordinates c, int64_t n) { return c.f64 ? c.f64[n] : (double)c.f32[n]; }
 
-enum grid_kind { GRID_UNIFORM, GRID_RECTILINEAR, GRID_CURVILINEAR, GRID_UNSTRUCTURED };
+enum block_kind { BLOCK_UNIFORM, BLOCK_RECTILINEAR, BLOCK_CURVILINEAR, BLOCK_UNSTRUCTURED };
 
 typedef struct dataset_block {
-    enum grid_kind kind;
+    enum block_kind kind;
     int64_t point_count, cell_count;
 
     int64_t dims[3];     /* all but unstructured: points along x, y, z; cells are cubes between them */
-    int64_t first[3];    /* extent index of the first point */
+    int64_t first[3];    /* index of the first point in the whole extent */
     double matrix[3][4]; /* uniform: index space to world, as tc_grid_options.matrix */
     coordinates axes[3]; /* rectilinear: dims[a] positions along each axis */
     coordinates points;  /* curvilinear and unstructured: x, y, z of every point */
@@ -52,7 +52,7 @@ typedef struct dataset_block {
     int field_count;
 } dataset_block;
 
-/* An array that the file has and no block: what it lacks is told where it is asked for. */
+/* An array of the file that was left out. The reason is told where somebody asks for it by its name. */
 typedef struct dataset_absent {
     const char *name, *reason; /* "its type String cannot be read" */
 } dataset_absent;
@@ -65,13 +65,13 @@ typedef struct dataset {
 
     char **notices;                /* what the user should know about how the file was read: dataset_notice */
     int notice_count, notice_lost; /* lost: there was no memory for one */
-    char notice[256];              /* the same in one text, joined by "; ", as far as there is room; or "" */
+    char notice[256];              /* the same joined by "; ", as many as there is room for; or "" */
 
     dataset_absent *absent; /* each name once */
     int absent_count;
 
-    int64_t frames; /* of images, one uniform block with one field without a name: volumes to choose from, of which this
-                       is the first; 1 where one was chosen, or is alone. 0: other grids */
+    int64_t frames; /* of images, which have one uniform block with one unnamed field: volumes to choose from, of which
+                       this is the first; 1 where one was chosen, or is the only one. 0: other grids */
 
     void *mapping; /* a file mapped into memory, or NULL */
     size_t mapping_bytes;
@@ -82,8 +82,8 @@ typedef struct dataset {
 /* Frees or unmaps all and zeroes *d. */
 void dataset_release(dataset *d);
 
-/* Memory that lives as long as the dataset, page-aligned and in huge pages where large; NULL, with STATUS_FAILED's text
- * set, where there is none. 0 bytes: memory all the same. */
+/* Memory that lives as long as the dataset, page-aligned and in huge pages where large; also for 0 bytes. NULL, with
+ * the message of STATUS_FAILED, where there is none. */
 void *dataset_allocate(dataset *d, uint64_t bytes);
 
 /* Maps a file of the input (mapping.h) and notes it among its files; the mapping is the caller's. 0 or a status. */
@@ -104,12 +104,12 @@ int dataset_field_add(dataset_block *block, dataset_field **out);
 /* Begins an image: its block, and its field without a name. 0 or STATUS_FAILED. */
 int dataset_image_begin(dataset *d);
 
-/* Notes an array that is left out, with a notice for the first of its name: format makes the reason. The texts are
+/* Notes an array that is left out; format makes the reason. The first array of a name gets a notice. Strings are
  * copied. 0 or STATUS_FAILED. */
 int dataset_leave_out(dataset *d, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Adds a text to the notices: half a sentence that does not name the input, whose name is put before it. Of very many
- * the rest is left out, with a last one that says so. */
+/* Adds a notice: half a sentence, as the name of the input is put before it. After very many a last one says that the
+ * others are left out. */
 void dataset_notice(dataset *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -22,7 +22,7 @@ int file_list_has(const file_list *list, const char *path) {
     struct stat about;
     if (stat(path, &about) != 0) return 0;
     for (size_t n = 0; n < list->count; n++)
-        if (list->files[n].device == about.st_dev && list->files[n].number == about.st_ino) return 1;
+        if (list->files[n].device == about.st_dev && list->files[n].inode == about.st_ino) return 1;
     return 0;
 }
 

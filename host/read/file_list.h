@@ -7,7 +7,7 @@
 
 typedef struct file_identity {
     dev_t device;
-    ino_t number;
+    ino_t inode;
 } file_identity;
 
 typedef struct file_list {

@@ -27,10 +27,10 @@ int parse_numbers(const char *text, double *values, int max);
 /* Cuts white space from both ends, in place. */
 char *trim(char *text);
 
-/* Whether the names, a bar before, between and behind them, have the word among them, in any case. */
+/* Whether a list of names, "|float|double|", has the word, in any case. */
 int names_have(const char *names, const char *word);
 
-/* The next word of *text, which moves behind it, or NULL. */
+/* The next word of *text, zero-ended; *text moves behind it. NULL where there is none. */
 char *next_word(char **text);
 
 #endif

@@ -23,7 +23,7 @@ static int choose(const char *path, const axes *from, int axis, const read_reque
                 is_component ? ", or their length with --component magnitude" : "");
 }
 
-/* Components side by side, for their length or to be described. */
+/* Whether all components are taken: for their length, or to be described. */
 static int are_together(const read_request *request) {
     return request->component == COMPONENT_MAGNITUDE || (request->component < 0 && request->describe);
 }
@@ -126,7 +126,8 @@ static void copy_elements(unsigned char *to, const unsigned char *from, int64_t 
     }                                                                                                                  \
     break
 
-/* Elements of 2, 4 or 8 bytes in the other byte order: with a constant step the compiler makes vector code. */
+/* Contiguous elements of 2, 4 or 8 bytes in the other byte order: as the step is constant, the compiler makes vector
+ * code. */
 static void swap_neighbours(unsigned char *to, const unsigned char *from, int64_t n, size_t bytes) {
     switch (bytes) {
     case 2:

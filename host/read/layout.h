@@ -1,10 +1,10 @@
 /*
  * layout.h - how a file stores its samples, and how one scalar volume is taken out of it
  *
- * A stored array has up to 16 axes, fastest first; at most three are of space, the others hold several values per
- * sample (components) or several volumes (frames), of which the user chooses one, or for a vector's length takes all
- * components. What remains is a strided view, and every format is gathered by the same loop: byte order, 64-bit
- * integers and scaling included.
+ * A stored array has up to 16 axes, fastest first. At most three are of space; others hold several values per sample
+ * (components) or several volumes (frames). The user chooses one component and one frame; the length of vectors takes
+ * all components. What remains is a strided view. One loop gathers it for every format, byte order, 64-bit integers and
+ * scaling included.
  */
 #ifndef LAYOUT_H
 #define LAYOUT_H
@@ -30,8 +30,8 @@ typedef struct layout {
     uint64_t bytes;            /* of all of them */
     int64_t dims[3];           /* of the volume taken out */
     uint64_t stride[3];        /* elements from one sample to the next */
-    int components;            /* values of a sample that are taken out (0 as 1), */
-    uint64_t component_stride; /* so many elements from one to the next */
+    int components;            /* values of a sample that are taken out; 0 counts as 1 */
+    uint64_t component_stride; /* elements from one of them to the next */
     int64_t frames;            /* as in dataset */
     uint64_t offset;           /* element of the first sample */
     int scaled;                /* slope * value + intercept, in double */
@@ -48,8 +48,8 @@ tc_type layout_type(const layout *l);
 /* Whether the samples can be used where they are, given the address of the stored array. */
 int layout_is_plain(const layout *l, const unsigned char *stored);
 
-/* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of so many components, of layout_type.
- * STATUS_INPUT where a 64-bit integer has no exact double, its row and those before it filled with the nearest. */
+/* Takes the volume out of the stored array: dims[0] * dims[1] * dims[2] samples of layout_type, with their components.
+ * STATUS_INPUT where no double equals a 64-bit integer: up to its row, samples are then the nearest doubles. */
 int layout_gather(const char *path, const layout *l, const unsigned char *stored, void *samples);
 
 #endif

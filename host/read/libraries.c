@@ -18,7 +18,7 @@ static const struct {
 
 int library_is_built(enum library library) { return libraries[library].is_built; }
 
-int library_missing(enum library library, const char *path, const char *is, const char *instead) {
+int library_fail(enum library library, const char *path, const char *is, const char *instead) {
     return fail(STATUS_INPUT,
                 "%s: %s, which this program was built without; %s, or build it with %s (Debian: %s) and %s=ON", path,
                 is, instead, libraries[library].name, libraries[library].package, libraries[library].option);

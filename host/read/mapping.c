@@ -48,7 +48,8 @@ static struct {
     int count;
 } streams = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-/* A pipe without a name has no writers any more where none is there; one with a name may not have one yet. */
+/* Whether to wait for a first writer: a named pipe may not have one yet. An unnamed pipe without a writer will not get
+ * one any more. */
 static int waits_for_writers(int from) {
     struct statfs about;
     struct stat kind;
@@ -56,14 +57,14 @@ static int waits_for_writers(int from) {
            about.f_type != PIPEFS_MAGIC;
 }
 
-/* Until something comes. A signal that ends the program ends this, while read would go on waiting. */
+/* Waits until there is something to read. A signal that ends the program ends this wait, too, but not that of read. */
 static int wait_for_bytes(const char *path, int from) {
     struct pollfd ready = {.fd = from, .events = POLLIN};
     if (poll(&ready, 1, -1) >= 0 || errno != EINTR) return 0;
     return fail(STATUS_FAILED, "%s: interrupted while it was read", path);
 }
 
-/* Pipes opened by name do not block, and are read before they are waited for: their end may have come already. */
+/* Pipes opened by name do not block. They are read before they are waited for, as their end may have come already. */
 static int copy_stream(const char *path, int from, int to) {
     enum { CHUNK = 1 << 16 };
     char chunk[CHUNK];
@@ -102,7 +103,7 @@ static struct stream *find_stream(const char *path) {
     if (!is_standard && stat(path, &about)) return NULL;
     for (int n = 0; n < streams.count; n++) {
         struct stream *s = &streams.kept[n];
-        if (is_standard ? s->is_standard_input : s->of.device == about.st_dev && s->of.number == about.st_ino) return s;
+        if (is_standard ? s->is_standard_input : s->of.device == about.st_dev && s->of.inode == about.st_ino) return s;
     }
     return NULL;
 }
@@ -127,7 +128,7 @@ static int read_stream(const char *path, struct stream **out) {
     return 0;
 }
 
-/* A descriptor of the caller's. 0 or a status with text. */
+/* *file: a descriptor that the caller closes. 0 or a status with its message. */
 static int open_stream(const char *path, int *file) {
     pthread_mutex_lock(&streams.lock);
     struct stream *s = find_stream(path);

@@ -12,18 +12,18 @@ typedef struct mapping {
     file_identity identity;
 } mapping;
 
-/* Maps a regular file, or what comes but once: "-", all of standard input, or a pipe by its name. That is read into
- * memory and can be mapped as often as one likes. 0 or a status with text, *m zeroed. */
+/* Maps a regular file, or what can be read only once: a pipe by its name, or standard input, "-". This is read to its
+ * end into memory, and can then be mapped any number of times. 0, or a status with its message and *m zeroed. */
 int mapping_open(const char *path, mapping *m);
 
 /* Whether path stands for standard input: "-", "/dev/stdin". */
 int mapping_is_standard_input(const char *path);
 
-/* Whether path is standard input, another open file by its number, or a pipe: it has no ending that tells the format,
- * and no other files lie beside it. */
+/* Whether path is standard input, another open file by its descriptor, or a pipe: then its ending tells no format, and
+ * no other file lies beside it. */
 int mapping_is_stream(const char *path);
 
-/* Accepts a zeroed mapping; zeroes it. */
+/* Unmaps and zeroes. Accepts a zeroed mapping. */
 void mapping_close(mapping *m);
 
 #endif

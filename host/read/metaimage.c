@@ -24,7 +24,7 @@ enum { SPATIAL_AXES = 3, MAX_DIMENSION = 10, LIST_VALUES = MAX_DIMENSION * MAX_D
 
 typedef struct number_list {
     int count;           /* 0: not given */
-    int is_first_choice; /* given by the key that goes before its other names */
+    int is_first_choice; /* given by the key that has precedence over its synonyms */
     double values[LIST_VALUES];
 } number_list;
 
@@ -40,7 +40,7 @@ typedef struct meta_header {
     char orientation[16];
     source from;
     uint32_t seen;     /* a bit per key that was met */
-    char repeated[32]; /* one that stands there again, or "" */
+    char repeated[32]; /* a key that was met twice, or "" */
 } meta_header;
 
 static int parse_type(meta_header *h, const char *text) {
@@ -64,7 +64,7 @@ static int parse_integer(meta_header *h, const char *key, const char *text, int6
                 text, low, high);
 }
 
-/* Of keys that mean one thing, the first choice stays, whatever follows it. */
+/* Of synonymous keys, the first choice has precedence wherever it stands. */
 static int parse_list(meta_header *h, const char *key, const char *first_choice, const char *text, number_list *list) {
     if (list->is_first_choice && strcasecmp(key, first_choice)) return 0;
     list->is_first_choice = !strcasecmp(key, first_choice);
@@ -73,7 +73,7 @@ static int parse_list(meta_header *h, const char *key, const char *first_choice,
     return fail(STATUS_INPUT, "%s: %s is '%.60s'; 1 to %d numbers are needed", h->path, key, text, LIST_VALUES);
 }
 
-/* Whether a name has a number in it, as "slice%03d.raw". */
+/* Whether the name has a conversion for a number, as "slice%03d.raw". */
 static int has_number(const char *name) {
     const char *at = strchr(name, '%');
     if (!at) return 0;
@@ -218,7 +218,7 @@ static int parse_header(meta_header *h, header_text *text) {
     return 0;
 }
 
-/* Cuts what is too much, with a notice; what is too little is an error unless the request stands for it. */
+/* Values beyond those needed are dropped, with a notice. Too few are an error, unless the request replaces them. */
 static int check_list(const meta_header *h, const char *key, number_list *list, int needed, int is_replaced,
                       dataset *out) {
     if (!list->count) return 0;
@@ -235,7 +235,7 @@ static int check_list(const meta_header *h, const char *key, number_list *list, 
     return 0;
 }
 
-/* Of a matrix for more axes the upper left part. */
+/* Takes the upper left part of a matrix for more axes. */
 static void cut_matrix(number_list *matrix, int n) {
     int rows = n;
     while (rows < MAX_DIMENSION && rows * rows < matrix->count) rows++;
@@ -244,7 +244,7 @@ static void cut_matrix(number_list *matrix, int n) {
         for (int c = 0; c < n; c++) matrix->values[r * n + c] = matrix->values[r * rows + c];
 }
 
-/* Of more files than the sizes ask for, the first. */
+/* Where more files are named than the sizes ask for, keeps the first. */
 static void cut_names(meta_header *h, dataset *out) {
     int64_t expected = 1;
     if (h->from.axes_per_file < 1 || h->from.axes_per_file >= h->dimension) return;

@@ -6,7 +6,7 @@
  * comes through source.h like that of all formats.
  *
  * World: the sform where its code is above 0, else the qform, else the voxel size alone, as always of Analyze. Values:
- * slope * stored + intercept in double, a slope of 0 meaning none; Analyze has the slope of SPM in the same place.
+ * slope * stored + intercept in double, a slope of 0 meaning none; Analyze has the slope of SPM in the same field.
  * Headers are often wrong in what their writers do not use: such fields are passed over with a notice.
  */
 #include "readers.h"
@@ -49,7 +49,7 @@ typedef struct nifti_header {
     } raw;
 } nifti_header;
 
-/* Of the header, and where data that follows it in one file begins. */
+/* The size of the header, and where the data begins that follows it in the same file. */
 static size_t header_bytes(const nifti_header *h) { return h->version == 1 ? 348 : 540; }
 static size_t single_bytes(const nifti_header *h) { return h->version == 1 ? 352 : 544; }
 
@@ -165,7 +165,7 @@ static int read_header(const char *path, const mapping *file, nifti_header *h) {
         take_v1(h);
     else
         take_v2(h);
-    if (h->is_analyze) h->qform_code = h->sform_code = h->intent = 0; /* other fields are in their place */
+    if (h->is_analyze) h->qform_code = h->sform_code = h->intent = 0; /* Analyze has other fields there */
     if (h->is_analyze) h->intercept = 0;
     return 0;
 }
@@ -293,9 +293,9 @@ static void fill_scaling(const nifti_header *h, layout *l, dataset *out) {
 
 /* ----------------------------------------------------------------------------------------------------------- files */
 
-/* Of two endings, the one that has the case of the path's own comes first: x.hdr gives x.img, X.HDR X.IMG; each may
- * have .gz behind it. Returns 0 where there is no such file. The name is the caller's, no header's, so links are
- * followed, as archives of scans have them. */
+/* Finds the other file of a pair, with .gz or without. Of the two wanted endings the one in the same case as the path's
+ * is tried first: x.hdr leads to x.img, X.HDR to X.IMG. Returns 0 where there is no such file. Symbolic links are
+ * followed, as archives of scans have them: the name comes from the caller, not from a header. */
 static int find_partner(const char *path, const char *own, const char *const wanted[2], char *partner, size_t size) {
     static const char *const packed[] = {"", ".gz", ".GZ"};
     size_t length = strlen(path);
@@ -311,8 +311,8 @@ static int find_partner(const char *path, const char *own, const char *const wan
     return 0;
 }
 
-/* Where the data begins in a file of so many bytes that is not packed, or that is (0). An offset within the header
- * means right behind it, four bytes for extensions included where there is room for them. */
+/* *start: where the data begins. file_bytes is the size of a file that is not packed, else 0. An offset within the
+ * header means right behind it; four bytes for extensions are skipped where the file has room for them. */
 static int find_start(const nifti_header *h, int is_single, size_t file_bytes, uint64_t bytes, uint64_t *start) {
     double offset = floor(h->is_analyze ? fabs(h->vox_offset) : h->vox_offset);
     if (!(offset >= 0) || offset > 0x1p60)

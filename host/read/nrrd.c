@@ -65,7 +65,7 @@ static enum nrrd_kind kind_of(const char *word) {
     if (!strcasecmp(word, "time")) return KIND_TIME;
     for (size_t i = 0; i < sizeof of_values / sizeof *of_values; i++)
         if (strcasestr(word, of_values[i])) return KIND_COMPONENT;
-    return KIND_UNKNOWN; /* "???", "none" and what the format does not have */
+    return KIND_UNKNOWN; /* "???", "none" and words that the format does not define */
 }
 
 static int parse_kinds(nrrd_header *h, char *text) {
@@ -266,14 +266,13 @@ static int parse_header(nrrd_header *h, header_text *text) {
 }
 
 static int check_header(nrrd_header *h) {
-    const char *missing = !h->dimension      ? "dimension"
-                          : h->element < 0   ? "type"
-                          : !h->has_sizes    ? "sizes"
-                          : !h->has_encoding ? "encoding"
-                                             : NULL;
-    if (!missing && !h->endian && element_bytes(h->element) > 1 && h->from.encoding != ENCODING_TEXT)
-        missing = "endian";
-    if (missing) return fail(STATUS_INPUT, "%s: its header has no '%s' field; add it", h->path, missing);
+    const char *absent = !h->dimension      ? "dimension"
+                         : h->element < 0   ? "type"
+                         : !h->has_sizes    ? "sizes"
+                         : !h->has_encoding ? "encoding"
+                                            : NULL;
+    if (!absent && !h->endian && element_bytes(h->element) > 1 && h->from.encoding != ENCODING_TEXT) absent = "endian";
+    if (absent) return fail(STATUS_INPUT, "%s: its header has no '%s' field; add it", h->path, absent);
     if (h->from.byte_skip < 0 && (h->from.encoding == ENCODING_TEXT || h->from.encoding == ENCODING_HEX))
         return fail(STATUS_INPUT, "%s: 'byte skip: -1' makes no sense with text; say how many bytes", h->path);
     if (h->from.encoding == ENCODING_DEFLATE || h->from.encoding == ENCODING_BZIP2) {

@@ -17,8 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One "(a,b,c)" or "(a,b,c,t)" at *text, which moves behind it. The count of numbers; 0 where it is none. All may be
- * NaN, or none. */
+/* Parses "(a,b,c)" or "(a,b,c,t)" at *text, which moves behind it. Returns the count of numbers; 0 where it is no such
+ * vector. Either all or none of the numbers may be NaN. */
 static int parse_vector(const char **text, double vector[3]) {
     const char *at = *text;
     int count = 0, unknown = 0;
@@ -66,7 +66,8 @@ int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, doub
     return 0;
 }
 
-/* Where no axis has a direction the first ones are those of space, as in files without directions. ITK has it so. */
+/* Where no axis has a direction, the first three are those of space, as in files without directions. ITK does so, too.
+ */
 void nrrd_settle_directions(nrrd_header *h, dataset *out) {
     int known = 0;
     for (int a = 0; a < h->dimension && h->has_directions; a++) known += !isnan(h->directions[a][0]);
@@ -76,7 +77,8 @@ void nrrd_settle_directions(nrrd_header *h, dataset *out) {
         dataset_notice(out, "none of its space directions is known, the spacing is taken for 1");
 }
 
-/* Of more than three axes without kinds, those whose spacing makes no sense where that leaves three of space. */
+/* Whether NaN spacings tell which of more than three axes, none with a kind, are not of space: three others are left.
+ */
 static int spacings_tell_space(const nrrd_header *h) {
     int spaced = 0;
     if (!h->has_spacings || h->has_directions || h->dimension <= 3) return 0;
@@ -116,8 +118,8 @@ static double axis_step(const nrrd_header *h, int a) {
     return steps > 0 ? (h->maxs[a] - h->mins[a]) / (double)steps : 1;
 }
 
-/* A column for an axis of one sample, of which any direction does that makes a volume with those before it: its own
- * axis, or the first one along which they do not go. */
+/* Fills the column of an axis of one sample. Any direction will do that spans a volume with the columns before it: the
+ * axis itself, or else the first one that none of them uses. */
 static void complete_matrix(double matrix[3][4], int column) {
     int axis = column;
     for (int n = 0; n < 4; n++) {
@@ -130,7 +132,8 @@ static void complete_matrix(double matrix[3][4], int column) {
     for (int r = 0; r < 3; r++) matrix[r][column] = r == axis;
 }
 
-/* The column of the space's axis, which is the file's axis a; without a direction it is the space's own. */
+/* Fills the matrix for one axis of space, which is axis a of the file. Without a direction it runs along its own axis.
+ */
 static void place_axis(const nrrd_header *h, int a, int space, dataset *out) {
     if (h->has_directions && !isnan(h->directions[a][0])) {
         for (int r = 0; r < 3; r++) out->blocks->matrix[r][space] = h->directions[a][r];

@@ -28,14 +28,14 @@ typedef struct nrrd_header {
     int has_sizes, has_spacings, has_mins, has_maxs, has_kinds, has_directions, has_origin;
     char space[64];
     uint32_t seen;     /* a bit per field that was met */
-    char repeated[32]; /* the name of one that stands there again, or "" */
+    char repeated[32]; /* the name of a field that was met twice, or "" */
 } nrrd_header;
 
 /* Parses "space directions" or "space origin": count vectors "(x,y,z)", or "none" or "(nan,nan,nan)" (NaN). In a space
  * with time the fourth number is dropped, and a direction along time alone is as "none". */
 int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, double (*vectors)[3], int count);
 
-/* Directions of which none is known are as none given, with a notice. */
+/* Where no direction is known, the header counts as one without directions; a notice says so. */
 void nrrd_settle_directions(nrrd_header *h, dataset *out);
 
 /* Which axes are of space, components and frames. */

@@ -1,9 +1,9 @@
 /*
  * plot3d.c - Plot3D: a grid file and, beside it, a solution (Q) or function file
  *
- * Which of the two is the grid, and how each was written, follows from the files (plot3d.h): of all pairs of forms in
- * which one is a grid and the other a solution of the same blocks, the pair with the least padding is taken, then the
- * one whose values could be physical. Two that are equally good are refused.
+ * Which of the two is the grid, and how each was written, follows from the files (plot3d_form.h): of all pairs of forms
+ * in which one is a grid and the other a solution of the same blocks, the pair with the least padding is taken; among
+ * equals the one whose values are plausible. Two that are equally good are refused.
  *
  * Every block is a curvilinear grid. IBLANK 0 blanks a point; other values say what a point borders on and are present.
  * Pressure is derived as (gamma - 1) (energy - momentum^2 / (2 density)), gamma being 1.4 unless the file has its own.
@@ -139,7 +139,7 @@ static void *arena_take(arena *a, uint64_t bytes) {
     return memory;
 }
 
-/* Of a coordinate: text has as many digits as it has. */
+/* Of a coordinate. Text is read as doubles, since its numbers may have any count of digits. */
 static uint64_t point_bytes(const pairing *p) { return (uint64_t)p->grid->value_bytes; }
 
 static uint64_t field_bytes(const pairing *p) {
@@ -155,7 +155,7 @@ static int is_any_blanked(const pairing *p, const plot3d_block *block) {
     return 0;
 }
 
-/* No product overflows: each is at most some tens of times what the files, or their texts' numbers, occupy. */
+/* No product overflows: each is at most some tens of times the size of the files, or of the numbers of their text. */
 static uint64_t count_bytes(const pairing *p) {
     uint64_t bytes = 0;
     for (int64_t n = 0; n < p->grid->block_count; n++) {
@@ -170,8 +170,8 @@ static uint64_t count_bytes(const pairing *p) {
 
 /* ----------------------------------------------------------------------------------------------------------- blocks */
 
-/* A point that is not blanked and has a coordinate that is not finite; count where there is none. Those of blanked ones
- * become 0. */
+/* Returns the first point that is not blanked and has a coordinate that is not finite; count where there is none. Such
+ * coordinates of blanked points become 0. */
 static uint64_t settle_points(coordinates points, uint64_t count, const uint8_t *blanked) {
     for (uint64_t i = 0; i < count; i++) {
         int64_t at = 3 * (int64_t)i;
@@ -284,7 +284,7 @@ static int load_block(const pairing *p, int64_t n, arena *memory, char *names, d
     dataset_block *block;
     int status = dataset_block_add(out, &block);
     if (status) return status;
-    block->kind = GRID_CURVILINEAR;
+    block->kind = BLOCK_CURVILINEAR;
     block->point_count = (int64_t)from->points;
     block->cell_count = 1;
     for (int a = 0; a < 3; a++) {

@@ -1,5 +1,5 @@
 /*
- * plot3d_form.c - finds how a Plot3D file was written, from its size and its record marks; see plot3d.h
+ * plot3d_form.c - finds how a Plot3D file was written, from its size and its record marks; see plot3d_form.h
  *
  * Layout, after the PLOT3D User's Manual (Walatka, Buning, Pierce, Elson, NASA TM-101067, 1990) and, for solutions of
  * OVERFLOW, what VTK's vtkMultiBlockPLOT3DReader takes. Each line below is one Fortran record:
@@ -43,7 +43,7 @@ typedef struct walk {
     uint64_t position;
     uint64_t header_bytes, dims_at, variables, species;
     int64_t dims[3];  /* of the block that the walk has reached */
-    uint64_t missing; /* bytes that the file lacks where the walk ended for that reason */
+    uint64_t lacking; /* bytes that the file lacks, where the walk ended for that reason */
 } walk;
 
 /* ----------------------------------------------------------------------------------------------------------- values */
@@ -125,7 +125,7 @@ static int take(walk *w, uint64_t length, uint64_t *payload) {
         return 0;
     if (__builtin_add_overflow(length, 2 * (uint64_t)mark, &end)) return 0;
     if (end > rest) {
-        w->missing = end - rest;
+        w->lacking = end - rest;
         return 0;
     }
     *payload = w->position + (uint64_t)mark;
@@ -231,12 +231,12 @@ const char *plot3d_describe(const plot3d_form *form, char text[128]) {
     return text;
 }
 
-/* Whether what a walk lacked tells more than what another did: record marks that agreed are no chance, else the fewest
- * bytes. */
+/* Whether a walk came nearer to the file's form than another: record marks that agree are no chance; else the one that
+ * lacks fewer bytes. */
 static int is_nearer(const walk *w, const walk *other, const plot3d_form *other_form) {
-    if (!w->missing || !w->dims[0] || !other->missing) return w->missing && w->dims[0];
+    if (!w->lacking || !w->dims[0] || !other->lacking) return w->lacking && w->dims[0];
     int has_marks = w->form->encoding != PLOT3D_BINARY, other_has_marks = other_form->encoding != PLOT3D_BINARY;
-    return has_marks == other_has_marks ? w->missing < other->missing : has_marks;
+    return has_marks == other_has_marks ? w->lacking < other->lacking : has_marks;
 }
 
 /* Adds the form where it explains the file, padding by its values too; else keeps the walk where it came nearest. */
@@ -263,12 +263,12 @@ static int try_form(plot3d_file *file, plot3d_form form, walk *nearest, plot3d_f
 
 static int no_form(const plot3d_file *file, const walk *nearest, const plot3d_form *form) {
     char text[128], near[320] = "";
-    if (nearest->missing)
+    if (nearest->lacking)
         snprintf(near, sizeof near,
                  " Nearest: %s, but of a block of %" PRId64 " x %" PRId64 " x %" PRId64 " points at least %" PRIu64
                  " %s are missing.",
                  plot3d_describe(form, text), nearest->dims[0], nearest->dims[1], nearest->dims[2],
-                 form->encoding == PLOT3D_TEXT ? nearest->missing / 8 : nearest->missing,
+                 form->encoding == PLOT3D_TEXT ? nearest->lacking / 8 : nearest->lacking,
                  form->encoding == PLOT3D_TEXT ? "values" : "bytes");
     return fail(STATUS_INPUT,
                 "%s: its size fits no 3D Plot3D grid, solution or function that its header could announce: %s were "

@@ -52,19 +52,19 @@ typedef struct plot3d_file {
     int form_count;
 } plot3d_file;
 
-/* Finds all forms that explain the file to its last byte, but for zero bytes that fill up a storage
- * block.
- * STATUS_INPUT where there is none; release in any case. */
+/* Finds all forms that explain the file to its last byte; zero bytes at its end that fill up a storage block are left
+ * over. STATUS_INPUT where there is none. To be released in any case. */
 int plot3d_open(const char *path, const mapping *mapped, plot3d_file *file);
 void plot3d_release(plot3d_file *file);
 
-/* Whether samples of the values are such as a wrong form would hardly give: 0, or of a usual magnitude. */
+/* Whether values, of which some are looked at, are plausible: each is 0 or of a usual magnitude. Read in a wrong form
+ * they hardly ever are. */
 int plot3d_is_physical(const plot3d_file *file, const plot3d_form *form);
 
 /* "big-endian C binary, f32, 1 block, grid with IBLANK" */
 const char *plot3d_describe(const plot3d_form *form, char text[128]);
 
-/* `count` values from an offset on, to every stride-th place. */
+/* Converts `count` values from an offset on; out[0], out[stride], out[2 * stride] ... receive them. */
 void plot3d_load_f32(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, float *out,
                      uint64_t stride);
 void plot3d_load_f64(const plot3d_file *file, const plot3d_form *form, uint64_t offset, uint64_t count, double *out,

@@ -1,5 +1,5 @@
 /*
- * raw.c - samples without a header: dims, type, byte order and place come from the command line
+ * raw.c - samples without a header: dims, type, byte order and spacing come from the command line
  *
  * The file must be exactly as long as that makes it, so that a wrong option is noticed. Large files are not read: they
  * are mapped, and used in place where the samples are native and aligned.

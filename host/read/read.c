@@ -28,7 +28,7 @@ static int ends_as_half_of_a_pair(const char *path) {
     return path_ends_with(path, ".q") || path_ends_with(path, ".f") || path_ends_with(path, ".bin");
 }
 
-/* Whether the first characters are ASCII in UTF-16, behind its byte order mark, or the begin of an element without. */
+/* Whether the file begins with ASCII characters in UTF-16: after a byte order mark, or, without one, with '<'. */
 static int begins_as_utf16(const mapping *file) {
     enum { UNITS = 4 };
     if (file->size < 2 * UNITS) return 0;
@@ -41,7 +41,7 @@ static int begins_as_utf16(const mapping *file) {
     return 1;
 }
 
-/* Texts in a form that no reader takes, where what is wrong would not show in a message. */
+/* Refuses encodings of text that no reader takes. The reader's own message would not show what is wrong. */
 static int refuse_encoding(const read_request *request, const mapping *file) {
     if (is_raw(request)) return 0;
     if (begins_as_utf16(file))
@@ -54,7 +54,7 @@ static int refuse_encoding(const read_request *request, const mapping *file) {
     return 0;
 }
 
-/* What a file that is not read is, where that can be told; NULL where not. */
+/* The name of a known format that this program does not read; NULL where it is unknown. */
 static const char *name_of_unread(const char *path, const mapping *file) {
     static const struct {
         const char *ending, *name;
@@ -92,18 +92,18 @@ static int refuse_unknown(const char *path, const mapping *file) {
                 path, read_formats_text(formats));
 }
 
-/* Points of other grids lie where their coordinates say. */
+/* --spacing and --origin are for uniform grids: points of others have coordinates of their own. */
 static int check_placement(const read_request *request, const dataset *d) {
     const char *option = request->has_spacing ? "--spacing" : request->has_origin ? "--origin" : NULL;
     for (int n = 0; option && n < d->block_count; n++)
-        if (d->blocks[n].kind != GRID_UNIFORM)
+        if (d->blocks[n].kind != BLOCK_UNIFORM)
             return fail(STATUS_USAGE,
                         "%s: its points have coordinates of their own, and %s is for uniform grids: leave it out",
                         request->path, option);
     return 0;
 }
 
-/* Whether an earlier block has two such fields, too. */
+/* Whether an earlier block has several fields of this name, too: then the notice is there already. */
 static int was_told(const dataset *d, int block, const dataset_field *f) {
     for (int n = 0; n < block; n++) {
         int count = 0;
@@ -114,17 +114,17 @@ static int was_told(const dataset *d, int block, const dataset_field *f) {
     return 0;
 }
 
-/* Of fields of one name the first is taken (select.h). */
+/* Where fields have the same name the first is taken (select.h); a notice says so. */
 static void tell_repeated(dataset *d) {
     for (int n = 0; n < d->block_count; n++)
         for (int m = 1; m < d->blocks[n].field_count; m++) {
             const dataset_field *f = &d->blocks[n].fields[m];
             int earlier = 0;
-            for (int k = 0; k < m && earlier < 2; k++) {
-                const dataset_field *e = &d->blocks[n].fields[k];
+            for (int other = 0; other < m && earlier < 2; other++) {
+                const dataset_field *e = &d->blocks[n].fields[other];
                 earlier += e->on_cells == f->on_cells && !strcmp(e->name, f->name);
             }
-            if (earlier != 1 || was_told(d, n, f)) continue; /* 2: told for the second */
+            if (earlier != 1 || was_told(d, n, f)) continue; /* 2: the second has been told of */
             dataset_notice(d, "several arrays of %s %s%.60s%s: the first is taken", f->on_cells ? "cells" : "points",
                            *f->name ? "have the name '" : "have no name", f->name, *f->name ? "'" : "");
         }
@@ -133,7 +133,7 @@ static void tell_repeated(dataset *d) {
 static int refuse_absent(const read_format *format, const char *path) {
     char is[64];
     snprintf(is, sizeof is, "is %s", format->name);
-    return library_missing(format->library, path, is, format->instead);
+    return library_fail(format->library, path, is, format->instead);
 }
 
 /* Grids have one frame, as images of three axes do. */
@@ -146,7 +146,8 @@ static int read_as(const read_format *format, const read_request *request, const
     return status ? status : check_placement(request, out);
 }
 
-/* Two inputs are Plot3D, whose files say nothing about themselves; files that do are none. */
+/* Two inputs can only be Plot3D, whose files do not say what they are. So a file whose format is known is none of them,
+ * unless a Plot3D file may look like it. */
 static int may_be_plot3d(const read_format *format) { return !format || format->may_be_half; }
 
 static int refuse_pair(const read_request *request) {

@@ -12,15 +12,16 @@
 enum { FORMAT_NOTES = 5, FORMATS_TEXT = 512 };
 
 typedef struct read_format {
-    const char *name;     /* as lists and messages have it */
+    const char *name;     /* for lists and messages */
     enum library library; /* without which there is no reader */
     struct {
         const char *text;
         enum library library;
-    } notes[FORMAT_NOTES]; /* in parentheses behind the name, where their library is there; up to one without text */
-    const char *endings;   /* of its files, a bar before, between and behind */
+    } notes[FORMAT_NOTES]; /* shown in parentheses where their library was found; ends with one without text */
+    const char *endings;   /* of its files, with a bar before, between and after them */
 
-    /* Whether the file begins as the format does; NULL: that cannot be told. path tells standard input apart. */
+    /* Whether the file begins as the format does; NULL: the format has no certain beginning. path tells streams apart.
+     */
     int (*begins)(const char *path, const mapping *file);
 
     /* Given the mapped file, fills a zeroed dataset; on failure the caller releases it. NULL: without the library. */
@@ -33,10 +34,10 @@ typedef struct read_format {
 extern const read_format read_formats[];
 extern const int read_format_count;
 
-/* The rows that two parts of the program choose by themselves. */
+/* The rows that are chosen without looking at the table. */
 extern const read_format *const raw_format, *const plot3d_format;
 
-/* By the first bytes, else by the ending; NULL: neither tells. */
+/* The format by the first bytes, or by the ending; NULL where that tells none. */
 const read_format *read_format_of_content(const char *path, const mapping *file);
 const read_format *read_format_of_ending(const char *path);
 

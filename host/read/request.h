@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* In place of the number of a component. */
+/* Values of read_request.component that are no component. */
 enum { COMPONENT_OPEN = -1, COMPONENT_MAGNITUDE = -2 };
 
 typedef struct read_request {
@@ -16,12 +16,12 @@ typedef struct read_request {
     uint64_t skip;     /* raw: bytes before the samples */
     double spacing[3]; /* raw, others where has_spacing; 1, 1, 1 by default */
     double origin[3];  /* raw, others where has_origin: position of the sample of index 0, 0, 0; 0, 0, 0 by default */
-    int has_spacing;   /* stands for what the header says, if it does */
+    int has_spacing;   /* spacing replaces what the header says */
     int has_origin;    /* likewise */
-    int component;     /* of data with several values per sample, or one of the above: of images, COMPONENT_OPEN is an
-                          error where there is a choice, and COMPONENT_MAGNITUDE leaves all in the field */
+    int component;     /* of data with several values per sample, or one of the above. Of images, COMPONENT_OPEN is an
+                          error where there is a choice, and COMPONENT_MAGNITUDE keeps all components in the field */
     int frame;         /* of data with a fourth axis; -1 where not given */
-    int describe;      /* of images: choices that are left open are no error: all components, the first frame */
+    int describe;      /* of images: choices that are left open are no error; all components and frame 0 are read */
     const char *field; /* the one that is contoured; NULL: the only one there is */
     int has_nodata;    /* its values equal to nodata (nodata.h) are missing, as are those that are not finite */
     double nodata;

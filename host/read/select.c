@@ -14,26 +14,27 @@
 
 /* ----------------------------------------------------------------------------------------------------------- names */
 
-/* Where a field's values lie: anywhere, points first. */
-enum place { ANYWHERE = -1, AT_POINTS, ON_CELLS };
+/* What the values of a field belong to. ANY: points, or cells where no field of the name is at points. */
+enum association { ANY_ASSOCIATION = -1, AT_POINTS, ON_CELLS };
 
 typedef struct choice {
     const char *name; /* NULL: none */
-    enum place place;
+    enum association association;
 } choice;
 
 static const dataset_field *chosen_field(const dataset_block *b, choice c) {
     const dataset_field *found = NULL;
     for (int n = 0; n < b->field_count; n++) {
         const dataset_field *f = &b->fields[n];
-        int fits = strcmp(f->name, c.name) == 0 && (c.place == ANYWHERE || f->on_cells == (c.place == ON_CELLS));
+        int fits = strcmp(f->name, c.name) == 0 &&
+                   (c.association == ANY_ASSOCIATION || f->on_cells == (c.association == ON_CELLS));
         if (fits && (!found || (found->on_cells && !f->on_cells))) found = f;
     }
     return found;
 }
 
 const dataset_field *block_field(const dataset_block *b, const char *name) {
-    return chosen_field(b, (choice){name, ANYWHERE});
+    return chosen_field(b, (choice){name, ANY_ASSOCIATION});
 }
 
 static int is_common(const dataset *d, choice c) {
@@ -51,7 +52,7 @@ int common_field_names(const dataset *d, const char ***names) {
         const char *name = first->fields[n].name;
         int is_new = 1;
         for (int m = 0; m < count; m++) is_new = is_new && strcmp((*names)[m], name) != 0;
-        if (is_new && is_common(d, (choice){name, ANYWHERE})) (*names)[count++] = name;
+        if (is_new && is_common(d, (choice){name, ANY_ASSOCIATION})) (*names)[count++] = name;
     }
     return count;
 }
@@ -63,26 +64,26 @@ size_t field_prefix(const char *text) {
     return 0;
 }
 
-/* What the text means: a name as it is, else, behind point: or cell:, one of values there. */
+/* The choice that a string makes: of the field of exactly this name, or, after point: or cell:, of one there. */
 static choice find_choice(const dataset *d, const char *const *names, int count, const char *text) {
     const size_t prefix = field_prefix(text);
     for (int n = 0; n < count; n++)
-        if (strcmp(names[n], text) == 0) return (choice){names[n], ANYWHERE};
+        if (strcmp(names[n], text) == 0) return (choice){names[n], ANY_ASSOCIATION};
     for (int n = 0; n < count && prefix; n++) {
         const choice c = {names[n], text[0] == 'c' ? ON_CELLS : AT_POINTS};
         if (strcmp(names[n], text + prefix) == 0 && is_common(d, c)) return c;
     }
-    return (choice){NULL, ANYWHERE};
+    return (choice){NULL, ANY_ASSOCIATION};
 }
 
-/* "density (point)" or "velocity (point, 3 components)", and of values of cells that the name alone does not choose
- * "cell:density (cell)"; text ends in ", ..." where there is no room. */
+/* Adds "density (point)" or "velocity (point, 3 components)" to a list; "cell:density (cell)" of a field that its name
+ * alone does not choose. The list ends with ", ..." where it has no room. */
 static void list_field(const dataset *d, choice c, char *text, size_t bytes) {
     const dataset_field *f = chosen_field(d->blocks, c);
     size_t used = strlen(text);
     char one[256], components[32] = "";
     if (f->components > 1) snprintf(components, sizeof components, ", %d components", f->components);
-    snprintf(one, sizeof one, "%s%s%s (%s%s)", used ? ", " : "", c.place == ON_CELLS ? "cell:" : "", c.name,
+    snprintf(one, sizeof one, "%s%s%s (%s%s)", used ? ", " : "", c.association == ON_CELLS ? "cell:" : "", c.name,
              f->on_cells ? "cell" : "point", components);
     int is_full = used >= 5 && strcmp(text + used - 5, ", ...") == 0;
     if (is_full) return;
@@ -93,12 +94,12 @@ static void list_fields(const dataset *d, const char *const *names, int count, c
     text[0] = '\0';
     for (int n = 0; n < count; n++) {
         const choice cells = {names[n], ON_CELLS};
-        list_field(d, (choice){names[n], ANYWHERE}, text, bytes);
+        list_field(d, (choice){names[n], ANY_ASSOCIATION}, text, bytes);
         if (!block_field(d->blocks, names[n])->on_cells && is_common(d, cells)) list_field(d, cells, text, bytes);
     }
 }
 
-/* An array that was left out, of that name, or any where it is NULL; NULL: none. */
+/* An array of that name that was left out; any such array where name is NULL. NULL: none. */
 static const dataset_absent *find_absent(const dataset *d, const char *name) {
     for (int n = 0; n < d->absent_count; n++)
         if (!name || !strcmp(d->absent[n].name, name) || !strcmp(d->absent[n].name, name + field_prefix(name)))
@@ -113,8 +114,9 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     int status = 0, count = common_field_names(d, &names);
     if (count < 0) return STATUS_FAILED;
     list_fields(d, names, count, list, sizeof list);
-    *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANYWHERE};
-    const dataset_absent *absent = wanted && !out->name ? find_absent(d, wanted) : NULL;
+    *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANY_ASSOCIATION};
+    const int is_unknown = wanted && !out->name;
+    const dataset_absent *absent = is_unknown ? find_absent(d, wanted) : NULL;
     if (!count && !absent) absent = find_absent(d, NULL);
     if (absent)
         status = fail(STATUS_INPUT, "%s: %sthe array '%.60s' is left out: %s", path,
@@ -122,10 +124,10 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     else if (!count)
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
-    else if (!out->name && count == 1 && !names[0][0])
+    else if (is_unknown && count == 1 && !names[0][0])
         status = fail(STATUS_USAGE, "%s: no field is named '%s': its only one has no name; leave out %.*s", path,
                       wanted, (int)strcspn(option, " "), option);
-    else if (!out->name)
+    else if (is_unknown)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);
     else if (!wanted && count > 1)
@@ -136,7 +138,7 @@ static int choose(const dataset *d, const char *path, const char *option, const 
 
 /* --------------------------------------------------------------------------------------------------------- samples */
 
-/* The number of tuples of a field: of its array, not of cells that exist. */
+/* The tuples of a field's array, also where cells of the block are left out. */
 static uint64_t tuple_count(const dataset_block *b, const dataset_field *f) {
     return (uint64_t)(f->on_cells ? b->cell_count : b->point_count);
 }
@@ -150,13 +152,13 @@ static int check_component(const dataset *d, const char *path, const dataset_fie
     if (component == COMPONENT_MAGNITUDE && f->components == 1)
         return fail(STATUS_USAGE, "%s: field '%s' has 1 component, no vectors: leave out --component magnitude", path,
                     f->name);
-    if (component >= f->components && !d->frames) /* the readers of images have looked at it themselves */
+    if (component >= f->components && !d->frames) /* the readers of images have checked it */
         return fail(STATUS_USAGE, "%s: field '%s' has %d component%s, counted from 0: there is no --component %d", path,
                     f->name, f->components, f->components > 1 ? "s" : "", component);
     return 0;
 }
 
-/* One component in contiguous memory, or the length of all; the field's own where it has no other. */
+/* *out: one component in contiguous memory, or the length of all; the field itself where it has one component. */
 static int take_component(dataset *d, const dataset_block *b, const dataset_field *f, int component,
                           dataset_field *out) {
     *out = *f;
@@ -178,11 +180,11 @@ static int take_component(dataset *d, const dataset_block *b, const dataset_fiel
     return 0;
 }
 
-/* What values of a field, or all components of its vectors, are compared with. */
+/* The missing value, as values of a field, or all components of its vectors, are compared with it. */
 typedef struct missing_value {
     int is_there;
     double value;
-    const dataset_field *of; /* the field as the file has it, where lengths are made of it; else the one at hand */
+    const dataset_field *of; /* whose values are compared: of lengths, the vectors that they are made of */
 } missing_value;
 
 static int equals(const dataset_field *f, uint64_t n, double value) {
@@ -190,7 +192,7 @@ static int equals(const dataset_field *f, uint64_t n, double value) {
     return f->is_scaled ? nodata_is_scaled(own, value) : own == value;
 }
 
-/* The first of so many values that is the missing one; count where none is. */
+/* The first of count values that equals the missing one; count where none does. */
 static uint64_t find_equal(const dataset_field *f, uint64_t count, double value) {
     uint64_t n = 0;
     if (!f->is_scaled) return nodata_find(f->type, f->values, count, value);
@@ -215,8 +217,7 @@ static int is_missing(const dataset_field *f, uint64_t n, const missing_value *n
     return 0;
 }
 
-/* Adds to a mask of points or cells, which may be NULL, those whose value is missing; the old one where there is none.
- */
+/* Adds the points or cells whose value is missing to a mask, which may be NULL. *mask stays where none is missing. */
 static int mask_missing(dataset *d, const dataset_block *b, const dataset_field *f, const missing_value *nodata,
                         const uint8_t **mask) {
     uint64_t count = tuple_count(b, f), n = 0;
@@ -237,14 +238,14 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
     int status = take_component(d, b, f, request->component, &one);
     if (status) return status;
     const missing_value nodata = find_nodata(b, request->component == COMPONENT_MAGNITUDE ? f : &one, request);
-    const int is_value = !nodata.of->is_scaled && nodata.of->components == 1; /* of the samples, as they are */
+    const int is_value = !nodata.of->is_scaled && nodata.of->components == 1; /* samples equal it exactly */
     *has_nodata |= nodata.is_there;
     if (f->on_cells) {
         status = mask_missing(d, b, &one, &nodata, &out->blanked_cells);
         if (!status) status = average_to_points(d, b, out->blanked_cells, &one, &at_points);
         if (status) return status;
         one = at_points;
-    } else if (b->kind == GRID_UNSTRUCTURED || (nodata.is_there && !is_value)) {
+    } else if (b->kind == BLOCK_UNSTRUCTURED || (nodata.is_there && !is_value)) {
         if ((status = mask_missing(d, b, &one, &nodata, &out->blanked_points))) return status;
     } else {
         out->has_nodata = nodata.is_there;
@@ -292,7 +293,7 @@ int point_field_select(dataset *d, const char *path, const char *name, point_fie
     choice chosen;
     int status = choose(d, path, "--carry takes", name, &chosen);
     if (status) return status;
-    out->name = chosen.place == ANYWHERE ? chosen.name : dataset_text(d, name);
+    out->name = chosen.association == ANY_ASSOCIATION ? chosen.name : dataset_text(d, name);
     if (!out->name) return STATUS_FAILED;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;

@@ -1,9 +1,9 @@
 /*
  * select.h - which field of a dataset is contoured, and its samples: one number per point of every block
  *
- * A field is known by its name; values at points come before values of cells of the same name, unless the text that
- * chooses is point:NAME or cell:NAME. Where a field's own name begins so, that comes first. Values of cells are
- * averaged (average.h). What is made lies in the dataset's memory, values that need no change are used where they are.
+ * A field is chosen by its name. Where points and cells have fields of one name, that of the points is taken;
+ * point:NAME and cell:NAME choose. A field whose own name begins like that has precedence. Values of cells are averaged
+ * to points (average.h). New arrays lie in the dataset's memory; values that need no change are used where they are.
  */
 #ifndef SELECT_H
 #define SELECT_H
@@ -11,13 +11,13 @@
 #include "dataset.h"
 #include "request.h"
 
-/* One block's samples, and what is missing in it: the block's own and what the field's values tell. */
+/* One block's samples, and what is missing: what the block blanks, and values that are nodata or not finite. */
 typedef struct scalar_block {
     tc_type type;
     const void *samples;                           /* one per point */
     const uint8_t *blanked_points, *blanked_cells; /* as in dataset_block */
-    int has_nodata; /* structured blocks: samples that are nodata (there are some) or not finite are still to be left
-                       out; unstructured ones have them among blanked_points */
+    int has_nodata; /* structured blocks: some samples are nodata; these, and those that are not finite, are still to be
+                       left out. Unstructured blocks have both among blanked_points */
     double nodata;  /* in the type of the samples */
 } scalar_block;
 
@@ -52,10 +52,10 @@ int scalar_components(const dataset *d, const read_request *request, int *compon
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out);
 
 /* The names of fields that every block has, as names of the first block's fields, each once; *names from malloc. -1
- * without memory, with its text set; else how many. */
+ * without memory, with its message; else how many. */
 int common_field_names(const dataset *d, const char ***names);
 
-/* The length of "point:" or "cell:" where the text begins so, else 0. */
+/* The length of "point:" or "cell:" where the string begins with it, else 0. */
 size_t field_prefix(const char *text);
 
 /* The block's field of that name; NULL where it has none. */

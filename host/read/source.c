@@ -48,14 +48,14 @@ static int find_start(const source *from, const char *path, const mapping *m, ui
 }
 
 /* Whether `available` stored bytes, which are not packed, can hold what the header declares for this file. */
-static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element) {
+static int check_size(const source *from, const char *path, uint64_t available, uint64_t bytes, size_t element_size) {
     switch (from->encoding) {
     case ENCODING_TEXT: /* a digit each and a space between */
-        if (available >= 2 * (bytes / element) - 1) return 0;
+        if (available >= 2 * (bytes / element_size) - 1) return 0;
         return fail(STATUS_INPUT,
                     "%s: holds %" PRIu64 " characters of text, too few for %" PRIu64
                     " numbers; the header is wrong or the file is cut",
-                    path, available, bytes / element);
+                    path, available, bytes / element_size);
     case ENCODING_HEX:
         if (available / 2 >= bytes) return 0;
         return fail(STATUS_INPUT,
@@ -79,7 +79,8 @@ static int check_stream(const source *from, const char *path, const unsigned cha
     return unpack_prove(path, from->encoding, in, in_bytes, needed);
 }
 
-/* How many bytes to skip of what the stream gives; where the data ends it, it is counted first. */
+/* *skip: bytes to skip of what the stream unpacks to. Where the data ends the stream, it is unpacked once to be
+ * counted. */
 static int find_stream_skip(const source *from, const char *path, const unsigned char *in, size_t in_bytes,
                             uint64_t bytes, uint64_t *skip) {
     enum { BEFORE_MOST = 256 << 20 }; /* a file of a few bytes may unpack for hours */
@@ -190,7 +191,7 @@ static int open_part(const source *from, const char *path, dataset *out, mapping
     return from->files.count ? data_names_open(from->header_path, path, out, m) : dataset_map(out, path, m);
 }
 
-/* Brings one file's part of the stored array; *more: whether more follows it. */
+/* Copies one file's part of the stored array to `to`; *more: whether the file holds more after it. */
 static int take_part(const source *from, const char *path, const unsigned char *in, size_t in_bytes, int element,
                      unsigned char *to, uint64_t bytes, int *more) {
     uint64_t skip;
@@ -216,7 +217,7 @@ static int is_packed(const source *from) {
     return from->encoding == ENCODING_DEFLATE || from->encoding == ENCODING_BZIP2;
 }
 
-/* Checks one file or, where `to` is given, brings its part of the stored array. */
+/* Checks one file or, where `to` is given, copies its part of the stored array there. */
 static int load_part(const source *from, const char *path, const layout *l, uint64_t bytes, unsigned char *to,
                      dataset *out) {
     mapping m;
@@ -257,7 +258,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
     return dataset_keep(out, samples);
 }
 
-/* One raw file: nothing is copied where the samples can be used as they lie. */
+/* Loads one raw file. Where the samples can be used where they lie, nothing is copied. */
 static int load_raw(const source *from, const char *path, const layout *l, dataset *out) {
     mapping m;
     uint64_t start = 0;
@@ -299,7 +300,7 @@ static int check_file_count(const source *from) {
                 files, expected);
 }
 
-/* All of the image but where it lies, and its samples. */
+/* Fills the image, except its matrix and its samples. */
 static void describe(const source *from, const layout *l, dataset *out) {
     dataset_block *block = out->blocks;
     dataset_field *field = block->fields;

@@ -12,22 +12,22 @@
 #include "layout.h"
 #include "unpack.h"
 
-enum { SKIP_FROM_END = -1 }; /* less by n: n bytes follow the data */
+enum { SKIP_FROM_END = -1 }; /* SKIP_FROM_END - n: n bytes follow the data */
 
 typedef struct source {
     const char *header_path;
     encoding encoding;
-    data_names files;    /* none: the data follows the header, in the same file, */
-    uint64_t start;      /* here */
-    int64_t line_skip;   /* lines to skip, in each file, then */
-    int64_t byte_skip;   /* bytes; SKIP_FROM_END and below: the data ends the file (raw only) */
-    int64_t stream_skip; /* the same of what a compressed stream unpacks to */
+    data_names files;  /* none: the data follows the header in the same file */
+    uint64_t start;    /* in that file: where it follows */
+    int64_t line_skip; /* lines to skip in each file */
+    int64_t byte_skip; /* bytes to skip after these lines; SKIP_FROM_END and below: the data ends the file (raw only) */
+    int64_t stream_skip; /* the same of the bytes that a compressed stream unpacks to */
     const axes *axes;    /* with several files: each holds the first axes_per_file axes, or a part of the last */
     int64_t axes_per_file;
 } source;
 
-/* Fills an image that has begun, but for where it lies: samples and their owner, type, sizes, frames; with a notice
- * where files hold more than is used. */
+/* Fills an image that dataset_image_begin has made, except its matrix: samples and their memory, type, sizes, frames. A
+ * notice says where files hold more than is used. */
 int source_load(const source *from, const layout *l, dataset *out);
 
 #endif

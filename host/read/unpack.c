@@ -22,8 +22,7 @@ static const struct {
 };
 
 int unpack_check(const char *path, encoding packed, size_t packed_bytes, uint64_t unpacked_bytes) {
-    if (!packers[packed].unpack)
-        return library_missing(packers[packed].library, path, packers[packed].holds, "unpack it");
+    if (!packers[packed].unpack) return library_fail(packers[packed].library, path, packers[packed].holds, "unpack it");
     return unpack_ratio_check(path, packed_bytes, unpacked_bytes, packers[packed].limit);
 }
 

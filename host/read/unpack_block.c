@@ -14,7 +14,7 @@ static int unpack_zlib(const char *path, const unsigned char *in, uint64_t in_by
     return unpack(path, ENCODING_DEFLATE, in, (size_t)in_bytes, 0, out, bytes, NULL);
 }
 
-/* Of VTK's compressors; of zlib's, unpack.h knows what it needs and how well it packs. */
+/* VTK's compressors. For zlib, unpack.h has the library and the limit. */
 static const struct {
     const char *compressor;
     enum library library;
@@ -38,7 +38,7 @@ packing packing_of(const char *compressor) {
 int unpack_block_check(const char *path, packing packed, uint64_t packed_bytes, uint64_t unpacked_bytes) {
     if (packed == PACKING_ZLIB) return unpack_check(path, ENCODING_DEFLATE, (size_t)packed_bytes, unpacked_bytes);
     if (!packings[packed].unpack)
-        return library_missing(packings[packed].library, path, packings[packed].is, "write it with another compressor");
+        return library_fail(packings[packed].library, path, packings[packed].is, "write it with another compressor");
     return unpack_ratio_check(path, packed_bytes, unpacked_bytes, packings[packed].limit);
 }
 

@@ -7,8 +7,8 @@
 
 enum { UNPACK_CHUNK = 1 << 30 };
 
-/* Where the next unpacked bytes go: first into a scratch buffer, then into the result, then one more byte of scratch,
- * so that the end of the stream, with its check sum, is seen. */
+/* Where unpacked bytes go: skipped ones into a scratch buffer, then those wanted into the result, then one more byte
+ * into the scratch buffer. Asking for this one makes the library read the stream's end, with its check sum. */
 typedef struct target {
     unsigned char scratch[65536];
     unsigned char *out;
@@ -17,16 +17,16 @@ typedef struct target {
     int is_counted;       /* the stream may end before what is wanted */
 } target;
 
-/* STATUS_INPUT, with the text for packed data that a library finds damaged. */
+/* STATUS_INPUT, with the message for packed data that a library finds damaged. */
 int unpack_damaged(const char *path, const char *detail);
 
 /* Room for the next bytes. */
 unsigned char *target_room(target *t, uint64_t *room);
 
-/* So many have come. Returns 1 where more came than was wanted. */
+/* Notes that `count` bytes came. Returns 1 where that is more than was wanted. */
 int target_took(target *t, uint64_t count);
 
-/* The stream has ended where it should; before all that was wanted. */
+/* The stream has ended: stream_ended allows that where bytes are only counted, stream_ends_early fails. */
 int stream_ended(const char *path, const target *t, uint64_t wanted);
 int stream_ends_early(const char *path, uint64_t got, uint64_t wanted);
 

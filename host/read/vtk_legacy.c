@@ -3,7 +3,7 @@
  * structured and unstructured grids
  *
  * Source: VTK's file formats document, and its vtkDataReader and descendants where that is silent: keywords in any
- * case, ASPECT_RATIO for SPACING, EXTENT in place of DIMENSIONS, BLANKING (0 hides a point), CELL_DATA of flat grids
+ * case, ASPECT_RATIO for SPACING, EXTENT for DIMENSIONS, BLANKING (0 hides a point), CELL_DATA of flat grids
  * with a cell per square. First comes the geometry, then attributes of points and cells; once these begin the geometry
  * is fixed, and each of its sections may appear once.
  */
@@ -59,11 +59,11 @@ static int read_version(legacy *r) {
 static int read_kind(legacy *r) {
     static const struct {
         const char *name;
-        enum grid_kind kind;
-    } kinds[] = {{"STRUCTURED_POINTS", GRID_UNIFORM},
-                 {"RECTILINEAR_GRID", GRID_RECTILINEAR},
-                 {"STRUCTURED_GRID", GRID_CURVILINEAR},
-                 {"UNSTRUCTURED_GRID", GRID_UNSTRUCTURED}};
+        enum block_kind kind;
+    } kinds[] = {{"STRUCTURED_POINTS", BLOCK_UNIFORM},
+                 {"RECTILINEAR_GRID", BLOCK_RECTILINEAR},
+                 {"STRUCTURED_GRID", BLOCK_CURVILINEAR},
+                 {"UNSTRUCTURED_GRID", BLOCK_UNSTRUCTURED}};
     char word[LEGACY_WORD];
     int status = legacy_need(r, "DATASET", word);
     if (status) return status;
@@ -94,7 +94,7 @@ static int read_header(legacy *r) {
 
 /* ------------------------------------------------------------------------------------------------------ geometry */
 
-/* Coordinates in their own precision; integers of 32 bits and more become doubles. */
+/* Coordinates in the precision of the file; integers of 32 bits and more become doubles. */
 static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t components, coordinates *out) {
     void *values = NULL;
     uint64_t unfit = 0;
@@ -104,7 +104,7 @@ static int read_coordinates(legacy *r, const char *what, int64_t count, int64_t 
     const int is_narrow = type == LEGACY_BIT || (type < SAMPLE_TYPE_COUNT && !type_is_wide((tc_type)type));
     const int wanted = is_narrow ? TC_F32 : TC_F64;
     if ((status = legacy_array(r, what, type, count, components, wanted, &values, &unfit))) return status;
-    const int is_real = element_is_real(type); /* of integers the unfit ones are rounded */
+    const int is_real = element_is_real(type); /* unfit integers are only rounded */
     if (unfit && is_real)
         return legacy_fail(r, "has %" PRIu64 " numbers in %s that are not finite; correct them", unfit, what);
     if (wanted == TC_F32)
@@ -175,10 +175,10 @@ static int read_blanking(legacy *r) {
 }
 
 enum {
-    IMAGES = 1 << GRID_UNIFORM,
-    RECTILINEAR = 1 << GRID_RECTILINEAR,
-    CURVILINEAR = 1 << GRID_CURVILINEAR,
-    UNSTRUCTURED = 1 << GRID_UNSTRUCTURED,
+    IMAGES = 1 << BLOCK_UNIFORM,
+    RECTILINEAR = 1 << BLOCK_RECTILINEAR,
+    CURVILINEAR = 1 << BLOCK_CURVILINEAR,
+    UNSTRUCTURED = 1 << BLOCK_UNSTRUCTURED,
     STRUCTURED = IMAGES | RECTILINEAR | CURVILINEAR
 };
 
@@ -224,7 +224,7 @@ static int count_structured(legacy *r) {
             return legacy_fail(r, "has DIMENSIONS of more than 2^63 points; it is damaged");
         if (b->dims[a] > 1) cells *= b->dims[a] - 1;
     }
-    if (b->kind == GRID_CURVILINEAR && (!has_points(b) || b->point_count != points))
+    if (b->kind == BLOCK_CURVILINEAR && (!has_points(b) || b->point_count != points))
         return legacy_fail(r, "has %" PRId64 " POINTS, but DIMENSIONS of %" PRId64, b->point_count, points);
     b->point_count = points;
     b->cell_count = cells;
@@ -233,20 +233,20 @@ static int count_structured(legacy *r) {
 
 static int check_geometry(legacy *r) {
     dataset_block *b = r->block;
-    if (b->kind == GRID_UNSTRUCTURED) return has_points(b) ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
+    if (b->kind == BLOCK_UNSTRUCTURED) return has_points(b) ? legacy_check_cells(r) : legacy_fail(r, "has no POINTS");
     int status = count_structured(r);
     if (status) return status;
     for (int a = 0; a < 3; a++) {
         b->matrix[a][a] = r->spacing[a]; /* of images alone, as the defaults are */
         b->matrix[a][3] = r->origin[a];
-        if (b->kind == GRID_RECTILINEAR && r->axis_counts[a] != b->dims[a])
+        if (b->kind == BLOCK_RECTILINEAR && r->axis_counts[a] != b->dims[a])
             return legacy_fail(r, "has %" PRId64 " coordinates along axis %d, but DIMENSIONS of %" PRId64 " there",
                                r->axis_counts[a], a + 1, b->dims[a]);
     }
     if (r->blanking_count && r->blanking_count != b->point_count)
         return legacy_fail(r, "has BLANKING of %" PRId64 " points, but %" PRId64 " points", r->blanking_count,
                            b->point_count);
-    return b->kind == GRID_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
+    return b->kind == BLOCK_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
 }
 
 /* POINT_DATA and CELL_DATA, which end the geometry. */

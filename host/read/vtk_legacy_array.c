@@ -1,9 +1,10 @@
 /*
  * vtk_legacy_array.c - arrays of VTK legacy files: read, converted or passed over; see vtk_legacy_array.h
  *
- * Types and their sizes as VTK's own reader has them: long is 8 bytes, vtkIdType 4, bits are packed, the first in the
- * highest bit. As there, what follows the name of a type is no matter: "int1" and "int32" are int, "float32" is float.
- * Of names that tell 8 bytes that is taken as said, and those of unsigned types that VTK does not know.
+ * Types and their sizes are those of VTK's own reader: long has 8 bytes, vtkIdType 4; bits are packed, the first in the
+ * highest bit. As there, what follows the name of a type does not matter: "int1" and "int32" are int, "float32" is
+ * float. Beyond VTK, names that tell of 8 bytes are taken at their word, and so are unsigned types that VTK does not
+ * know.
  */
 #include "vtk_legacy_array.h"
 
@@ -57,7 +58,7 @@ int legacy_type(legacy *r, int *type) {
                        word);
 }
 
-/* Bytes that so many values take in the file at least. */
+/* Fails where the rest of the file is too short for so many values, at the fewest bytes that they can take. */
 static int check_room(const legacy *r, const char *what, int type, uint64_t count) {
     uint64_t needed, left = r->size - r->at;
     if (type >= LEGACY_STRING || !r->is_binary)
@@ -159,7 +160,7 @@ static int read_converted(legacy *r, const char *what, int type, uint64_t count,
         n = count - done < BLOCK ? count - done : BLOCK;
         int status = legacy_decode(r, what, type, n, values.bytes);
         if (status) return status;
-        /* The caller has a place for it. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
+        /* The caller gives unfit where it converts. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
         *unfit += legacy_convert(type, values.bytes, n, wanted, to + done * element_bytes(wanted));
     }
     return 0;

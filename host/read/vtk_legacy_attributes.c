@@ -1,8 +1,8 @@
 /*
  * vtk_legacy_attributes.c - fields at the points and cells of VTK legacy files; see vtk_legacy_attributes.h
  *
- * Texts and variants are left out, colour tables passed over. VTK's ghost flags do not become fields: hidden points,
- * and cells that are hidden or that another piece owns, are missing data.
+ * Arrays of strings and variants are left out, colour tables are skipped. VTK's ghost flags do not become fields:
+ * points that they hide, and cells that they hide or that another piece owns, are missing.
  */
 #include "vtk_legacy_attributes.h"
 
@@ -47,8 +47,8 @@ static int add_field(legacy *r, const char *name, int type, int64_t components, 
     return 0;
 }
 
-/* The bits of ghost flags that make a point or cell missing; 0 for arrays of another kind. Before version 4 there were
- * levels, above 0 for what another piece owns. */
+/* The bits of ghost flags that make a point or cell missing; 0 where the array has no such flags. Files before version
+ * 4 have levels instead, above 0 where another piece owns the cell. */
 static unsigned ghost_mask(const legacy *r, const char *name, int type, int64_t components) {
     if (type != TC_U8 || components != 1) return 0;
     if (!strcmp(name, "vtkGhostType")) return r->section == SECTION_CELLS ? HIDDEN_OR_DUPLICATE_CELL : HIDDEN_POINT;

@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Splits the counts from r->links, where the `size` numbers lie, count and points of each cell in turn. */
+/* r->links holds `size` numbers, the count and the points of each cell in turn: separates them into offsets and links.
+ */
 static int split_counted(legacy *r, int64_t cell_count, int64_t size) {
     int64_t at = 0, used = 0;
     for (int64_t cell = 0; cell < cell_count; cell++) {
@@ -107,7 +108,7 @@ static int compare_points(const void *a, const void *b) {
     return *x < *y ? -1 : *x > *y;
 }
 
-/* Writes each point of the cell's faces once; no more than the stream of the faces had numbers. How many. */
+/* Writes each point of the cell's faces once, and returns how many: fewer than the stream of its faces had numbers. */
 static int64_t put_face_points(const dataset_block *b, int64_t cell, int64_t *to) {
     int64_t begin = b->face_offsets[b->cell_faces[cell]], end = b->face_offsets[b->cell_faces[cell + 1]], used = 0;
     memcpy(to, b->face_points + begin, (size_t)(end - begin) * sizeof *to);
@@ -117,7 +118,7 @@ static int64_t put_face_points(const dataset_block *b, int64_t cell, int64_t *to
     return used;
 }
 
-/* Polyhedra lose the stream of their faces, which is taken first, for the points of these. */
+/* Takes the streams of faces; then the points of these faces replace the streams in r->links. */
 static int take_polyhedra(legacy *r) {
     dataset_block *b = r->block;
     int64_t used = 0;

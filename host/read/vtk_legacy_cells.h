@@ -8,7 +8,7 @@
 int legacy_cells(legacy *r);
 int legacy_cell_types(legacy *r);
 
-/* Once all sections of the geometry are read: every index checked, the faces of polyhedra taken. */
+/* To be called when all sections of the geometry are read: checks every index, takes the faces of polyhedra. */
 int legacy_check_cells(legacy *r);
 
 #endif

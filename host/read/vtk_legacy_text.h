@@ -1,10 +1,10 @@
 /*
- * vtk_legacy_text.h - what the parts of the VTK legacy reader share: the place in the file, and its words
+ * vtk_legacy_text.h - what the parts of the VTK legacy reader share: the position in the file, and its words
  *
  * A file is a sequence of words separated by white space, keywords in any case, with arrays of values between them: in
  * ASCII files more words, in BINARY ones big-endian bytes that begin after the line feed that ends the line of the last
- * word. Nothing is taken from behind the end of the mapped bytes, which no zero byte ends. Memory for an array is asked
- * for only after its size was compared with what is left of the file.
+ * word. Nothing is read beyond the mapped bytes; no zero byte ends them. Memory for an array is asked for only after
+ * its size was compared with the rest of the file.
  */
 #ifndef VTK_LEGACY_TEXT_H
 #define VTK_LEGACY_TEXT_H
@@ -39,18 +39,18 @@ typedef struct legacy {
     int64_t axis_counts[3];
     int64_t type_count;               /* cell types read */
     int64_t offset_count, link_count; /* of the arrays of cells */
-    int64_t *offsets, *links;         /* these: cell_offsets and cell_points before they are checked */
+    int64_t *offsets, *links;         /* cell_offsets and cell_points of the block, before they are checked */
     uint8_t *blanked_points, *blanked_cells;
     int64_t blanking_count; /* of the section BLANKING */
 } legacy;
 
-/* STATUS_INPUT, with file, text and place. */
+/* STATUS_INPUT, with a message of the file, the formatted text, and the line or byte. */
 int legacy_fail(const legacy *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The next word; "" at the end of the file. Control characters become '?'. STATUS_INPUT where it is too long. */
 int legacy_word(legacy *r, char word[LEGACY_WORD]);
 
-/* The same where one is needed: `what` names it. */
+/* The next word, which has to exist: `what` names it in the message. */
 int legacy_need(legacy *r, const char *what, char word[LEGACY_WORD]);
 
 /* Takes the next word if it is the keyword. */

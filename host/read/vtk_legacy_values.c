@@ -176,7 +176,7 @@ int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t
         return unfit;                                                                                                  \
     } while (0)
 
-/* A case of a switch over stored types for integers whose values the wanted type all has. */
+/* A case of a switch over stored types, for integers that the wanted type holds all of. */
 #define CONVERT_CASE(wanted_type, type, c_type)                                                                        \
     case type:                                                                                                         \
         CONVERT(c_type, wanted_type, 1);
@@ -209,8 +209,8 @@ static uint64_t to_i64(int type, const uint8_t *from, uint64_t count, void *to) 
     }
 }
 
-/* Coordinates and 64-bit integers. Of the latter the range is checked before the way back: what rounds to the power of
- * two itself would overflow there. */
+/* Coordinates and 64-bit integers. An integer is converted back to see whether a double holds it; the range is checked
+ * first, as one that rounds up to the power of two would overflow on the way back. */
 static uint64_t to_f64(int type, const uint8_t *from, uint64_t count, void *to) {
     uint64_t unfit = 0;
     switch (type) {

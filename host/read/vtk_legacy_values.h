@@ -8,10 +8,10 @@
  * a binary file must be there; packed bits begin at a byte. */
 int legacy_decode(legacy *r, const char *what, int type, uint64_t count, uint8_t *to);
 
-/* Native values of a stored type as others; see legacy_array. How many the wanted type cannot hold. */
+/* Converts native values of a stored type to the wanted type, as legacy_array says. Returns how many are unfit. */
 uint64_t legacy_convert(int type, const uint8_t *from, uint64_t count, int wanted, void *to);
 
-/* Passes over a number of text, or over a word that is none. */
+/* Skips a number of text, or a word that is none. */
 int legacy_skip_number(legacy *r, const char *what);
 
 #endif

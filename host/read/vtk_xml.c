@@ -2,9 +2,8 @@
  * vtk_xml.c - serial VTK XML files: ImageData (.vti), RectilinearGrid (.vtr), StructuredGrid (.vts) and
  * UnstructuredGrid (.vtu); see vtk_xml_header.h
  *
- * Every piece that holds points becomes a block. Values that lie in the file as this machine wants them, which is so
- * for aligned raw appended data, are used in the mapped file; all others are copied. Arrays of no use here (FieldData,
- * strings) are left where they are.
+ * Every piece that holds points becomes a block. Aligned raw appended data in this machine's byte order is used in the
+ * mapped file; all other values are copied. Arrays of no use here (FieldData, strings) are skipped.
  */
 #include "vtk_xml_data.h"
 
@@ -57,7 +56,7 @@ static void note_more(xml_reader *r, const xml_values *v) {
 
 /* ---------------------------------------------------------------------------------------------------------- values */
 
-/* Brings values of the stored type: in the file, or in memory of the dataset. */
+/* *values: those of the array, in the stored type, in the mapped file or in memory of the dataset. */
 static int load_opened(xml_reader *r, xml_values *v, const void **values) {
     int status = 0;
     *values = v->in_place;
@@ -79,7 +78,8 @@ static int load_stored(xml_reader *r, const xml_array *array, uint64_t count, co
     return status ? status : load_opened(r, &v, values);
 }
 
-/* Doubles as they are stored; what is made of them takes half their bytes, so sharing them is bounded as copying is. */
+/* Doubles as they are stored. Later float32 coordinates are made of them, half their size: so sharing them is bounded
+ * as copying is. */
 static int load_doubles(xml_reader *r, const xml_array *array, uint64_t count, const double **values) {
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
@@ -87,7 +87,7 @@ static int load_doubles(xml_reader *r, const xml_array *array, uint64_t count, c
     return status ? status : load_opened(r, &v, (const void **)values);
 }
 
-/* Brings values of the stored type for a short while; *owned, or NULL, is to be freed. */
+/* The same for a short while: *owned is to be freed; NULL where the values are in the mapped file. */
 static int load_briefly(xml_reader *r, const xml_array *array, uint64_t count, const unsigned char **values,
                         void **owned) {
     xml_values v;
@@ -122,7 +122,7 @@ static void convert_to_doubles(double *to, const unsigned char *from, uint64_t c
     switch (element) { STORED_INTEGERS(TO_DOUBLE) }
 }
 
-/* Those of 64 bits without sign that exceed the signed ones become negative. */
+/* Unsigned ones of 64 bits that int64 cannot hold become negative. */
 static void convert_to_integers(int64_t *to, const unsigned char *from, uint64_t count, int element) {
     switch (element) { STORED_INTEGERS(TO_INTEGER) }
 }
@@ -158,12 +158,12 @@ static int load_integers(xml_reader *r, const xml_array *array, uint64_t count, 
 
 /* --------------------------------------------------------------------------------------------------------- geometry */
 
-/* The array of that number in a section; NULL: there are fewer. Any name will do where it is NULL. */
+/* The array of that index among those of a section and, unless it is NULL, of a name. NULL: there are fewer. */
 static const xml_array *find_array(const xml_reader *r, const xml_piece *piece, enum xml_section section,
-                                   const char *name, int number) {
+                                   const char *name, int index) {
     for (size_t i = 0; i < piece->array_count; i++) {
         const xml_array *array = &r->doc.arrays[piece->first_array + i];
-        if (array->section == section && (!name || strcmp(name, r->doc.names + array->name) == 0) && !number--)
+        if (array->section == section && (!name || strcmp(name, r->doc.names + array->name) == 0) && !index--)
             return array;
     }
     return NULL;
@@ -226,7 +226,7 @@ static int load_cell_types(xml_reader *r, const xml_array *array, uint64_t count
     return status;
 }
 
-/* The file has where each cell ends; the first begins at 0. */
+/* The file tells where each cell ends; the first begins at 0. */
 static int load_cell_offsets(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
@@ -298,8 +298,8 @@ static int load_face_stream(xml_reader *r, const xml_piece *piece, dataset_block
     return status ? status : cell_faces_take(r->out, block, r->doc.path, stream, (uint64_t)length, ends, 0);
 }
 
-/* And from 9.4 on: each cell's list of faces, which stand for themselves. Lengths that make no sense are more than the
- * next array has. */
+/* Faces from version 9.4 on: each cell has a list of them, and they are stored once. A count that makes no sense is
+ * larger than the next array, whose loading fails then. */
 static int load_face_lists(xml_reader *r, const xml_piece *piece, dataset_block *block) {
     face_lists l = {0};
     int status = load_indices(r, piece, "polyhedron_offsets", piece->cell_count, &l.cell_ends);
@@ -387,7 +387,7 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     return status;
 }
 
-/* 64-bit integers become doubles where they lie; the nearest where none is the same. */
+/* 64-bit integers become doubles, in the same memory; the nearest where no double is equal. */
 static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
     uint64_t count;
     const void *values;
@@ -447,10 +447,10 @@ static int load_block(xml_reader *r, const xml_piece *piece, const char *names) 
     memcpy(block->dims, piece->dims, sizeof block->dims);
     memcpy(block->first, piece->first, sizeof block->first);
     int status = 0;
-    if (block->kind == GRID_UNIFORM) status = set_matrix(r, block);
-    if (block->kind == GRID_RECTILINEAR) status = load_axes(r, piece, block);
-    if (block->kind == GRID_CURVILINEAR || block->kind == GRID_UNSTRUCTURED) status = load_points(r, piece, block);
-    if (block->kind == GRID_UNSTRUCTURED && !status) status = load_cells(r, piece, block);
+    if (block->kind == BLOCK_UNIFORM) status = set_matrix(r, block);
+    if (block->kind == BLOCK_RECTILINEAR) status = load_axes(r, piece, block);
+    if (block->kind == BLOCK_CURVILINEAR || block->kind == BLOCK_UNSTRUCTURED) status = load_points(r, piece, block);
+    if (block->kind == BLOCK_UNSTRUCTURED && !status) status = load_cells(r, piece, block);
     return status ? status : load_fields(r, piece, names, block);
 }
 

@@ -7,8 +7,8 @@
  *     compressed       blocks, bytes of an unpacked block, bytes of the unpacked last block where it is shorter (else
  *                      0), bytes of each packed block; then the packed blocks
  *
- * In base64, header and data are encoded together where not compressed, else each on its own, padding between them.
- * Every group of four characters is decoded by itself here, so that both read alike, however writers join them.
+ * In base64, header and data are encoded together where they are not compressed; else each is encoded on its own, with
+ * padding between them. Here every group of four characters is decoded by itself, so that both forms are read alike.
  */
 #include "vtk_xml_data.h"
 
@@ -24,8 +24,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often the bytes of a file may be decoded: arrays can share data, as VTK's time steps do, but a small file must
- * not ask for much memory that way. */
+/* How often the bytes of a file may be decoded. Arrays can share data, as those of VTK's time steps do; without a bound
+ * a small file could ask for much memory. */
 enum { SHARED_MOST = 16 };
 
 enum { SHARE_BYTES = 256 << 10 }; /* unpacked, for which another thread is worth while */
@@ -103,7 +103,7 @@ static int source_take(xml_source *s, unsigned char *to, uint64_t bytes) {
     return 1;
 }
 
-/* At most so many bytes are left. */
+/* An upper bound of the bytes that are left. */
 static uint64_t source_left(const xml_source *s) {
     uint64_t stored = (uint64_t)(s->end - s->at);
     return s->is_base64 ? stored / 4 * 3 + s->kept_count : stored;
@@ -153,12 +153,12 @@ static int note_unpacked(xml_document *doc, const xml_values *v) {
 static int open_plain(xml_document *doc, xml_values *v) {
     int good = 1;
     uint64_t held = take_number(doc, &v->data, &good);
-    size_t element = element_bytes(v->array->element);
+    size_t element_size = element_bytes(v->array->element);
     if (!good) return is_cut(v);
     if (held < v->bytes) return has_too_few(v, held);
     if (source_left(&v->data) < v->bytes) return has_too_few(v, source_left(&v->data));
     v->more = held > v->bytes;
-    if (!v->data.is_base64 && (!doc->swapped || element == 1) && (uintptr_t)v->data.at % element == 0) {
+    if (!v->data.is_base64 && (!doc->swapped || element_size == 1) && (uintptr_t)v->data.at % element_size == 0) {
         v->in_place = v->data.at;
         return 0;
     }
@@ -254,17 +254,17 @@ int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_
 typedef struct block_work {
     pthread_mutex_t lock;
     xml_values *v;
-    unsigned char *to; /* where the next block goes */
-    uint64_t left;     /* bytes that are still wanted */
-    int status;        /* of the first failure, and its text: each thread has its own last text */
-    char text[1024];
+    unsigned char *to;  /* where the next block goes */
+    uint64_t left;      /* bytes that are still wanted */
+    int status;         /* of the first failure, */
+    char message[1024]; /* and its message, as each thread records its own */
 } block_work;
 
 /* Called under the lock. */
 static void note_failure(block_work *w, int status) {
     if (w->status) return;
     w->status = status;
-    snprintf(w->text, sizeof w->text, "%s", failure_text());
+    snprintf(w->message, sizeof w->message, "%s", failure_text());
 }
 
 /* Takes the next block; base64 is decoded to `packed`. Returns 0 where there is none. */
@@ -309,12 +309,12 @@ static void unpack_blocks(void *shared) {
 static int take_blocks(xml_values *v, unsigned char *to) {
     block_work w = {.lock = PTHREAD_MUTEX_INITIALIZER, .v = v, .to = to, .left = v->bytes};
     parallel_run(v->bytes / SHARE_BYTES + 1, unpack_blocks, &w);
-    if (w.status) return fail(w.status, "%s", w.text);
+    if (w.status) return fail(w.status, "%s", w.message);
     return w.left ? fail(STATUS_FAILED, "%s: no memory for its compressed blocks", v->label) : 0;
 }
 
 int vtk_xml_take(xml_values *v, void *to) {
-    size_t element = element_bytes(v->array->element);
+    size_t element_size = element_bytes(v->array->element);
     int status = 0;
     if (!v->count) return 0;
     if (v->array->format == FORMAT_TEXT) return vtk_xml_take_text(v->array, v->count, v->label, to, &v->more);
@@ -322,7 +322,7 @@ int vtk_xml_take(xml_values *v, void *to) {
         status = take_blocks(v, to);
     else if (!source_take(&v->data, to, v->bytes))
         status = is_cut(v);
-    if (status || !v->doc->swapped || element == 1) return status;
+    if (status || !v->doc->swapped || element_size == 1) return status;
     layout swap = {.element = (int)element_sample_type(v->array->element), /* of 64-bit integers the bytes alone */
                    .swapped = 1,
                    .dims = {(int64_t)v->count, 1, 1},

@@ -4,7 +4,7 @@
 
 #include "vtk_xml_header.h"
 
-/* Bytes of the file, or what base64 in it stands for, taken in order. Copies go on from the same place. */
+/* Bytes of the file, or what base64 in it stands for, taken in order. A copy of it continues from the same position. */
 typedef struct xml_source {
     const unsigned char *at, *end;
     int is_base64;
@@ -31,8 +31,8 @@ typedef struct xml_values {
  * them. STATUS_INPUT where it cannot. */
 int vtk_xml_open(xml_document *doc, const xml_array *array, uint64_t count, xml_values *out);
 
-/* To be called before so many bytes that lie in the file as they are wanted are copied nevertheless. STATUS_INPUT where
- * arrays have asked for the same bytes of the file too often. */
+/* To be called before values that could be used in place are copied nevertheless. STATUS_INPUT where arrays have asked
+ * for the same bytes of the file too often. */
 int vtk_xml_note_taken(xml_document *doc, const xml_values *values, uint64_t bytes);
 
 /* Writes values->bytes bytes: values of the stored type in this machine's byte order. */

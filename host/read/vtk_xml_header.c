@@ -1,9 +1,9 @@
 /*
- * vtk_xml_header.c - the XML of a VTK file, through expat: pieces and the place of every array; see vtk_xml_header.h
+ * vtk_xml_header.c - the XML of a VTK file, through expat: pieces, and where each array lies; see vtk_xml_header.h
  *
  * Expat sees the file up to the start tag of its appended data, which need not be XML, and never a document type:
- * without one there are no entities of the file's own. Text of arrays is not copied: the places of the tags around it
- * tell where in the file it lies.
+ * without one the file cannot define entities. The text of arrays is not copied: the tags around it tell where in the
+ * file it lies.
  */
 #include "vtk_xml_header.h"
 
@@ -41,7 +41,7 @@ typedef struct header_parser {
     const char *grid_name; /* of the element that holds the pieces */
     int depth, in_grid, in_piece, in_array;
     enum xml_section section;
-    const unsigned char *text; /* where the array's text begins that has not ended yet */
+    const unsigned char *text; /* where the text of the array begins that is being parsed */
     int status, has_ended;
 } header_parser;
 
@@ -57,7 +57,7 @@ static int wrong_attribute(const xml_document *doc, const char *element, const c
                 name, is, should);
 }
 
-/* Up to 2^31 in size, which bounds all that is made of them. */
+/* Indices have 32 bits, so that a size is at most 2^32. */
 static int parse_extent(const xml_document *doc, const char *text, xml_piece *piece) {
     int64_t extent[6];
     piece->point_count = piece->cell_count = 1;
@@ -133,11 +133,11 @@ static int refuse_type(const xml_document *doc, const char *type) {
 static int begin_file(header_parser *p, const char *name, const char **attributes) {
     static const struct {
         const char *name;
-        enum grid_kind kind;
-    } types[] = {{"ImageData", GRID_UNIFORM},
-                 {"RectilinearGrid", GRID_RECTILINEAR},
-                 {"StructuredGrid", GRID_CURVILINEAR},
-                 {"UnstructuredGrid", GRID_UNSTRUCTURED}};
+        enum block_kind kind;
+    } types[] = {{"ImageData", BLOCK_UNIFORM},
+                 {"RectilinearGrid", BLOCK_RECTILINEAR},
+                 {"StructuredGrid", BLOCK_CURVILINEAR},
+                 {"UnstructuredGrid", BLOCK_UNSTRUCTURED}};
     xml_document *doc = p->doc;
     const char *type = attribute(attributes, "type"), *order = attribute(attributes, "byte_order"),
                *header = attribute(attributes, "header_type"), *compressor = attribute(attributes, "compressor");
@@ -170,7 +170,7 @@ static int begin_grid(header_parser *p, const char **attributes) {
     xml_document *doc = p->doc;
     int status = 0;
     p->in_grid = 1;
-    if (doc->kind != GRID_UNIFORM) return 0;
+    if (doc->kind != BLOCK_UNIFORM) return 0;
     if ((status = parse_vector(doc, attributes, "Origin", doc->origin, 3)) ||
         (status = parse_vector(doc, attributes, "Spacing", doc->spacing, 3)))
         return status;
@@ -185,7 +185,7 @@ static int begin_piece(header_parser *p, const char **attributes) {
     xml_piece *piece = &pieces[doc->piece_count++];
     *piece = (xml_piece){.first_array = doc->array_count};
     p->in_piece = 1;
-    if (doc->kind != GRID_UNSTRUCTURED) return parse_extent(doc, attribute(attributes, "Extent"), piece);
+    if (doc->kind != BLOCK_UNSTRUCTURED) return parse_extent(doc, attribute(attributes, "Extent"), piece);
     int status = parse_count(doc, attributes, "NumberOfPoints", &piece->point_count);
     return status ? status : parse_count(doc, attributes, "NumberOfCells", &piece->cell_count);
 }
@@ -197,7 +197,7 @@ static enum xml_section find_section(const char *name) {
     return SECTION_NONE;
 }
 
-static int find_element(const char *type) {
+static int find_element_type(const char *type) {
     for (int element = 0; type && element < ELEMENT_COUNT; element++)
         if (strcmp(type, stored_types[element].vtk_xml) == 0) return element;
     return type && strcmp(type, "Bit") == 0 ? TC_U8 : -1;
@@ -224,7 +224,7 @@ static int begin_array(header_parser *p, const char **attributes) {
     if (!arrays) return no_memory(doc);
     doc->arrays = arrays;
     xml_array *array = &arrays[doc->array_count++];
-    *array = (xml_array){.section = p->section, .element = find_element(type), .components = 1};
+    *array = (xml_array){.section = p->section, .element = find_element_type(type), .components = 1};
     array->is_bits = type && strcmp(type, "Bit") == 0;
     snprintf(array->type, sizeof array->type, "%s", type ? type : "");
     doc->pieces[doc->piece_count - 1].array_count++;

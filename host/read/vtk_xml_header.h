@@ -3,7 +3,7 @@
  *
  * The parts of the reader:
  *
- *     vtk_xml_header.c   the XML, through expat: pieces and the place of every array in the file
+ *     vtk_xml_header.c   the XML, through expat: pieces, and where each array lies in the file
  *     vtk_xml_data.c     the values of one array: base64, blocks, compression, byte order
  *     vtk_xml_text.c     the values of one array written as text
  *     vtk_xml.c          datasets made of them
@@ -45,11 +45,11 @@ typedef struct xml_piece {
 typedef struct xml_document {
     const char *path;
     const unsigned char *bytes, *end; /* of the file */
-    enum grid_kind kind;
+    enum block_kind kind;
     int swapped;         /* the other byte order than this machine's */
     size_t header_bytes; /* 4 or 8: of each number in front of binary data */
     char compressor[40]; /* "" where binary data is not compressed */
-    packing packed;      /* what that makes */
+    packing packed;      /* by this compressor */
     double origin[3], spacing[3], direction[9];
 
     const unsigned char *appended; /* first byte of the appended data; NULL: none */

@@ -51,7 +51,7 @@ static int parse_real(const char *word, double *value) {
     return end != word && !*end;
 }
 
-/* Its absolute value. */
+/* Parses an integer as absolute value and sign. */
 static int parse_integer(const char *word, int *is_negative, uint64_t *value) {
     *is_negative = *word == '-';
     *value = 0;
@@ -77,8 +77,8 @@ static int store_number(const char *word, int element, unsigned char *to) {
     return 1;
 }
 
-/* Stores a word, or the first of several numbers in it, of which *at is then moved back to the second. What the word is
- * cut to is no end of a number. Returns 0 where it is none. */
+/* Stores the number that a word is. Where the word has several numbers, stores the first and moves *at back to the
+ * second. A number that ends where a long word is cut is not known whole. Returns 0 where there is no number. */
 static int take_word(const char *word, size_t length, int is_cut, int element, unsigned char *to,
                      const unsigned char **at) {
     char number[WORD_BYTES];

@@ -1,12 +1,12 @@
-/* world.h - where a uniform grid lies: its matrix from index space to world, and the command line's word on it */
+/* world.h - where a uniform grid lies: its matrix from index space to world, as the command line may change it */
 #ifndef WORLD_H
 #define WORLD_H
 
 #include "request.h"
 
-/* To be called with the matrix that a header makes, whatever is wrong with it. Spacing of the request becomes the
- * length of the columns, whose directions stay; a column without a direction gets its axis's. Origin becomes the last
- * column. STATUS_INPUT unless the matrix is then finite and invertible. */
+/* Applies the request to the matrix of a header, which may be any: --spacing becomes the length of the columns, whose
+ * directions stay; a column without a direction gets that of its axis. --origin becomes the last column. STATUS_INPUT
+ * unless the matrix is then finite and invertible. */
 int world_place(const read_request *request, const char *path, double matrix[3][4]);
 
 /* Whether the matrix is finite and invertible. */

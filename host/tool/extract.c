@@ -103,12 +103,12 @@ static int read_and_start(job *j) {
 static void describe_input(job *j) {
     const dataset_block *first = j->data.blocks;
     j->report.block_count = j->data.block_count;
-    j->report.is_complex = first->kind == GRID_UNSTRUCTURED;
+    j->report.is_complex = first->kind == BLOCK_UNSTRUCTURED;
     j->report.field = j->field.name;
     j->report.type = j->field.blocks[0].type;
     j->report.point_count = 0;
     for (int n = 0; n < j->data.block_count; n++) j->report.point_count += (uint64_t)first[n].point_count;
-    j->report.dims = j->data.block_count == 1 && first->kind != GRID_UNSTRUCTURED ? first->dims : NULL;
+    j->report.dims = j->data.block_count == 1 && first->kind != BLOCK_UNSTRUCTURED ? first->dims : NULL;
     j->report.cell_count = j->blocks.cell_count;
     j->report.tetrahedron_count = j->blocks.tetrahedron_count;
 }

@@ -54,12 +54,12 @@ static json_t *suggestions_json(const facts *f) {
 
 /* The block that has dims, first, spacing and matrix: the only one, if it is structured; else NULL. */
 static const dataset_block *only_block(const dataset *d) {
-    return d->block_count == 1 && d->blocks->kind != GRID_UNSTRUCTURED ? d->blocks : NULL;
+    return d->block_count == 1 && d->blocks->kind != BLOCK_UNSTRUCTURED ? d->blocks : NULL;
 }
 
 static void add_grid(json_t *object, const dataset_block *b) {
     double spacing[3];
-    int is_uniform = b && b->kind == GRID_UNIFORM;
+    int is_uniform = b && b->kind == BLOCK_UNIFORM;
     for (int axis = 0; axis < 3; axis++) spacing[axis] = is_uniform ? describe_spacing(b, axis) : 0.0;
     json_object_set_new(object, "dims", b ? integers_json(b->dims) : json_null());
     json_object_set_new(object, "first", b ? integers_json(b->first) : json_null());

@@ -104,13 +104,13 @@ static int uniform_needs_f64(const dataset_block *b) {
 }
 
 static int needs_f64(const dataset_block *b) {
-    if (b->kind == GRID_UNIFORM) return uniform_needs_f64(b);
-    return b->kind == GRID_RECTILINEAR ? b->axes[0].f64 || b->axes[1].f64 || b->axes[2].f64 : b->points.f64 != NULL;
+    if (b->kind == BLOCK_UNIFORM) return uniform_needs_f64(b);
+    return b->kind == BLOCK_RECTILINEAR ? b->axes[0].f64 || b->axes[1].f64 || b->axes[2].f64 : b->points.f64 != NULL;
 }
 
 /* World coordinate r of a structured grid's point. */
 static double place(const dataset_block *b, const int64_t p[3], int r, int is_f64) {
-    if (b->kind == GRID_RECTILINEAR) return coordinate_at(b->axes[r], p[r]);
+    if (b->kind == BLOCK_RECTILINEAR) return coordinate_at(b->axes[r], p[r]);
     return is_f64 ? uniform_f64(b, p, r) : (double)uniform_f32(b, p, r);
 }
 
@@ -123,7 +123,7 @@ static void put_place(const complex_file *file, uint64_t n, double value) {
 
 /* Positions of a block's points, to the file's from number n on. */
 static void place_points(const dataset_block *b, const complex_file *file, uint64_t n) {
-    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) {
+    if (b->kind == BLOCK_CURVILINEAR || b->kind == BLOCK_UNSTRUCTURED) {
         for (int64_t at = 0; at < 3 * b->point_count; at++) put_place(file, n++, coordinate_at(b->points, at));
         return;
     }

@@ -1,11 +1,13 @@
 /*
  * decimal.c - numbers as text
  *
- * A float that is a whole number below 10^9 is written as that. Others are scaled by a power of ten to nine digits
- * before the point, in double, and rounded. Nine digits tell all floats apart: decimals of nine digits lie at most 1e-8
- * apart (relatively), floats at least 5.9e-8, so the nearest decimal is less than 0.6e-8 from the float and the float
- * is the nearest to it by far. Rounding errors of the scaling, some 1e-16, change nothing in that; only the ninth digit
- * of a tie, exact or near, may differ from printf's. Subnormal floats lie further apart still.
+ * A float that is a whole number below 10^9 is written as one. Others are scaled by a power of ten, in double, to nine
+ * digits before the point, and rounded.
+ *
+ * Nine digits tell all floats apart. Relative to their size, decimals of nine digits lie at most 1e-8 apart and floats
+ * at least 5.9e-8, subnormal ones more. So the nearest decimal is less than 0.6e-8 from the float, and no other float
+ * is as near to it. The scaling rounds by some 1e-16, which does not matter here; only where two decimals are about
+ * equally near may the ninth digit differ from printf's.
  */
 #include "decimal.h"
 
@@ -67,7 +69,7 @@ static char *put_bytes(char *to, const char *text, int length) {
     return to + length;
 }
 
-/* digits[0..count) with a point behind the first whole of them; zeros fill up what is missing before the point. */
+/* Writes count digits, the point after the first exponent + 1 of them; zeros fill up to the point. */
 static char *put_fixed(char *to, const char *digits, int count, int exponent) {
     int whole = exponent + 1;
     if (whole <= 0) {
@@ -119,6 +121,6 @@ char *put_double_text(char *to, double value) {
         length = snprintf(text, sizeof text, "%.*g", digits, value);
         if (strtod(text, NULL) == value) break;
     }
-    for (int n = 0; n < length; n++) to[n] = (char)(text[n] == ',' ? '.' : text[n]); /* some locales' point */
+    for (int n = 0; n < length; n++) to[n] = (char)(text[n] == ',' ? '.' : text[n]); /* the point of some locales */
     return to + length;
 }

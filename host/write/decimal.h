@@ -6,8 +6,8 @@
 
 enum { DECIMAL_MOST = 16, DECIMAL_F64_MOST = 24 }; /* bytes of the longest number */
 
-/* Nine significant digits, trailing zeros dropped: what reads back as the same float, like "%.9g". "nan", "inf" and
- * "-inf" for what is no number. Returns the address behind; no zero byte is appended. */
+/* At most nine significant digits, as "%.9g": they read back as the same float. "nan", "inf" and "-inf" for what is no
+ * number. Returns the address behind the text; no zero byte is appended. */
 char *put_float_text(char *to, float value);
 
 /* The fewest digits, 15 to 17, that read back as the same double. Slower: for meshes that need it. */

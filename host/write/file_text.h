@@ -1,7 +1,7 @@
 /*
  * file_text.h - text of a header that grows as it is made
  *
- * Errors are sticky, as those of an output: after a failure everything is dropped, and the text cannot be had.
+ * Errors are sticky, as those of an output: after the first one has_failed is set, and nothing is added any more.
  */
 #ifndef FILE_TEXT_H
 #define FILE_TEXT_H

@@ -15,16 +15,16 @@
 
 #define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY, OBJ or VTP file, triangles in an STL file */
 
-/* Vertices that follow each other and whose coordinates in the file differ from those of the mesh alike. */
+/* Consecutive vertices whose coordinates in the file differ from those of the mesh by the same offset. */
 typedef struct shown_part {
     uint64_t vertex_end; /* the first vertex behind them */
     double offset[3];    /* coordinates of the file minus those of the mesh */
 } shown_part;
 
-/* A mesh as the file shows it; what encoders take their records from. */
+/* A mesh as the file shows it: what encoders make their records of. */
 typedef struct shown_mesh {
     const tc_mesh_data *mesh;
-    int soup; /* vertices of the file are the triangles' corners, one after the other */
+    int soup; /* every triangle has vertices of its own: vertex v of the file is corner v of the triangles */
     const mesh_field *fields;
     int field_count; /* 0 where the format takes none */
     const shown_part *parts;

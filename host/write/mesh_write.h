@@ -17,7 +17,7 @@
  *
  *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
  *     has_doubles  of coordinates; fields and normals are those of vertices
- *     counts       what the format's 32 bits have to suffice for, vertices or triangles
+ *     counts       what the format counts in 32 bits, vertices or triangles
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
@@ -30,16 +30,16 @@
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
 /* clang-format on */
 
-/* Values on the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...; there,
- * characters other than letters and digits become '_'. In both, names that are taken, by arrays that the writer makes
- * itself (x, nx, Points, Normals, ...) or by a field before, get '_' behind them. */
+/* Values at the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...;
+ * characters other than letters and digits become '_'. In both formats '_' is appended to a name that another field has
+ * already, or an array that the writer makes itself (x, nx, Points, Normals, ...). */
 typedef struct mesh_field {
     const char *name;
     int components;
     const float *values; /* tuple by tuple */
 } mesh_field;
 
-/* Vertices, and triangles of them alone, that follow each other in a mesh: one block's. */
+/* One block's part of a mesh: consecutive vertices, and consecutive triangles that use no others. */
 typedef struct mesh_part {
     uint64_t vertex_count, triangle_count;
     double origin[3]; /* that their positions are relative to */
@@ -50,38 +50,38 @@ typedef struct mesh_write_options {
     int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
     const mesh_field *fields;
     int field_count;
-    const mesh_part *parts; /* of all vertices, in turn; with part_count 0 the mesh is one, with the mesh's origin */
+    const mesh_part
+        *parts; /* in the order of vertices; together all of them. part_count 0: one, with the mesh's origin */
     int part_count;
-    const double *origin_at;    /* three world coordinates that become 0, 0, 0 in the file; NULL: world coordinates, of
-                                   STL, which holds float32 alone, those relative to the mesh's origin */
+    const double *origin_at;    /* the world position that becomes 0, 0, 0 in the file. NULL: the file has world
+                                   coordinates; STL, which has only float32, has them relative to the mesh's origin */
     struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
                                    at once */
 } mesh_write_options;
 
-/* 0 where path's ending (or options->format) is a format that can be written, with the fields that are given, else
- * STATUS_USAGE with a text that names the formats: to be called before any work is done. options may be NULL here and
- * below. */
+/* To be called before any work is done. 0 where path's ending, or options->format, is a format that is written and
+ * takes the fields; else STATUS_USAGE with a message that names the formats. options may be NULL here and below. */
 int mesh_write_check(const char *path, const mesh_write_options *options);
 
 /* Whether the format has coordinates in double precision. */
 int mesh_write_has_doubles(const char *path, const mesh_write_options *options);
 
-/* Whether the format, one that is known, has no place for normals of vertices. */
+/* Whether the format is known and has no normals of vertices. */
 int mesh_write_lacks_normals(const char *path, const mesh_write_options *options);
 
-/* Whether the file would hold coordinates relative to the mesh's origin, because its format has no other. */
+/* Whether the file would hold coordinates relative to the mesh's origin, as its format has float32 alone. */
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /* Writes positions (in double precision where they differ from those of the mesh by an offset), normals (where the mesh
  * has them and the format takes them: PLY, OBJ, VTP) and triangles, whose indices must be below vertex_count. Returns 0
- * or STATUS_FAILED / STATUS_USAGE with its text (failure.h). */
+ * or STATUS_FAILED / STATUS_USAGE with its message (failure.h). */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */
 typedef struct complex_file {
     uint64_t point_count;
     const float *points;      /* x, y, z each */
-    const double *points_f64; /* in place of points */
+    const double *points_f64; /* instead of points */
     uint64_t tetrahedron_count;
     const uint32_t *tetrahedra;         /* 4 points each */
     const struct dataset_field *fields; /* of the points: host/read/dataset.h */

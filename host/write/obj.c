@@ -1,8 +1,8 @@
 /*
  * obj.c - Wavefront OBJ, text
  *
- *     v x y z          every vertex, numbers that read back as the same floats, or doubles where the mesh lies far from
- *                      zero
+ *     v x y z          every vertex: numbers that read back as the same floats, or, where the mesh lies far from zero,
+ *                      as the same doubles
  *     vn x y z         every normal, where the mesh has them
  *     f a b c          indices from 1; a//a b//b c//c with normals
  */
@@ -16,7 +16,7 @@ enum {
     FACE_MOST = 2 + 3 * (1 + 10 + 2 + 10),
 };
 
-/* What lines of vectors are made from. */
+/* What the lines of vectors are made of. */
 typedef struct vector_lines {
     const shown_mesh *shown;
     const char *keyword;

@@ -162,7 +162,7 @@ void output_finish(output *o) {
 
 int output_close(output *o) {
     output_finish(o);
-    if (truncation_seen()) o->error = EFAULT; /* what was written may be zeros in place of an input file */
+    if (truncation_seen()) o->error = EFAULT; /* zeros may have been written where pages of an input file were lost */
     if (o->temporary && !o->error && rename(o->temporary, o->path) != 0) o->error = errno;
     int status = o->error ? fail_write(o->name, o->error) : 0;
     if (truncation_seen()) status = truncation_status();

@@ -1,9 +1,9 @@
 /*
  * output.h - a file that appears under its name only when it is complete
  *
- * Data goes to .NAME.XXXXXX.tmp in the final folder and is renamed by output_close; such files that a process left when
- * it was killed are removed by the next output of that name. Errors are sticky: after the first one, everything is
- * dropped, and output_close tells of it; writers need not look.
+ * Data goes to .NAME.XXXXXX.tmp in the final folder, which output_close renames. Where a process was killed and left
+ * such a file, the next output of that name removes it. Errors are sticky: after the first one everything is dropped,
+ * and output_close reports it, so that writers need not look.
  *
  *     output o;
  *     int status = output_open(&o, path);
@@ -17,7 +17,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { OUTPUT_BLOCK = 1 << 20 }; /* bytes of records that are written at once: so many that taking turns costs little */
+enum {
+    OUTPUT_BLOCK = 1 << 20
+}; /* bytes of records that a thread writes in one turn; large, so that turns cost little */
 
 typedef struct output {
     const char *name; /* as the caller gave it, for messages; borrowed */
@@ -42,10 +44,10 @@ int output_is_dash(const char *path);
  * text: to be called before any work is done. */
 int output_check(const char *path);
 
-/* Returns 0 or STATUS_FAILED with its text; the output then needs no output_close. path must outlive the output. */
+/* Returns 0 or STATUS_FAILED with its message; the output then needs no output_close. path must outlive the output. */
 int output_open(output *o, const char *path);
 
-/* The file will have so many bytes: room for all at once costs a third less than piece by piece. */
+/* Announces how many bytes the file will have: room for all at once costs a third less than piece by piece. */
 void output_expect(output *o, uint64_t bytes);
 
 /* Writes what lies in memory as it should lie in the file. */
@@ -57,7 +59,7 @@ void output_records(output *o, uint64_t count, size_t record_bytes, output_encod
 /* Ends writing; the file stays under its temporary name. A failure is told by output_close. */
 void output_finish(output *o);
 
-/* Puts the file under its name, or removes it. Returns 0 or a status with its text: STATUS_FAILED, or STATUS_INPUT
+/* Puts the file under its name, or removes it. Returns 0 or a status with its message: STATUS_FAILED, or STATUS_INPUT
  * where an input file became shorter meanwhile. */
 int output_close(output *o);
 

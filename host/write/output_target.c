@@ -5,10 +5,10 @@
  *   "-", what standard output is       through that descriptor: its offset and append mode hold
  *   exists, not a regular file         opened and written directly
  *   regular file, or nothing yet       temporary file in the same folder, renamed over it at the end; an existing
- *                                      file's permission bits are kept; of a symbolic link the target is replaced, or
- *                                      made where it does not exist
+ *                                      file's permission bits are kept; where the name is a symbolic link, its target
+ *                                      is replaced or made
  * The temporary file is made by open(O_EXCL), not mkstemp, so that the kernel applies the umask. It is locked (flock)
- * until it has been renamed or removed. One that nobody locks was left by a process that was killed, and goes when the
+ * until it has been renamed or removed. So one that nobody locks was left by a killed process; it is removed when the
  * same name is written again.
  */
 #include "output_target.h"
@@ -33,7 +33,7 @@ static int is_standard_output(const struct stat *target) {
            standard.st_ino == target->st_ino;
 }
 
-/* Length of the folder's part of path, with its slash. */
+/* The length of the folder in the path, with its slash. */
 static size_t folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
@@ -43,7 +43,7 @@ static int is_same_file(const struct stat *a, const struct stat *b) {
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* Removes the file if it is ours and nobody has locked it: its writer is gone. */
+/* Removes the file if it is ours and nobody has locked it, since its writer is gone then. */
 static void remove_left(const char *path) {
     struct stat opened, named;
     int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -76,8 +76,8 @@ static void remove_all_left(const char *path) {
     free(name);
 }
 
-/* Locks the fresh file: 0 where somebody took it for one that was left, and has removed it, or will. File systems
- * without locks remove none. */
+/* Locks the fresh file. Returns 0 where another process has taken it for one that was left, and removes it. On a file
+ * system without locks nothing is removed, as remove_left needs the lock. */
 static int lock_temporary(output *o) {
     struct stat opened, named;
     if (flock(o->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return 0;

@@ -4,12 +4,12 @@
 
 #include "output.h"
 
-/* Opens what o->path names, which may be replaced by another text from malloc; fills fd, and temporary and lock where
- * there is a file to be renamed. Returns 0 or an errno; the rest of *o is to be released in any case. */
+/* Opens what o->path names; o->path may become another string from malloc. Fills fd and, where a file is to be renamed,
+ * temporary and lock. Returns 0 or an errno; *o is to be released in any case. */
 int output_target_open(output *o);
 
-/* What opening the file would fail with, as far as that can be seen: an errno, 0 for nothing. *path, from malloc, may
- * be replaced. */
+/* The errno that opening the file would fail with, as far as that can be told; 0: none. *path, from malloc, may become
+ * another string from malloc. */
 int output_target_obstacle(char **path);
 
 #endif

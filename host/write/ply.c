@@ -5,8 +5,8 @@
  *                                                bytes, where the mesh lies far from zero
  *     face    list uchar uint vertex_indices     13 bytes
  *
- * Indices are uint: int would end at 2^31, and readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
- * both by their declared type.
+ * Indices are uint, as int would end at 2^31. Readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
+ * either.
  *
  * Vertices without normals and fields lie in the mesh as they lie in the file.
  */
@@ -32,7 +32,7 @@ static int is_taken(const char *name, const property_name *names, size_t count) 
     return 0;
 }
 
-/* A word of letters, digits and '_' that no other property has. */
+/* Makes names[count] of the field's name: letters, digits and '_', other than every name before it. */
 static void name_property(const mesh_field *field, int component, property_name *names, size_t count) {
     char *name = names[count];
     size_t length = 0;
@@ -107,7 +107,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
     const shown_mesh *s = source;
     for (uint64_t t = first; t < end; t++) {
         uint32_t corners[3];
-        for (uint64_t k = 0; k < 3; k++) corners[k] = corner_vertex(s, 3 * t + k);
+        for (uint64_t c = 0; c < 3; c++) corners[c] = corner_vertex(s, 3 * t + c);
         *to++ = 3;
         to = put_bytes(to, corners, sizeof corners);
     }

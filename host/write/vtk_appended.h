@@ -39,8 +39,8 @@ typedef struct vtk_file {
  * becomes '_'. What it points to is borrowed until vtk_file_write. */
 void vtk_array_add(vtk_file *f, const vtk_array *array);
 
-/* The same for a field, whose name is somebody else's choice: where it is one of `own`, names of the arrays that the
- * writer makes itself (NULL behind the last), or that of a field before, it gets '_' behind. */
+/* The same for a field, whose name the writer does not choose: '_' is appended to it where it is one of `own`, the
+ * names of the arrays that the writer makes itself (NULL after the last), or that of an earlier field. */
 void vtk_field_add(vtk_file *f, const vtk_array *array, const char *const *own);
 
 /* Writes the whole file and frees what the vtk_file holds. */

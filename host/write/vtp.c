@@ -2,8 +2,8 @@
  * vtp.c - VTK XML PolyData (.vtp): points, normals and fields of the points, triangles
  *
  * Source: "VTK XML Formats" in VTK's file format documentation. Arrays lie as raw appended data, one after the other;
- * connectivity and offsets are Int32 where that is enough, else Int64. What lies in the mesh as it lies in the file is
- * written from there.
+ * connectivity and offsets are Int32 where that is enough, else Int64. Arrays that lie in the mesh as they should lie
+ * in the file are written without a copy.
  */
 #include "formats.h"
 #include "vtk_appended.h"

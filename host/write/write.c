@@ -18,7 +18,7 @@ enum counted { COUNTS_vertices, COUNTS_triangles };
 typedef struct format {
     const char *name;
     void (*write)(output *o, const shown_mesh *s);
-    int takes_fields;
+    int has_fields;
     int has_doubles; /* for coordinates */
     int has_normals; /* of vertices */
     enum counted counted;
@@ -30,7 +30,7 @@ static const format formats[] = {MESH_FORMATS(FORMAT)};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
 
-/* Values per vertex, of all fields together: a vertex must fit a block of the output many times. */
+/* Values per vertex, of all fields together: a block of the output has to hold many vertices. */
 enum { FIELD_VALUES_MOST = 4096 };
 
 static const format *find_format(const char *name) {
@@ -44,9 +44,9 @@ static int is_any(const format *f) {
     return 1;
 }
 
-static int takes_fields(const format *f) { return f->takes_fields; }
+static int has_fields(const format *f) { return f->has_fields; }
 
-/* "ply, vtp, stl or obj": those that are meant, with a text before each. */
+/* Makes "ply, vtp, stl or obj" of the formats that are meant, with `before` in front of each name. */
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
     size_t used = 0;
     const format *last = formats;
@@ -71,9 +71,9 @@ static int check_fields(const char *path, const mesh_write_options *options, con
     int64_t values = 0;
     char list[LIST_BYTES];
     if (!options || !options->field_count) return 0;
-    if (!f->takes_fields)
+    if (!f->has_fields)
         return fail(STATUS_USAGE, "%s: %s holds no fields on vertices; write %s", path, f->name,
-                    list_formats(takes_fields, "", list));
+                    list_formats(has_fields, "", list));
     for (int i = 0; i < options->field_count; i++) values += options->fields[i].components;
     if (values <= FIELD_VALUES_MOST) return 0;
     return fail(STATUS_USAGE, "%s: %lld values per vertex are more than the %d that are written; name fewer fields",
@@ -137,7 +137,8 @@ int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mes
     return is_far(mesh, options) && !f->has_doubles && !(options && options->origin_at);
 }
 
-/* What is added to the positions of each part; *parts from malloc, also where it fails. */
+/* Fills s->parts: what is added to the positions of each part. *parts, from malloc, is the caller's to free, also after
+ * a failure. */
 static int set_offsets(shown_mesh *s, const mesh_write_options *options, const format *f, shown_part **parts) {
     const mesh_part whole = {.vertex_count = s->mesh->vertex_count,
                              .origin = {s->mesh->origin[0], s->mesh->origin[1], s->mesh->origin[2]}};

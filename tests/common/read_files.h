@@ -176,7 +176,7 @@ static inline int image_read(const read_request *request, read_image *v) {
     }
     if (status) return status;
     const dataset_block *b = v->d.blocks;
-    EXPECT(v->d.block_count == 1 && b->kind == GRID_UNIFORM && b->field_count == 1 && !*b->fields->name,
+    EXPECT(v->d.block_count == 1 && b->kind == BLOCK_UNIFORM && b->field_count == 1 && !*b->fields->name,
            "%s: an image of %d blocks", request->path, v->d.block_count);
     EXPECT(b->point_count == b->dims[0] * b->dims[1] * b->dims[2] &&
                b->cell_count == (b->dims[0] - 1) * (b->dims[1] - 1) * (b->dims[2] - 1),

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Static and dynamic analysis of all that runs on the host.
 
-    hygiene.py SOURCE BUILD [STAGE...]
+    hygiene.py SOURCE BUILD [STAGE...] [--base COMMIT]
 
+format       clang-format 14 would change no file of C
+clang        clang compiles everything without a warning
+changed      clang-tidy over the files of host/ that differ from COMMIT, and over those that include them
 warnings     gcc and clang compile everything without a warning
 tidy         clang-tidy over host/, with the checks of .clang-tidy
 cppcheck     over host/, with the suppressions of cppcheck.txt
@@ -12,9 +15,10 @@ failed       those of them that failed the last time
 threads      a context per thread under the thread sanitizer, the library's own threads included
 valgrind     memcheck over tests without a device, and over the tool with the reference engine
 
-Without a stage: all but readers and failed, which are parts of sanitizers. Builds go to BUILD/hygiene, where they are kept; BUILD
-is a finished build, whose compile commands, tool and cache of kernels are used. Prints what was found, and writes
-hygiene.json where TETRACUBES_RESULTS names a folder; failed, alone, renews its figure there. Exit status 77: a program that a stage needs is not installed.
+Without a stage: warnings to valgrind, but for readers and failed, which are parts of sanitizers. Builds go to
+BUILD/hygiene, where they are kept; BUILD is a finished build, whose compile commands, tool and cache of kernels are
+used; the first three stages need none. Prints what was found, and writes hygiene.json where TETRACUBES_RESULTS
+names a folder; failed, alone, renews its figure there. Exit status 77: a program that a stage needs is not installed.
 """
 import argparse
 import json
@@ -37,6 +41,8 @@ SANITIZED = "address,undefined"
 LEAKS = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1:use_sigaltstack=0",
          "LSAN_OPTIONS": f"suppressions='{Path(__file__).resolve().parent / 'leaks.txt'}':print_suppressions=0",
          "UBSAN_OPTIONS": "print_stacktrace=1"}  # use_sigaltstack: PoCL's threads have stacks of their own for signals
+FORMAT_VERSION = "14"
+FORMATTED = ["bench", "host", "kernels", "tests"]
 FAULTS = r"(?:AddressSanitizer|LeakSanitizer|ThreadSanitizer)|runtime error:"
 
 
@@ -44,7 +50,7 @@ class Hygiene:
     """The stages; each returns the number of faults, having printed them."""
 
     def __init__(self, arguments, part):
-        self.source, self.build, self.part = arguments.source, arguments.build, part
+        self.source, self.build, self.base, self.part = arguments.source, arguments.build, arguments.base, part
         self.work = self.build / "hygiene"
         self.jobs = str(len(os.sched_getaffinity(0)))
         self.no_device = tempfile.mkdtemp(prefix="tetracubes-no-vendors-")
@@ -81,23 +87,54 @@ class Hygiene:
 
     # ------------------------------------------------------------------------------------------------------ static
 
-    def warnings(self):
+    def format(self):
+        files = [path for folder in FORMATTED for path in sorted((self.source / folder).rglob("*"))
+                 if path.suffix in (".c", ".h", ".inc", ".cl")]
+        done = run([clang_format(), "--dry-run", "--Werror", *files], check=False)
+        found = sorted(set(re.findall(r"^(.*?):\d+:\d+: error: ", done.stdout, re.MULTILINE)))
+        for path in found:
+            print(f"clang-format -i {path}")
+        return len(found) + (done.returncode != 0 and not found)
+
+    def clang(self):
+        return self.warnings(("clang",))
+
+    def warnings(self, compilers=("gcc", "clang")):
         count = 0
-        for compiler in ("gcc", "clang"):
+        for compiler in compilers:
             folder = self.configure(f"warnings-{compiler}", "-DCMAKE_BUILD_TYPE=Release", compiler=compiler)
             self.compile(folder, ["clean"])
             done = self.compile(folder)
             found = re.findall(r"^.*(?:warning|error):.*$", done.stdout, re.MULTILINE)
             print("\n".join(found))
             count += len(found) + (done.returncode != 0 and not found)
-        self.part.figure("compiler warnings, gcc and clang", count)
+        self.part.figure(f"compiler warnings, {' and '.join(compilers)}", count)
         return count
 
-    def tidy(self):
+    def changed_sources(self):
+        """The sources of host/ that differ from the base, with those that include a header that does."""
+        git = ["git", "-C", self.source]
+        bases = [self.base, run([*git, "merge-base", "HEAD", "origin/HEAD"], check=False).stdout.strip(), "HEAD~1"]
+        base = next(name for name in bases if name and not run([*git, "cat-file", "-e", f"{name}^{{commit}}"],
+                                                               check=False).returncode)
+        names = run([*git, "diff", "--name-only", "--diff-filter=d", base, "--", "host"]).stdout.split()
+        headers = {Path(name).name for name in names if Path(name).suffix in (".h", ".inc")}
+        includes = re.compile(r'^#include "(?:.*/)?(.*)"$', re.MULTILINE)
+        sources = {path for path in (self.source / "host").rglob("*.c")
+                   if headers & set(includes.findall(path.read_text(encoding="utf-8")))}
+        sources |= {self.source / name for name in names if name.endswith(".c")}
+        print(f"{len(sources)} sources differ from {base}, or include what does")
+        return sorted(sources)
+
+    def changed(self):
+        sources = self.changed_sources()
+        return self.tidy(f"^(?:{'|'.join(re.escape(str(path)) for path in sources)})$") if sources else 0
+
+    def tidy(self, files=None):
         folder = self.configure("warnings-clang", "-DCMAKE_BUILD_TYPE=Release", compiler="clang")
         self.compile(folder)
         tidy = shutil.which("run-clang-tidy") or shutil.which("run-clang-tidy-14")
-        done = run([tidy, "-p", folder, "-j", self.jobs, "-quiet", f"^{re.escape(str(self.source))}/host/.*"],
+        done = run([tidy, "-p", folder, "-j", self.jobs, "-quiet", files or f"^{re.escape(str(self.source))}/host/.*"],
                    check=False)
         text = re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
         found = sorted(set(re.findall(r"^.*(?:warning|error):.*$", text, re.MULTILINE)))
@@ -207,7 +244,16 @@ def tool_commands():
     return commands
 
 
-NEEDS = {"warnings": ["clang"], "tidy": ["clang", "clang-tidy"], "cppcheck": ["cppcheck"], "valgrind": ["valgrind"]}
+def clang_format():
+    """The one whose style the tree has: other versions lay some lines out in another way. None: it is not installed."""
+    for name in (f"clang-format-{FORMAT_VERSION}", "clang-format"):
+        if shutil.which(name) and tool_version(name)[1].split(".")[0] == FORMAT_VERSION:
+            return name
+    return None
+
+
+NEEDS = {"clang": ["clang"], "changed": ["clang", "clang-tidy", "git"], "warnings": ["clang"],
+         "tidy": ["clang", "clang-tidy"], "cppcheck": ["cppcheck"], "valgrind": ["valgrind"]}
 ALL = ["warnings", "tidy", "cppcheck", "sanitizers", "threads", "valgrind"]
 
 
@@ -216,9 +262,13 @@ def main():
     parser.add_argument("source", type=Path)
     parser.add_argument("build", type=Path)
     parser.add_argument("stages", nargs="*", default=ALL)
+    parser.add_argument("--base", metavar="COMMIT", help="of stage changed; default: where origin's branch was "
+                                                         "left, or the commit before this one")
     arguments = parser.parse_args()
     arguments.source, arguments.build = arguments.source.resolve(), arguments.build.resolve()
     missing = {name for stage in arguments.stages for name in NEEDS.get(stage, []) if not shutil.which(name)}
+    if "format" in arguments.stages and not clang_format():
+        missing.add(f"clang-format {FORMAT_VERSION}")
     if missing:
         print(f"skipped: not installed: {', '.join(sorted(missing))}")
         return 77

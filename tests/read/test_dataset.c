@@ -28,7 +28,7 @@ static const read_request any_field = {.path = "f", .component = COMPONENT_OPEN}
 static dataset_block *add_block(dataset *d, int64_t nx, int64_t ny, int64_t nz) {
     dataset_block *b;
     if (dataset_block_add(d, &b)) abort();
-    b->kind = GRID_UNIFORM;
+    b->kind = BLOCK_UNIFORM;
     b->dims[0] = nx, b->dims[1] = ny, b->dims[2] = nz;
     b->point_count = nx * ny * nz;
     b->cell_count = (nx - 1) * (ny - 1) * (nz - 1);
@@ -53,7 +53,7 @@ static void make_unstructured(dataset *d, dataset_block *b) {
                         i + (order[n] & 1) + nx * (j + (order[n] >> 1 & 1) + ny * (k + (order[n] >> 2)));
             }
     offsets[cell] = 8 * cell;
-    b->kind = GRID_UNSTRUCTURED;
+    b->kind = BLOCK_UNSTRUCTURED;
     b->cell_types = types;
     b->cell_offsets = offsets;
     b->cell_points = points;
@@ -213,7 +213,7 @@ static void flat_cells_do_not_count(void) {
     dataset_block *b;
     point_field p;
     if (dataset_block_add(&d, &b)) abort();
-    *b = (dataset_block){.kind = GRID_UNSTRUCTURED, .point_count = 5, .cell_count = 2};
+    *b = (dataset_block){.kind = BLOCK_UNSTRUCTURED, .point_count = 5, .cell_count = 2};
     b->cell_types = types;
     b->cell_offsets = offsets;
     b->cell_points = points;
@@ -360,7 +360,7 @@ static void images_are_datasets(void) {
     dataset d;
     const char *path = file_of("a.nrrd", nrrd, sizeof nrrd - 1);
     EXPECT(read_file(path, NULL, &d) == 0, "%s", failure_text());
-    EXPECT(d.block_count == 1 && d.blocks[0].kind == GRID_UNIFORM && d.blocks[0].field_count == 1, "not one image");
+    EXPECT(d.block_count == 1 && d.blocks[0].kind == BLOCK_UNIFORM && d.blocks[0].field_count == 1, "not one image");
     EXPECT(d.blocks[0].point_count == 24 && d.blocks[0].cell_count == 6, "sizes");
     EXPECT(d.blocks[0].dims[0] == 2 && d.blocks[0].dims[1] == 3 && d.blocks[0].dims[2] == 4, "dimensions");
     EXPECT(d.blocks[0].matrix[1][1] == 1.0 && strcmp(d.format, "NRRD") == 0, "matrix or format");

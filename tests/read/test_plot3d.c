@@ -77,7 +77,7 @@ static void expect_dataset(const variant *v, const char *first, const char *seco
     for (int n = 0; n < d.block_count && n < block_count(v); n++) {
         const dataset_block *block = &d.blocks[n];
         const int64_t *size = block_dims[n];
-        EXPECT(block->kind == GRID_CURVILINEAR && !memcmp(block->dims, size, sizeof block->dims) &&
+        EXPECT(block->kind == BLOCK_CURVILINEAR && !memcmp(block->dims, size, sizeof block->dims) &&
                    block->point_count == size[0] * size[1] * size[2] &&
                    block->cell_count == (size[0] - 1) * (size[1] - 1) * (size[2] - 1),
                "%s: sizes of block %d", describe(v), n);

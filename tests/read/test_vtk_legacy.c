@@ -73,14 +73,14 @@ static void put_cells(bytes *b, int binary, int with_offsets) {
     put_integers(b, binary, 4, cell_types, CELLS);
 }
 
-static void put_geometry(bytes *b, enum grid_kind kind, int binary, int with_offsets) {
+static void put_geometry(bytes *b, enum block_kind kind, int binary, int with_offsets) {
     static const char *const names[] = {"STRUCTURED_POINTS", "RECTILINEAR_GRID", "STRUCTURED_GRID",
                                         "UNSTRUCTURED_GRID"};
     bytes_text(b, "# vtk DataFile Version %s\ntitle\n%s\nDATASET %s\n", with_offsets ? "5.1" : "3.0",
                binary ? "BINARY" : "ASCII", names[kind]);
-    if (kind != GRID_UNSTRUCTURED) bytes_text(b, "DIMENSIONS 3 2 2\n");
-    if (kind == GRID_UNIFORM) bytes_text(b, "ORIGIN 10 20 -30\nSPACING 0.5 2 3\n");
-    for (int a = 0; a < 3 && kind == GRID_RECTILINEAR; a++) {
+    if (kind != BLOCK_UNSTRUCTURED) bytes_text(b, "DIMENSIONS 3 2 2\n");
+    if (kind == BLOCK_UNIFORM) bytes_text(b, "ORIGIN 10 20 -30\nSPACING 0.5 2 3\n");
+    for (int a = 0; a < 3 && kind == BLOCK_RECTILINEAR; a++) {
         int stored = a == 0 ? TC_F32 : a == 1 ? TC_F64 : TC_I16;
         bytes_text(b, "%c_COORDINATES %" PRId64 " %s\n", 'X' + a, grid_dims[a],
                    a == 0   ? "float"
@@ -88,11 +88,11 @@ static void put_geometry(bytes *b, enum grid_kind kind, int binary, int with_off
                             : "short");
         put_values(b, binary, stored, 0, (uint64_t)grid_dims[a]);
     }
-    if (kind >= GRID_CURVILINEAR) {
+    if (kind >= BLOCK_CURVILINEAR) {
         bytes_text(b, "POINTS %d %s\n", POINTS, with_offsets ? "double" : "float");
         put_values(b, binary, with_offsets ? TC_F64 : TC_F32, 0, 3 * POINTS);
     }
-    if (kind == GRID_UNSTRUCTURED) put_cells(b, binary, with_offsets);
+    if (kind == BLOCK_UNSTRUCTURED) put_cells(b, binary, with_offsets);
 }
 
 /* Arrays of every type in FIELD, of one and two components, with SCALARS and VECTORS before them. */
@@ -108,10 +108,10 @@ static void put_attributes(bytes *b, int binary, const char *section, int64_t co
     }
 }
 
-static bytes make_file(enum grid_kind kind, int binary, int with_offsets) {
+static bytes make_file(enum block_kind kind, int binary, int with_offsets) {
     bytes b = {0};
     put_geometry(&b, kind, binary, with_offsets);
-    put_attributes(&b, binary, "CELL_DATA", kind == GRID_UNSTRUCTURED ? CELLS : CUBES);
+    put_attributes(&b, binary, "CELL_DATA", kind == BLOCK_UNSTRUCTURED ? CELLS : CUBES);
     put_attributes(&b, binary, "POINT_DATA", POINTS);
     return b;
 }
@@ -138,47 +138,47 @@ static void expect_cells(const char *what, const dataset_block *b) {
     for (int i = 0; i < CELLS; i++) EXPECT(b->cell_types[i] == cell_types[i], "%s: type of cell %d", what, i);
 }
 
-static void expect_geometry(const char *what, const dataset_block *b, enum grid_kind kind, int with_offsets) {
+static void expect_geometry(const char *what, const dataset_block *b, enum block_kind kind, int with_offsets) {
     static const double matrix[12] = {0.5, 0, 0, 10, 0, 2, 0, 20, 0, 0, 3, -30};
     EXPECT(b->kind == kind && b->point_count == POINTS, "%s: kind %d, %" PRId64 " points", what, (int)b->kind,
            b->point_count);
     EXPECT(!b->blanked_points && !b->blanked_cells, "%s: blanked", what);
-    if (kind != GRID_UNSTRUCTURED)
+    if (kind != BLOCK_UNSTRUCTURED)
         EXPECT(!memcmp(b->dims, grid_dims, sizeof grid_dims) && b->cell_count == CUBES, "%s: dims", what);
-    if (kind == GRID_UNIFORM) EXPECT(!memcmp(b->matrix, matrix, sizeof matrix), "%s: matrix", what);
-    for (int a = 0; a < 3 && kind == GRID_RECTILINEAR; a++)
+    if (kind == BLOCK_UNIFORM) EXPECT(!memcmp(b->matrix, matrix, sizeof matrix), "%s: matrix", what);
+    for (int a = 0; a < 3 && kind == BLOCK_RECTILINEAR; a++)
         for (int64_t i = 0; i < grid_dims[a]; i++)
             EXPECT(coordinate_at(b->axes[a], i) == test_value(a == 0   ? TC_F32
                                                               : a == 1 ? TC_F64
                                                                        : TC_I16,
                                                               (uint64_t)i),
                    "%s: axis %d", what, a);
-    for (int64_t i = 0; i < 3 * POINTS && kind >= GRID_CURVILINEAR; i++)
+    for (int64_t i = 0; i < 3 * POINTS && kind >= BLOCK_CURVILINEAR; i++)
         EXPECT(coordinate_at(b->points, i) == test_value(with_offsets ? TC_F64 : TC_F32, (uint64_t)i),
                "%s: coordinate %d", what, (int)i);
-    if (kind == GRID_UNSTRUCTURED) expect_cells(what, b);
+    if (kind == BLOCK_UNSTRUCTURED) expect_cells(what, b);
 }
 
 static void test_kinds(void) {
-    for (int kind = GRID_UNIFORM; kind <= GRID_UNSTRUCTURED; kind++)
+    for (int kind = BLOCK_UNIFORM; kind <= BLOCK_UNSTRUCTURED; kind++)
         for (int binary = 0; binary < 2; binary++)
             for (int with_offsets = 0; with_offsets < 2; with_offsets++) {
                 char what[64];
                 snprintf(what, sizeof what, "kind %d, binary %d, offsets %d", kind, binary, with_offsets);
-                bytes b = make_file((enum grid_kind)kind, binary, with_offsets);
+                bytes b = make_file((enum block_kind)kind, binary, with_offsets);
                 dataset d;
                 int status = read_bytes(what, b.data, b.size, &d);
                 EXPECT(!status, "%s: status %d: %s", what, status, failure_text());
                 if (!status) {
                     EXPECT(!strcmp(d.format, "VTK legacy") && d.block_count == 1 && !*d.notice, "%s: %s", what,
                            d.notice);
-                    expect_geometry(what, d.blocks, (enum grid_kind)kind, with_offsets);
+                    expect_geometry(what, d.blocks, (enum block_kind)kind, with_offsets);
                     EXPECT(d.blocks->field_count == 2 * (TYPES + 2), "%s: %d fields", what, d.blocks->field_count);
                     expect_attributes(what, &d, 0);
                     expect_attributes(what, &d, 1);
                     dataset_release(&d);
                 }
-                if (with_offsets || kind >= GRID_CURVILINEAR) test_damage(what, &b); /* else the same bytes again */
+                if (with_offsets || kind >= BLOCK_CURVILINEAR) test_damage(what, &b); /* else the same bytes again */
                 bytes_free(&b);
             }
 }
@@ -213,17 +213,17 @@ static void test_in_place(void) {
 
 static const struct {
     const char *file;
-    enum grid_kind kind;
+    enum block_kind kind;
     int64_t dims[3], points, cells;
     const char *field;
     int on_cells, type;
     double low, high; /* to 6 digits */
 } published[] = {
-    {"uniform/ironProt.vtk", GRID_UNIFORM, {68, 68, 68}, 314432, 300763, "scalars", 0, TC_U8, 0, 255},
-    {"uniform/heart.vtk", GRID_UNIFORM, {32, 32, 12}, 12288, 10571, "scalars", 0, TC_F32, 0, 255},
-    {"uniform/RectGrid2.vtk", GRID_RECTILINEAR, {47, 33, 11}, 17061, 14720, "scalars", 0, TC_F32, 0, 10.3964},
+    {"uniform/ironProt.vtk", BLOCK_UNIFORM, {68, 68, 68}, 314432, 300763, "scalars", 0, TC_U8, 0, 255},
+    {"uniform/heart.vtk", BLOCK_UNIFORM, {32, 32, 12}, 12288, 10571, "scalars", 0, TC_F32, 0, 255},
+    {"uniform/RectGrid2.vtk", BLOCK_RECTILINEAR, {47, 33, 11}, 17061, 14720, "scalars", 0, TC_F32, 0, 10.3964},
     {"curvilinear/SampleStructGrid.vtk",
-     GRID_CURVILINEAR,
+     BLOCK_CURVILINEAR,
      {20, 30, 40},
      24000,
      21489,
@@ -232,10 +232,10 @@ static const struct {
      TC_F64,
      0,
      1.30456},
-    {"unstructured/CylinderLinear.vtk", GRID_UNSTRUCTURED, {0}, 465, 1522, "vel_norm", 0, TC_F64, 0, 1.0044},
-    {"unstructured/hexa.vtk", GRID_UNSTRUCTURED, {0}, 12167, 10648, "scalars", 0, TC_F32, 0.753065, 17.3205},
+    {"unstructured/CylinderLinear.vtk", BLOCK_UNSTRUCTURED, {0}, 465, 1522, "vel_norm", 0, TC_F64, 0, 1.0044},
+    {"unstructured/hexa.vtk", BLOCK_UNSTRUCTURED, {0}, 12167, 10648, "scalars", 0, TC_F32, 0.753065, 17.3205},
     {"unstructured/notch_stress_fixed.vtk",
-     GRID_UNSTRUCTURED,
+     BLOCK_UNSTRUCTURED,
      {0},
      3537,
      2192,
@@ -244,14 +244,14 @@ static const struct {
      TC_F64,
      3206.61,
      8.1098e6},
-    {"unstructured/PentaHexa.vtk", GRID_UNSTRUCTURED, {0}, 401, 210, "scalar1", 1, TC_F64, 1, 210},
-    {"unstructured/tetraMesh.vtk", GRID_UNSTRUCTURED, {0}, 55, 160, "scalars", 0, TC_I32, 0, 4},
-    {"unstructured/uGridEx.vtk", GRID_UNSTRUCTURED, {0}, 27, 12, "scalars", 0, TC_F32, 0, 26},
-    {"unstructured/VTKCellTypes.vtk", GRID_UNSTRUCTURED, {0}, 27, 11, "scalars", 1, TC_F32, 0, 10},
-    {"unstructured/blow.vtk", GRID_UNSTRUCTURED, {0}, 687, 1057, "thickness9", 0, TC_F32, 0.126328, 1.14768},
-    {"malformed/visit_issue_20474.vtk", GRID_UNSTRUCTURED, {0}, 18, 4, "d", 0, TC_F32, 3.8, 5},
+    {"unstructured/PentaHexa.vtk", BLOCK_UNSTRUCTURED, {0}, 401, 210, "scalar1", 1, TC_F64, 1, 210},
+    {"unstructured/tetraMesh.vtk", BLOCK_UNSTRUCTURED, {0}, 55, 160, "scalars", 0, TC_I32, 0, 4},
+    {"unstructured/uGridEx.vtk", BLOCK_UNSTRUCTURED, {0}, 27, 12, "scalars", 0, TC_F32, 0, 26},
+    {"unstructured/VTKCellTypes.vtk", BLOCK_UNSTRUCTURED, {0}, 27, 11, "scalars", 1, TC_F32, 0, 10},
+    {"unstructured/blow.vtk", BLOCK_UNSTRUCTURED, {0}, 687, 1057, "thickness9", 0, TC_F32, 0.126328, 1.14768},
+    {"malformed/visit_issue_20474.vtk", BLOCK_UNSTRUCTURED, {0}, 18, 4, "d", 0, TC_F32, 3.8, 5},
     {"malformed/vtkio/rectilinear_grid_binary.vtk",
-     GRID_RECTILINEAR,
+     BLOCK_RECTILINEAR,
      {3, 4, 1},
      12,
      6,
@@ -260,10 +260,10 @@ static const struct {
      TC_F32,
      1.1,
      8.1},
-    {"malformed/vtkio/structured_grid.vtk", GRID_CURVILINEAR, {2, 2, 2}, 8, 1, "ptval", 0, TC_F32, 0, 7},
-    {"malformed/vtkio/volume_complex.vtk", GRID_UNIFORM, {3, 4, 6}, 72, 30, "volume_scalars", 0, TC_I8, 0, 50},
+    {"malformed/vtkio/structured_grid.vtk", BLOCK_CURVILINEAR, {2, 2, 2}, 8, 1, "ptval", 0, TC_F32, 0, 7},
+    {"malformed/vtkio/volume_complex.vtk", BLOCK_UNIFORM, {3, 4, 6}, 72, 30, "volume_scalars", 0, TC_I8, 0, 50},
     {"malformed/vtkio/triangle_vtkidtype.vtk",
-     GRID_UNSTRUCTURED,
+     BLOCK_UNSTRUCTURED,
      {0},
      3,
      1,
@@ -272,7 +272,7 @@ static const struct {
      TC_I32,
      95364,
      95691},
-    {"malformed/vtkio/para_test.vtk", GRID_UNSTRUCTURED, {0}, 12, 3, "MixedInts", 0, TC_I32, -1, 3},
+    {"malformed/vtkio/para_test.vtk", BLOCK_UNSTRUCTURED, {0}, 12, 3, "MixedInts", 0, TC_I32, -1, 3},
 };
 
 static void test_published(const char *data) {

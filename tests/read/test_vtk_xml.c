@@ -23,11 +23,11 @@ static const int cell_ends[] = {8, 12, 18};
 static const int cell_types[] = {12, 10, 13};
 static const char *const grid_names[] = {"ImageData", "RectilinearGrid", "StructuredGrid", "UnstructuredGrid"};
 
-static void piece_sizes(enum grid_kind kind, int piece, int64_t dims[3], uint64_t *points, uint64_t *cells) {
+static void piece_sizes(enum block_kind kind, int piece, int64_t dims[3], uint64_t *points, uint64_t *cells) {
     const int64_t *e = extents[piece];
-    for (int a = 0; a < 3; a++) dims[a] = kind == GRID_UNSTRUCTURED ? 0 : e[2 * a + 1] - e[2 * a] + 1;
-    *points = kind == GRID_UNSTRUCTURED ? 12 : (uint64_t)(dims[0] * dims[1] * dims[2]);
-    *cells = kind == GRID_UNSTRUCTURED ? 3 : (uint64_t)((dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1));
+    for (int a = 0; a < 3; a++) dims[a] = kind == BLOCK_UNSTRUCTURED ? 0 : e[2 * a + 1] - e[2 * a] + 1;
+    *points = kind == BLOCK_UNSTRUCTURED ? 12 : (uint64_t)(dims[0] * dims[1] * dims[2]);
+    *cells = kind == BLOCK_UNSTRUCTURED ? 3 : (uint64_t)((dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1));
 }
 
 /* A small value for coordinates, exact in every type. */
@@ -64,31 +64,31 @@ static void add_fields(vtk_writer *w, uint64_t points, uint64_t cells) {
     bytes_text(&w->text, "</CellData>\n");
 }
 
-static void add_piece(vtk_writer *w, enum grid_kind kind, int piece) {
+static void add_piece(vtk_writer *w, enum block_kind kind, int piece) {
     const int64_t *e = extents[piece];
     int64_t dims[3];
     uint64_t points, cells;
     piece_sizes(kind, piece, dims, &points, &cells);
-    if (kind == GRID_UNSTRUCTURED)
+    if (kind == BLOCK_UNSTRUCTURED)
         bytes_text(&w->text, "<Piece NumberOfPoints=\"%" PRIu64 "\" NumberOfCells=\"%" PRIu64 "\">\n", points, cells);
     else
         bytes_text(&w->text,
                    "<Piece Extent=\"%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 "\">\n", e[0],
                    e[1], e[2], e[3], e[4], e[5]);
     add_fields(w, points, cells);
-    if (kind == GRID_RECTILINEAR) {
+    if (kind == BLOCK_RECTILINEAR) {
         bytes_text(&w->text, "<Coordinates>\n");
         add_coordinates(w, TC_F32, "x", 1, (uint64_t)dims[0]);
         add_coordinates(w, TC_F64, "y", 1, (uint64_t)dims[1]);
         add_coordinates(w, TC_I16, "z", 1, (uint64_t)dims[2]);
         bytes_text(&w->text, "</Coordinates>\n");
     }
-    if (kind == GRID_CURVILINEAR || kind == GRID_UNSTRUCTURED) {
+    if (kind == BLOCK_CURVILINEAR || kind == BLOCK_UNSTRUCTURED) {
         bytes_text(&w->text, "<Points>\n");
-        add_coordinates(w, kind == GRID_CURVILINEAR ? TC_F32 : TC_F64, "Points", 3, 3 * points);
+        add_coordinates(w, kind == BLOCK_CURVILINEAR ? TC_F32 : TC_F64, "Points", 3, 3 * points);
         bytes_text(&w->text, "</Points>\n");
     }
-    if (kind == GRID_UNSTRUCTURED) {
+    if (kind == BLOCK_UNSTRUCTURED) {
         bytes_text(&w->text, "<Cells>\n");
         add_integers(w, piece ? TC_I32 : STORED_I64, "connectivity", cell_points, 18);
         add_integers(w, piece ? STORED_U64 : STORED_I64, "offsets", cell_ends, 3);
@@ -98,16 +98,16 @@ static void add_piece(vtk_writer *w, enum grid_kind kind, int piece) {
     bytes_text(&w->text, "</Piece>\n");
 }
 
-static bytes make_file(enum grid_kind kind, const vtk_shape *shape, int pieces) {
+static bytes make_file(enum block_kind kind, const vtk_shape *shape, int pieces) {
     vtk_writer w;
     vtk_xml_begin(&w, shape, grid_names[kind]);
     bytes_text(&w.text,
                "<%s%s>\n<FieldData><DataArray type=\"Float64\" Name=\"time\" NumberOfTuples=\"1\" "
                "format=\"ascii\">0.5</DataArray></FieldData>\n",
                grid_names[kind],
-               kind == GRID_UNIFORM ? " WholeExtent=\"-1 2 3 6 7 11\" Origin=\"1 -2 3.5\" Spacing=\"0.5 2 4\" "
-                                      "Direction=\"0 -1 0 1 0 0 0 0 1\""
-                                    : "");
+               kind == BLOCK_UNIFORM ? " WholeExtent=\"-1 2 3 6 7 11\" Origin=\"1 -2 3.5\" Spacing=\"0.5 2 4\" "
+                                       "Direction=\"0 -1 0 1 0 0 0 0 1\""
+                                     : "");
     for (int i = 0; i < pieces; i++) add_piece(&w, kind, i);
     bytes_text(&w.text, "</%s>\n", grid_names[kind]);
     return vtk_xml_finish(&w);
@@ -147,15 +147,15 @@ static uint64_t wrong_coordinates(coordinates is, char name, uint64_t count) {
 static void expect_geometry(const char *what, const dataset_block *b, uint64_t points) {
     static const double matrix[12] = {0, -2, 0, 1, 0.5, 0, 0, -2, 0, 0, 4, 3.5};
     uint64_t wrong = 0;
-    if (b->kind == GRID_UNIFORM)
+    if (b->kind == BLOCK_UNIFORM)
         for (int i = 0; i < 12; i++)
             EXPECT(b->matrix[i / 4][i % 4] == matrix[i], "%s: matrix[%d] is %g", what, i, b->matrix[i / 4][i % 4]);
-    if (b->kind == GRID_RECTILINEAR)
+    if (b->kind == BLOCK_RECTILINEAR)
         for (int a = 0; a < 3; a++) wrong += wrong_coordinates(b->axes[a], "xyz"[a], (uint64_t)b -> dims[a]);
-    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED)
+    if (b->kind == BLOCK_CURVILINEAR || b->kind == BLOCK_UNSTRUCTURED)
         wrong += wrong_coordinates(b->points, 'P', 3 * points);
     EXPECT(wrong == 0, "%s: %" PRIu64 " coordinates are wrong", what, wrong);
-    if (b->kind != GRID_UNSTRUCTURED) return;
+    if (b->kind != BLOCK_UNSTRUCTURED) return;
     for (int i = 0; i < 3; i++)
         EXPECT(b->cell_types[i] == cell_types[i] && b->cell_offsets[i + 1] == cell_ends[i], "%s: cell %d: %d, ends %d",
                what, i, b->cell_types[i], (int)b->cell_offsets[i + 1]);
@@ -163,7 +163,7 @@ static void expect_geometry(const char *what, const dataset_block *b, uint64_t p
     EXPECT(b->cell_offsets[0] == 0 && wrong == 0, "%s: %" PRIu64 " points of cells are wrong", what, wrong);
 }
 
-static void expect_dataset(const char *what, const dataset *d, enum grid_kind kind, int pieces) {
+static void expect_dataset(const char *what, const dataset *d, enum block_kind kind, int pieces) {
     static const char left_out[] = "the array 's' is left out: its type String cannot be read"; /* once */
     EXPECT(d->block_count == pieces && !strcmp(d->format, "VTK XML") && !strcmp(d->notice, left_out),
            "%s: %d blocks, '%s', notice '%s'", what, d->block_count, d->format, d->notice);
@@ -177,7 +177,7 @@ static void expect_dataset(const char *what, const dataset *d, enum grid_kind ki
                "%s: block %d of kind %d, %" PRId64 " points, %" PRId64 " cells", what, n, b->kind, b->point_count,
                b->cell_count);
         for (int a = 0; a < 3; a++)
-            EXPECT(b->first[a] == (kind == GRID_UNSTRUCTURED ? 0 : extents[n][2 * a]), "%s: first[%d] is %" PRId64,
+            EXPECT(b->first[a] == (kind == BLOCK_UNSTRUCTURED ? 0 : extents[n][2 * a]), "%s: first[%d] is %" PRId64,
                    what, a, b->first[a]);
         expect_geometry(what, b, points);
         expect_fields(what, b, points, cells);
@@ -195,7 +195,7 @@ static void expect_in_place(const char *what, const dataset *d) {
     EXPECT(d->mapping && inside == FIELD_COUNT - 2 + 1, "%s: %d fields in place", what, inside);
 }
 
-static void test_shape(enum grid_kind kind, const vtk_shape *s, int pieces) {
+static void test_shape(enum block_kind kind, const vtk_shape *s, int pieces) {
     static const char *const names[] = {"text", "inline", "raw", "base64"};
     char what[128];
     snprintf(what, sizeof what, "%s, %s, UInt%d, big %d, packed by %d, breaks %d", grid_names[kind], names[s->encoding],
@@ -223,10 +223,10 @@ static void test_shapes(void) {
                 vtk_shape s = {encoding,      bits & 1 ? 8 : 4,     bits >> 1 & 1,
                                bits >> 2 & 1, bits & 1 ? 48 : 1000, bits >> 3 & 1};
                 if (encoding == AS_TEXT && bits) continue;
-                test_shape((enum grid_kind)kind, &s, 1 + (bits & 1));
+                test_shape((enum block_kind)kind, &s, 1 + (bits & 1));
                 for (int by = BY_LZ4; by <= BY_LZMA && s.is_compressed && can_pack(by); by++) {
                     s.is_compressed = by;
-                    test_shape((enum grid_kind)kind, &s, 1 + (bits & 1));
+                    test_shape((enum block_kind)kind, &s, 1 + (bits & 1));
                 }
             }
 }
@@ -235,7 +235,7 @@ static void test_shapes(void) {
  */
 
 /* Every shorter file: an error with a text, or, where only the end of the XML is gone, all values. */
-static void test_truncation(enum grid_kind kind, const vtk_shape *s) {
+static void test_truncation(enum block_kind kind, const vtk_shape *s) {
     bytes file = make_file(kind, s, 1);
     char path[256];
     snprintf(path, sizeof path, "%s", file_write("cut.vtk", file.data, file.size));
@@ -257,7 +257,7 @@ static void test_truncation(enum grid_kind kind, const vtk_shape *s) {
 }
 
 /* Some bytes changed: an error with a text, or other values. */
-static void test_changes(enum grid_kind kind, const vtk_shape *s, int rounds) {
+static void test_changes(enum block_kind kind, const vtk_shape *s, int rounds) {
     bytes file = make_file(kind, s, 2);
     char path[256];
     uint64_t wrong = 0;
@@ -295,8 +295,8 @@ static void test_damage(int rounds) {
                                        {AS_APPENDED_BASE64, 4, 1, BY_LZ4, 100, 0}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         if (shapes[i].is_compressed && !can_pack(shapes[i].is_compressed)) continue;
-        test_truncation(GRID_UNSTRUCTURED, &shapes[i]);
-        for (int kind = 0; kind < 4; kind++) test_changes((enum grid_kind)kind, &shapes[i], rounds);
+        test_truncation(BLOCK_UNSTRUCTURED, &shapes[i]);
+        for (int kind = 0; kind < 4; kind++) test_changes((enum block_kind)kind, &shapes[i], rounds);
     }
 }
 

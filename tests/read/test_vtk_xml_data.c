@@ -19,7 +19,7 @@ static const dataset_field *find_field(const dataset_block *b, const char *name)
 
 typedef struct published {
     const char *path;
-    enum grid_kind kind;
+    enum block_kind kind;
     int64_t points, cells, dims[3], first[3];
     const char *field;
     int on_cells;
@@ -54,7 +54,7 @@ static void test_published_file(const char *data, const published *p) {
 
 static const published files[] = {
     {"uniform/hydrogen.vti",
-     GRID_UNIFORM,
+     BLOCK_UNIFORM,
      262144,
      250047,
      {64, 64, 64},
@@ -65,10 +65,10 @@ static const published files[] = {
      0,
      1,
      0},
-    {"uniform/vase.vti", GRID_UNIFORM, 871125, 843600, {115, 101, 75}, {0}, "SLCImage", 0, TC_U8, 0, 239, 0},
-    {"uniform/heart.vti", GRID_UNIFORM, 12288, 10571, {32, 32, 12}, {0}, "scalars", 0, TC_F32, 0, 255, 0},
+    {"uniform/vase.vti", BLOCK_UNIFORM, 871125, 843600, {115, 101, 75}, {0}, "SLCImage", 0, TC_U8, 0, 239, 0},
+    {"uniform/heart.vti", BLOCK_UNIFORM, 12288, 10571, {32, 32, 12}, {0}, "scalars", 0, TC_F32, 0, 255, 0},
     {"uniform/cth.vtr",
-     GRID_RECTILINEAR,
+     BLOCK_RECTILINEAR,
      545025,
      524288,
      {129, 65, 65},
@@ -79,9 +79,9 @@ static const published files[] = {
      0,
      1,
      0.001},
-    {"curvilinear/multicomb_0.vts", GRID_CURVILINEAR, 648, 440, {6, 12, 9}, {0}, "Density", 0, TC_F32, 0.2, 0.71, 0.2},
+    {"curvilinear/multicomb_0.vts", BLOCK_CURVILINEAR, 648, 440, {6, 12, 9}, {0}, "Density", 0, TC_F32, 0.2, 0.71, 0.2},
     {"curvilinear/multicomb_1.vts",
-     GRID_CURVILINEAR,
+     BLOCK_CURVILINEAR,
      864,
      616,
      {8, 12, 9},
@@ -93,7 +93,7 @@ static const published files[] = {
      0.71,
      0.2},
     {"curvilinear/multicomb_2.vts",
-     GRID_CURVILINEAR,
+     BLOCK_CURVILINEAR,
      972,
      704,
      {9, 12, 9},
@@ -104,9 +104,9 @@ static const published files[] = {
      0.2,
      0.71,
      0.2},
-    {"unstructured/fire_ug.vtu", GRID_UNSTRUCTURED, 12323, 10462, {0}, {0}, "t", 0, TC_F32, 298, 692, 1},
+    {"unstructured/fire_ug.vtu", BLOCK_UNSTRUCTURED, 12323, 10462, {0}, {0}, "t", 0, TC_F32, 298, 692, 1},
     {"unstructured/fichera-mixed.vtu",
-     GRID_UNSTRUCTURED,
+     BLOCK_UNSTRUCTURED,
      26,
      14,
      {0},
@@ -118,7 +118,7 @@ static const published files[] = {
      1.4411200080598672,
      0},
     {"unstructured/fichera-mixed-16.vtu",
-     GRID_UNSTRUCTURED,
+     BLOCK_UNSTRUCTURED,
      26,
      16,
      {0},
@@ -130,7 +130,7 @@ static const published files[] = {
      1.4411200080598672,
      0},
     {"unstructured/Tetrahedron.vtu",
-     GRID_UNSTRUCTURED,
+     BLOCK_UNSTRUCTURED,
      35,
      96,
      {0},
@@ -141,9 +141,9 @@ static const published files[] = {
      0,
      1.7320508,
      1e-6},
-    {"unstructured/Wedge.vtu", GRID_UNSTRUCTURED, 27, 16, {0}, {0}, "Polynomial", 0, TC_F32, 1, 7, 0},
-    {"unstructured/Hexahedron.vtu", GRID_UNSTRUCTURED, 26, 7, {0}, {0}, "material", 1, TC_I32, 1, 1, 0},
-    {"unstructured/QuadraticPyramid.vtu", GRID_UNSTRUCTURED, 153, 48, {0}, {0}, "Polynomial", 0, TC_F32, 1, 7, 0}};
+    {"unstructured/Wedge.vtu", BLOCK_UNSTRUCTURED, 27, 16, {0}, {0}, "Polynomial", 0, TC_F32, 1, 7, 0},
+    {"unstructured/Hexahedron.vtu", BLOCK_UNSTRUCTURED, 26, 7, {0}, {0}, "material", 1, TC_I32, 1, 1, 0},
+    {"unstructured/QuadraticPyramid.vtu", BLOCK_UNSTRUCTURED, 153, 48, {0}, {0}, "Polynomial", 0, TC_F32, 1, 7, 0}};
 
 static void test_published(const char *data) {
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) test_published_file(data, &files[i]);

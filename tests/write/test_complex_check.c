@@ -12,11 +12,11 @@
 enum { POINTS_MOST = 9000, TETRAHEDRA_MOST = 200 };
 
 static void expect_faces(const char *name, const complex_faces *is, const complex_faces *should) {
-    EXPECT(is->folded_faces == should->folded_faces && is->crowded_faces == should->crowded_faces &&
+    EXPECT(is->folded_faces == should->folded_faces && is->nonmanifold_faces == should->nonmanifold_faces &&
                is->invalid_tetrahedra == should->invalid_tetrahedra,
-           "%s: folded %llu/%llu, crowded %llu/%llu, invalid %llu/%llu (is/should)", name,
+           "%s: folded %llu/%llu, non-manifold %llu/%llu, invalid %llu/%llu (is/should)", name,
            (unsigned long long)is->folded_faces, (unsigned long long)should->folded_faces,
-           (unsigned long long)is->crowded_faces, (unsigned long long)should->crowded_faces,
+           (unsigned long long)is->nonmanifold_faces, (unsigned long long)should->nonmanifold_faces,
            (unsigned long long)is->invalid_tetrahedra, (unsigned long long)should->invalid_tetrahedra);
 }
 
@@ -97,7 +97,7 @@ static complex_faces brute_force(const uint32_t (*t)[4], int count, const uint8_
         }
         if (lower) continue;
         faces.folded_faces += others == 1 && same == 1;
-        faces.crowded_faces += others > 1;
+        faces.nonmanifold_faces += others > 1;
     }
     return faces;
 }

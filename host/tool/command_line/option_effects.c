@@ -47,7 +47,7 @@ static int has_no_main_engine(const situation *s) { return s->o->engine != TC_EN
 
 static int has_cells(const situation *s) {
     for (int n = 0; n < s->d->block_count; n++)
-        if (s->d->blocks[n].kind == GRID_UNSTRUCTURED) return 1;
+        if (s->d->blocks[n].kind == BLOCK_UNSTRUCTURED) return 1;
     return 0;
 }
 

@@ -44,7 +44,7 @@ int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
     int status = mesh_collapse(m->positions, m->vertex_count, m->triangles, m->triangle_count, c);
     s->has_dropped = 1;
     s->dropped_count += c->dropped_count;
-    s->crowded_edges += c->crowded_edges;
+    s->nonmanifold_edges += c->nonmanifold_edges;
     if (status || !c->dropped_count) return status;
     shown->positions = gather(c, m->positions, 3);
     if (m->normals && shown->positions) shown->normals = gather(c, m->normals, 3);
@@ -58,10 +58,10 @@ int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
 }
 
 void final_surface_tell_dropped(const surface_report *s) {
-    if (s->crowded_edges)
+    if (s->nonmanifold_edges)
         notice("isovalue %s: without its triangles of zero area the surface has %" PRIu64 " edges of more than two "
                "triangles, as it had there before",
-               s->iso->text, s->crowded_edges);
+               s->iso->text, s->nonmanifold_edges);
     if (s->has_dropped && s->summary.degenerate_triangles)
         notice("isovalue %s: %" PRIu64 " triangles of zero area are left: their corners are apart, on a line",
                s->iso->text, s->summary.degenerate_triangles);

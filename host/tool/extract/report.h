@@ -32,7 +32,7 @@ typedef struct surface_report {
     uint64_t soup_vertex_count; /* of the file: three of its own for every triangle; 0 where it shares them */
     int has_dropped;
     uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
-    uint64_t crowded_edges; /* that dropping has left: of more than two triangles */
+    uint64_t nonmanifold_edges; /* that dropping has left: of more than two triangles */
     int has_topology;
     mesh_topology topology;
     coarse_count mesh_numbers, file_numbers; /* float32 of the mesh; the numbers in the file */

@@ -35,9 +35,9 @@ static int explain_faults(const block_list *blocks, const surface_report *s, int
              "both cells on the same side%s",
              s->iso->text, (unsigned long long)crossed.folded_faces,
              is_explained ? "; these are its misoriented edges" : "");
-    if (crossed.crowded_faces)
+    if (crossed.nonmanifold_faces)
         tell("isovalue %s: cells of the input overlap: the surface crosses %llu faces of three cells or more",
-             s->iso->text, (unsigned long long)crossed.crowded_faces);
+             s->iso->text, (unsigned long long)crossed.nonmanifold_faces);
     return 0;
 }
 

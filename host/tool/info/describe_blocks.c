@@ -47,13 +47,13 @@ double describe_spacing(const dataset_block *b, int axis) {
 
 static bounds bounds_of(const dataset_block *b) {
     bounds all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int axis = 0; b->kind == GRID_RECTILINEAR && axis < 3; axis++)
+    for (int axis = 0; b->kind == BLOCK_RECTILINEAR && axis < 3; axis++)
         for (int64_t n = 0; n < b->dims[axis]; n++) {
             all.low[axis] = fmin(all.low[axis], coordinate_at(b->axes[axis], n));
             all.high[axis] = fmax(all.high[axis], coordinate_at(b->axes[axis], n));
         }
-    if (b->kind == GRID_UNIFORM) include_corners(&all, b);
-    for (int64_t n = 0; (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) && n < b->point_count; n++) {
+    if (b->kind == BLOCK_UNIFORM) include_corners(&all, b);
+    for (int64_t n = 0; (b->kind == BLOCK_CURVILINEAR || b->kind == BLOCK_UNSTRUCTURED) && n < b->point_count; n++) {
         double p[3];
         for (int axis = 0; axis < 3; axis++) p[axis] = coordinate_at(b->points, 3 * n + axis);
         include(&all, p);
@@ -102,7 +102,7 @@ static json_t *types_json(const dataset_block *b) {
 }
 
 static json_t *block_json(const dataset_block *b) {
-    int structured = b->kind != GRID_UNSTRUCTURED;
+    int structured = b->kind != BLOCK_UNSTRUCTURED;
     bounds all = bounds_of(b);
     json_t *object = json_object(), *fields = json_array();
     json_object_set_new(object, "kind", json_string(kind_names[b->kind]));
@@ -181,7 +181,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
     bounds all = bounds_of(b);
     uint64_t points = count_set(b->blanked_points, b->point_count), cells = count_set(b->blanked_cells, b->cell_count);
     printf("grid          %s, ", kind_names[b->kind]);
-    if (b->kind == GRID_UNSTRUCTURED) {
+    if (b->kind == BLOCK_UNSTRUCTURED) {
         printf("%" PRId64 " points\n", b->point_count);
         cells_text(b);
     } else {
@@ -189,7 +189,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
         if (b->first[0] || b->first[1] || b->first[2])
             printf("first point   %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     }
-    if (b->kind == GRID_UNIFORM) describe_place_text(d, b);
+    if (b->kind == BLOCK_UNIFORM) describe_place_text(d, b);
     if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
     if (b->point_count)
         printf("bounds        %s %s %s to %s %s %s\n", shortest_coordinate(all.low[0]).text,

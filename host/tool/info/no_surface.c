@@ -60,9 +60,9 @@ int no_surface_reason(const options *o, const dataset *d, const scalar *field, c
     reason[0] = '\0';
     for (int n = 0; n < d->block_count; n++) {
         const dataset_block *b = &d->blocks[n];
-        unstructured |= b->kind == GRID_UNSTRUCTURED;
+        unstructured |= b->kind == BLOCK_UNSTRUCTURED;
         missing += field && are_missing(&field->blocks[n], b->point_count);
-        if (b->kind == GRID_UNSTRUCTURED || !is_solid(b)) continue;
+        if (b->kind == BLOCK_UNSTRUCTURED || !is_solid(b)) continue;
         solid = 1;
         whole = whole || !field || has_whole_cube(b, &field->blocks[n]);
     }

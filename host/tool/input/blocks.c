@@ -27,12 +27,12 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
     tc_grid_options_init(grid);
     memcpy(grid->dims, from->dims, sizeof grid->dims);
     memcpy(grid->first_index, from->first, sizeof grid->first_index);
-    if (from->kind == GRID_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
-    for (int axis = 0; axis < 3 && from->kind == GRID_RECTILINEAR; axis++) {
+    if (from->kind == BLOCK_UNIFORM) memcpy(grid->matrix, from->matrix, sizeof grid->matrix);
+    for (int axis = 0; axis < 3 && from->kind == BLOCK_RECTILINEAR; axis++) {
         grid->axes[axis] = from->axes[axis].f32;
         grid->axes_f64[axis] = from->axes[axis].f64;
     }
-    if (from->kind == GRID_CURVILINEAR) {
+    if (from->kind == BLOCK_CURVILINEAR) {
         grid->points = from->points.f32;
         grid->points_f64 = from->points.f64;
     }
@@ -101,12 +101,12 @@ static int cut_unstructured(const options *o, prepared_block *b) {
 /* Cubes of a structured block, none where it is flat; cells of three dimensions of an unstructured one. */
 static uint64_t solid_cells(const prepared_block *b) {
     const int64_t *d = b->source->dims;
-    if (b->source->kind == GRID_UNSTRUCTURED) return (uint64_t)b->source->cell_count - b->complex.flat_cell_count;
+    if (b->source->kind == BLOCK_UNSTRUCTURED) return (uint64_t)b->source->cell_count - b->complex.flat_cell_count;
     return (uint64_t)(d[0] - 1) * (uint64_t)(d[1] - 1) * (uint64_t)(d[2] - 1);
 }
 
 static int is_flat(const dataset_block *b) {
-    return b->kind != GRID_UNSTRUCTURED && (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2);
+    return b->kind != BLOCK_UNSTRUCTURED && (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2);
 }
 
 /* Flat blocks are skipped, as flat cells are. Where all blocks are flat, they go to the library, which refuses them
@@ -129,7 +129,7 @@ static int is_ambiguous(uint8_t type) {
 static int has_ambiguous_cells(const block_list *list) {
     for (int n = 0; n < list->count; n++) {
         const dataset_block *b = list->blocks[n].source;
-        for (int64_t cell = 0; b->kind == GRID_UNSTRUCTURED && cell < b->cell_count; cell++)
+        for (int64_t cell = 0; b->kind == BLOCK_UNSTRUCTURED && cell < b->cell_count; cell++)
             if (is_ambiguous(b->cell_types[cell])) return 1;
     }
     return 0;
@@ -140,7 +140,7 @@ static uint64_t count_unused_points(const block_list *list) {
     uint64_t unused = 0;
     for (int n = 0; n < list->count; n++) {
         const dataset_block *b = list->blocks[n].source;
-        if (b->kind != GRID_UNSTRUCTURED) continue;
+        if (b->kind != BLOCK_UNSTRUCTURED) continue;
         uint8_t *used = calloc((size_t)b->point_count + 1, 1);
         if (!used) return 0;
         for (int64_t i = 0; i < b->cell_offsets[b->cell_count]; i++) used[b->cell_points[i]] = 1;
@@ -189,7 +189,7 @@ static void tell_all(const block_list *list) {
 
 static int cut(const options *o, prepared_block *b) {
     if (!b->is_cut || b->is_skipped) return 0;
-    return b->source->kind == GRID_UNSTRUCTURED ? cut_unstructured(o, b) : cut_structured(o, b);
+    return b->source->kind == BLOCK_UNSTRUCTURED ? cut_unstructured(o, b) : cut_structured(o, b);
 }
 
 int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out) {
@@ -200,7 +200,7 @@ int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, blo
         prepared_block *b = &out->blocks[out->count++];
         b->source = &d->blocks[n];
         b->scalar = s ? &s->blocks[n] : NULL;
-        b->is_cut = all || d->blocks[n].kind == GRID_UNSTRUCTURED;
+        b->is_cut = all || d->blocks[n].kind == BLOCK_UNSTRUCTURED;
         b->is_skipped = !flat && is_flat(b->source);
         b->complex.struct_size = sizeof b->complex;
         int status = block_status(cut(o, b), n, d->block_count);

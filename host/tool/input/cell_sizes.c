@@ -34,8 +34,8 @@ static void point_position(const dataset_block *b, int64_t point, double out[3])
     const int64_t at[3] = {point % b->dims[0], point / b->dims[0] % b->dims[1], point / b->dims[0] / b->dims[1]};
     for (int axis = 0; axis < 3; axis++) {
         const double *row = b->matrix[axis];
-        out[axis] = b->kind == GRID_RECTILINEAR ? coordinate_at(b->axes[axis], at[axis]) : 0;
-        for (int along = 0; along < 3 && b->kind == GRID_UNIFORM; along++)
+        out[axis] = b->kind == BLOCK_RECTILINEAR ? coordinate_at(b->axes[axis], at[axis]) : 0;
+        for (int along = 0; along < 3 && b->kind == BLOCK_UNIFORM; along++)
             out[axis] += row[along] * (double)(at[along] + b->first[along]);
     }
 }
@@ -51,9 +51,9 @@ typedef struct cell_corners {
 static void find_corners(const prepared_block *b, int64_t cell, cell_corners *c) {
     const dataset_block *from = b->source;
     c->count = cell_points(b, cell, c->points);
-    for (int axis = 0; axis < 3; axis++) c->base[axis] = from->kind == GRID_UNIFORM ? from->matrix[axis][3] : 0;
+    for (int axis = 0; axis < 3; axis++) c->base[axis] = from->kind == BLOCK_UNIFORM ? from->matrix[axis][3] : 0;
     for (int n = 0; n < c->count; n++)
-        if (from->kind == GRID_CURVILINEAR || from->kind == GRID_UNSTRUCTURED)
+        if (from->kind == BLOCK_CURVILINEAR || from->kind == BLOCK_UNSTRUCTURED)
             for (int axis = 0; axis < 3; axis++) c->at[n][axis] = coordinate_at(from->points, 3 * c->points[n] + axis);
         else
             point_position(from, c->points[n], c->at[n]);
@@ -114,7 +114,7 @@ static void add_edges(const prepared_block *b, cell_range *out) {
     const int64_t *d = b->source->dims;
     int64_t stride = 1;
     for (int axis = 0; axis < 3; stride *= d[axis++] - 1)
-        for (int64_t n = 0; n < d[axis] - 1; n += b->source->kind == GRID_UNIFORM && d[axis] > 2 ? d[axis] - 2 : 1) {
+        for (int64_t n = 0; n < d[axis] - 1; n += b->source->kind == BLOCK_UNIFORM && d[axis] > 2 ? d[axis] - 2 : 1) {
             cell_corners c;
             find_corners(b, n * stride, &c);
             add_cell(&c, out);
@@ -123,7 +123,7 @@ static void add_edges(const prepared_block *b, cell_range *out) {
 
 void cell_range_find(const prepared_block *b, int all, cell_range *out) {
     const int64_t count = cell_count(b), stride = all ? 1 : count / CELLS_PROBED + 1;
-    const int is_regular = !b->is_cut && b->source->kind != GRID_CURVILINEAR;
+    const int is_regular = !b->is_cut && b->source->kind != BLOCK_CURVILINEAR;
     for (int axis = 0; axis < 3; axis++) {
         out->low[axis] = out->least[axis] = INFINITY;
         out->high[axis] = -INFINITY;

@@ -36,11 +36,11 @@ int face_faults_find(const block_list *list, const double *isovalue, complex_fac
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
         complex_faces faces = {0};
-        if (b->source->kind != GRID_UNSTRUCTURED) continue;
+        if (b->source->kind != BLOCK_UNSTRUCTURED) continue;
         int status = check_block(b, isovalue, &faces);
         if (status) return status;
         sum->folded_faces += faces.folded_faces;
-        sum->crowded_faces += faces.crowded_faces;
+        sum->nonmanifold_faces += faces.nonmanifold_faces;
         sum->invalid_tetrahedra += faces.invalid_tetrahedra;
     }
     return 0;
@@ -50,6 +50,7 @@ void face_faults_tell(const complex_faces *faces) {
     if (faces->folded_faces)
         notice("%" PRIu64 " faces are folded: both cells lie on the same side; a surface there is not oriented",
                faces->folded_faces);
-    if (faces->crowded_faces)
-        notice("%" PRIu64 " faces have three cells or more; a surface there is not a manifold", faces->crowded_faces);
+    if (faces->nonmanifold_faces)
+        notice("%" PRIu64 " faces have three cells or more; a surface there is not a manifold",
+               faces->nonmanifold_faces);
 }

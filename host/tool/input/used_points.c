@@ -34,12 +34,12 @@ static void mark_cubes(const dataset_block *b, const uint8_t *blanked_cells, uin
 
 enum point_use used_points_mark(const dataset_block *b, const uint8_t *blanked_cells, uint8_t *used) {
     int64_t count = 0;
-    if (b->kind != GRID_UNSTRUCTURED) {
+    if (b->kind != BLOCK_UNSTRUCTURED) {
         if (b->dims[0] < 2 || b->dims[1] < 2 || b->dims[2] < 2) return POINTS_NONE_USED;
         if (!blanked_cells) return POINTS_ALL_USED;
         mark_cubes(b, blanked_cells, used);
     }
-    for (int64_t cell = 0; b->kind == GRID_UNSTRUCTURED && cell < b->cell_count; cell++)
+    for (int64_t cell = 0; b->kind == BLOCK_UNSTRUCTURED && cell < b->cell_count; cell++)
         if (cell_type_dimension(b->cell_types[cell]) == 3 && !(blanked_cells && blanked_cells[cell]))
             mark_cell(b, cell, used);
     for (int64_t n = 0; n < b->point_count; n++) count += used[n];

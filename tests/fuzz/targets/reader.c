@@ -90,7 +90,7 @@ static void check_faces(const dataset_block *b) {
 
 static void check_geometry(const dataset_block *b) {
     CHECK(b->point_count >= 0 && b->cell_count >= 0);
-    if (b->kind == GRID_UNSTRUCTURED) {
+    if (b->kind == BLOCK_UNSTRUCTURED) {
         check_cells(b);
         check_faces(b);
     } else {
@@ -104,9 +104,9 @@ static void check_geometry(const dataset_block *b) {
         CHECK(b->point_count == points);
         CHECK(b->cell_count == cubes || b->cell_count == cells || points == 0);
     }
-    for (int a = 0; a < 3 && b->kind == GRID_RECTILINEAR; a++) check_coordinates(b->axes[a], b->dims[a]);
-    if (b->kind == GRID_CURVILINEAR || b->kind == GRID_UNSTRUCTURED) check_coordinates(b->points, 3 * b->point_count);
-    for (int n = 0; n < 12 && b->kind == GRID_UNIFORM; n++) CHECK(isfinite(b->matrix[n / 4][n % 4]));
+    for (int a = 0; a < 3 && b->kind == BLOCK_RECTILINEAR; a++) check_coordinates(b->axes[a], b->dims[a]);
+    if (b->kind == BLOCK_CURVILINEAR || b->kind == BLOCK_UNSTRUCTURED) check_coordinates(b->points, 3 * b->point_count);
+    for (int n = 0; n < 12 && b->kind == BLOCK_UNIFORM; n++) CHECK(isfinite(b->matrix[n / 4][n % 4]));
     if (b->blanked_points) touch(b->blanked_points, (uint64_t)b->point_count);
     if (b->blanked_cells) touch(b->blanked_cells, (uint64_t)b->cell_count);
 }
@@ -159,7 +159,7 @@ static void check_image(const dataset *d) {
     const dataset_block *b = d->blocks;
     CHECK(d->frames >= 0);
     if (!d->frames) return;
-    CHECK(d->block_count == 1 && b->kind == GRID_UNIFORM && b->field_count == 1 && b->fields->components >= 1);
+    CHECK(d->block_count == 1 && b->kind == BLOCK_UNIFORM && b->field_count == 1 && b->fields->components >= 1);
     for (int n = 0; n < 12; n++) CHECK(isfinite(b->matrix[n / 4][n % 4]));
 }
 

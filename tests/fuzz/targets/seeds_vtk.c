@@ -17,22 +17,22 @@ static void xml_section(vtk_writer *w, const char *element, int type, const char
     bytes_text(&w->text, "</%s>\n", element);
 }
 
-static void xml_coordinates(vtk_writer *w, enum grid_kind kind) {
+static void xml_coordinates(vtk_writer *w, enum block_kind kind) {
     static const double axis[] = {0, 1, 3, 4.5};
     double points[36];
     for (int i = 0; i < 36; i++) points[i] = i * 29 % 97;
-    if (kind == GRID_RECTILINEAR) {
+    if (kind == BLOCK_RECTILINEAR) {
         bytes_text(&w->text, "<Coordinates>\n");
         array_add(w, TC_F32, "x", 1, axis, 3);
         array_add(w, TC_F64, "y", 1, axis, 2);
         array_add(w, TC_I16, "z", 1, axis, 2);
         bytes_text(&w->text, "</Coordinates>\n");
-    } else if (kind != GRID_UNIFORM) {
+    } else if (kind != BLOCK_UNIFORM) {
         bytes_text(&w->text, "<Points>\n");
         array_add(w, TC_F32, "Points", 3, points, 36);
         bytes_text(&w->text, "</Points>\n");
     }
-    if (kind != GRID_UNSTRUCTURED) return;
+    if (kind != BLOCK_UNSTRUCTURED) return;
     bytes_text(&w->text, "<Cells>\n");
     array_add(w, STORED_I64, "connectivity", 1, cube_links, 12);
     array_add(w, TC_I32, "offsets", 1, ends, 2);
@@ -41,17 +41,17 @@ static void xml_coordinates(vtk_writer *w, enum grid_kind kind) {
 }
 
 /* 3 x 2 x 2 points, or 12 of two cells. */
-static void add_xml(enum grid_kind kind, const vtk_shape *shape) {
+static void add_xml(enum block_kind kind, const vtk_shape *shape) {
     static const char *const names[] = {"ImageData", "RectilinearGrid", "StructuredGrid", "UnstructuredGrid"};
     char name[64];
     vtk_writer w;
     vtk_xml_begin(&w, shape, names[kind]);
     bytes_text(&w.text, "<%s WholeExtent=\"-1 1 0 1 0 1\" Origin=\"1 2 3\" Spacing=\"1 0.5 2\">\n", names[kind]);
-    if (kind == GRID_UNSTRUCTURED)
+    if (kind == BLOCK_UNSTRUCTURED)
         bytes_text(&w.text, "<Piece NumberOfPoints=\"12\" NumberOfCells=\"2\">\n");
     else
         bytes_text(&w.text, "<Piece Extent=\"-1 1 0 1 0 1\">\n");
-    xml_section(&w, "PointData", kind == GRID_UNIFORM ? TC_U8 : TC_F32, "a", 1, 12);
+    xml_section(&w, "PointData", kind == BLOCK_UNIFORM ? TC_U8 : TC_F32, "a", 1, 12);
     xml_section(&w, "PointData", TC_U8, "vtkGhostType", 1, 12);
     xml_section(&w, "CellData", TC_F64, "b", 3, 6);
     xml_coordinates(&w, kind);
@@ -99,23 +99,23 @@ static void legacy_cells(bytes *b, int binary, int version) {
     legacy_integers(b, binary, 4, types, 2);
 }
 
-static void legacy_geometry(bytes *b, enum grid_kind kind, int binary, int version) {
+static void legacy_geometry(bytes *b, enum block_kind kind, int binary, int version) {
     static const char *const names[] = {"STRUCTURED_POINTS", "RECTILINEAR_GRID", "STRUCTURED_GRID",
                                         "UNSTRUCTURED_GRID"};
     bytes_text(b, "# vtk DataFile Version %d.%d\na title\n%s\nDATASET %s\n", version, version == 5,
                binary ? "BINARY" : "ASCII", names[kind]);
-    if (kind != GRID_UNSTRUCTURED) bytes_text(b, "DIMENSIONS 3 2 2\n");
-    if (kind == GRID_UNIFORM)
+    if (kind != BLOCK_UNSTRUCTURED) bytes_text(b, "DIMENSIONS 3 2 2\n");
+    if (kind == BLOCK_UNIFORM)
         bytes_text(b, "ORIGIN 10 20 -30\n%s 0.5 2 3\n", version == 5 ? "SPACING" : "ASPECT_RATIO");
-    for (int a = 0; a < 3 && kind == GRID_RECTILINEAR; a++) {
+    for (int a = 0; a < 3 && kind == BLOCK_RECTILINEAR; a++) {
         bytes_text(b, "%c_COORDINATES %d float\n", 'X' + a, a ? 2 : 3);
         legacy_values(b, binary, TC_F32, a ? 2 : 3);
     }
-    if (kind >= GRID_CURVILINEAR) {
+    if (kind >= BLOCK_CURVILINEAR) {
         bytes_text(b, "POINTS 12 double\n");
         legacy_values(b, binary, TC_F64, 36);
     }
-    if (kind == GRID_UNSTRUCTURED) legacy_cells(b, binary, version);
+    if (kind == BLOCK_UNSTRUCTURED) legacy_cells(b, binary, version);
 }
 
 static void legacy_attributes(bytes *b, int binary) {
@@ -134,7 +134,7 @@ static void legacy_attributes(bytes *b, int binary) {
     legacy_values(b, binary, TC_I32, 12);
 }
 
-static void add_legacy(enum grid_kind kind, int binary, int version) {
+static void add_legacy(enum block_kind kind, int binary, int version) {
     char name[64];
     bytes file = {0};
     legacy_geometry(&file, kind, binary, version);
@@ -193,15 +193,15 @@ static void add_polyhedra(void) {
 
 void seeds_vtk(void) {
     add_polyhedra();
-    for (int kind = GRID_UNIFORM; kind <= GRID_UNSTRUCTURED; kind++) {
+    for (int kind = BLOCK_UNIFORM; kind <= BLOCK_UNSTRUCTURED; kind++) {
         for (int n = 0; n < 64; n++) {
             const vtk_shape shape = {.encoding = n & 3,
                                      .header_bytes = n & 4 ? 8 : 4,
                                      .big = n >> 3 & 1,
                                      .is_compressed = n >> 4,
                                      .block_bytes = 32};
-            if (shape.encoding != AS_TEXT || n < 4) add_xml((enum grid_kind)kind, &shape);
+            if (shape.encoding != AS_TEXT || n < 4) add_xml((enum block_kind)kind, &shape);
         }
-        for (int n = 0; n < 4; n++) add_legacy((enum grid_kind)kind, n & 1, n & 2 ? 5 : 3);
+        for (int n = 0; n < 4; n++) add_legacy((enum block_kind)kind, n & 1, n & 2 ? 5 : 3);
     }
 }
