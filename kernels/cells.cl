@@ -22,8 +22,8 @@ inline_always ulong word_present_pair(global const BITS *samples, global const u
 
 /* Blanked cubes of a row; bits past its end are meaningless. */
 inline_always ulong word_blanked(global const uchar *blanked, const slab *s, uint y, uint z, uint w) {
-    ulong row = s->blanked_cell_offset + ((ulong)(z - s->sample_z) * (s->ny - 1) + y) * (s->nx - 1);
-    return bytes_word(blanked, row + 64ul * w, s->blanked_cell_offset + s->blanked_cell_count);
+    ulong row = s->arrays.blanked_cell_offset + ((ulong)(z - s->arrays.sample_z) * (s->ny - 1) + y) * (s->nx - 1);
+    return bytes_word(blanked, row + 64ul * w, s->arrays.blanked_cell_offset + s->arrays.blanked_cell_count);
 }
 
 /* All groups together go through the words of the planes from cell_z on, plane_count of them. */
@@ -31,7 +31,7 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
                        global const uchar *blanked_cells, global ulong *cells, uint plane_count) {
     uint row_count = s.ny * plane_count;
     for (uint row = (uint)get_group_id(0); row < row_count; row += (uint)get_num_groups(0)) {
-        uint y = row % s.ny, z = s.cell_z + row / s.ny;
+        uint y = row % s.ny, z = s.results.cell_z + row / s.ny;
         bool last = y + 1 == s.ny || z + 1 == s.nz;
         for (uint first = 0; first < s.words_x; first += WORK_ITEMS) {
             uint w = first + (uint)get_local_id(0);
@@ -40,7 +40,7 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
 #pragma unroll 1
             for (uint n = 0; n < 4 && present; n++)
                 present &= word_present_pair(samples, blanked_samples, &s, y + (n & 1), z + (n >> 1), w);
-            if (present && s.has_blanked_cells) present &= ~word_blanked(blanked_cells, &s, y, z, w);
+            if (present && s.arrays.has_blanked_cells) present &= ~word_blanked(blanked_cells, &s, y, z, w);
             cells[(ulong)row * s.words_x + w] = present;
         }
     }
@@ -48,8 +48,8 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
 
 /* Present cubes of the row (y, z); none where that is outside the grid. */
 inline_always ulong cells_at(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
-    if (y >= s->ny || z >= s->nz || z < s->cell_z) return 0; /* y and z wrap below 0 */
-    return cells[((z - s->cell_z) * s->ny + y) * s->words_x + w];
+    if (y >= s->ny || z >= s->nz || z < s->results.cell_z) return 0; /* y and z wrap below 0 */
+    return cells[((z - s->results.cell_z) * s->ny + y) * s->words_x + w];
 }
 
 /* Present cubes of LANES rows from y on. */
@@ -70,16 +70,16 @@ inline_always lanes cells_before(const slab *s, global const ulong *cells, uint 
 }
 
 /* Keeps the crossings of edges that a present cube contains. */
-inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *k) {
+inline_always void crossings_keep(const slab *s, global const ulong *cells, uint y, uint z, uint w, crossings *edges) {
     lanes here = cells_rows(s, cells, y, z, w), low_y = cells_rows(s, cells, y - 1, z, w);
     lanes low_z = cells_rows(s, cells, y, z - 1, w), low_yz = cells_rows(s, cells, y - 1, z - 1, w);
     lanes before = cells_before(s, cells, y, z, w);
-    k->type[0] &= here | low_y | low_z | low_yz;
-    k->type[1] &= before | cells_before(s, cells, y, z - 1, w);
-    k->type[2] &= before | cells_before(s, cells, y - 1, z, w);
-    k->type[3] &= here | low_z;
-    k->type[4] &= here | low_y;
-    k->type[5] &= before;
+    edges->type[0] &= here | low_y | low_z | low_yz;
+    edges->type[1] &= before | cells_before(s, cells, y, z - 1, w);
+    edges->type[2] &= before | cells_before(s, cells, y - 1, z, w);
+    edges->type[3] &= here | low_z;
+    edges->type[4] &= here | low_y;
+    edges->type[5] &= before;
 }
 
 #endif

@@ -20,43 +20,48 @@
 #include "count.cl"
 #include "scan.cl"
 
-/* The sums over all tiles before this one. Called by the whole group; shared: 4 words of local memory. With spin_limit
- * 1 the tile before is always recounted: a test reaches the fallback so. */
+/* Words of local memory in which the leader tells its group how far it has come; at the end, the two sums. */
+enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_WORDS };
+
+/* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory. With
+ * spin_limit 1 the tile before is always recounted: a test reaches the fallback so. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 global uint *tiles, local uint *shared) {
-    bool leader = get_local_id(0) == 0, complete = false, look = s->spin_limit > 1 || number == 0;
+    bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
     while (!complete) {
         group_barrier();
         if (leader) {
-            bool done = look && scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->spin_limit);
-            shared[0] = done && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->spin_limit);
-            shared[1] = done ? back[1] : back[0];
-            shared[2] = shared[3] = 0;
+            bool done = look && scan_look_back(tiles, TILE_VERTICES, &back[0], &prefix[0], s->tiling.spin_limit);
+            shared[PREFIX_COMPLETE] =
+                done && scan_look_back(tiles, TILE_TRIANGLES, &back[1], &prefix[1], s->tiling.spin_limit);
+            shared[PREFIX_TILE] = done ? back[1] : back[0];
+            shared[PREFIX_VERTICES] = shared[PREFIX_TRIANGLES] = 0;
         }
         group_barrier();
-        complete = shared[0];
-        uint missing = shared[1] - 1;
+        complete = shared[PREFIX_COMPLETE];
+        uint unposted = shared[PREFIX_TILE] - 1;
         look = true;
         if (!complete) {
-            emission e = tile_recount(s, missing, samples, cells);
-            atomic_add(&shared[2], e.vertices);
-            atomic_add(&shared[3], e.triangles);
+            emit_counts e = tile_recount(s, unposted, samples, cells);
+            atomic_add(&shared[PREFIX_VERTICES], e.vertices);
+            atomic_add(&shared[PREFIX_TRIANGLES], e.triangles);
         }
         group_barrier();
         if (leader && !complete) {
             for (uint channel = 0; channel < 2; channel++) {
-                scan_post_sum(tiles, missing, channel, shared[2 + channel]);
-                if (back[channel] == missing + 1) prefix[channel] += shared[2 + channel], back[channel] = missing;
+                scan_post_sum(tiles, unposted, channel, shared[PREFIX_VERTICES + channel]);
+                if (back[channel] == unposted + 1)
+                    prefix[channel] += shared[PREFIX_VERTICES + channel], back[channel] = unposted;
             }
         }
     }
     if (leader) {
-        shared[0] = prefix[0];
-        shared[1] = prefix[1];
+        shared[PREFIX_VERTICES] = prefix[0];
+        shared[PREFIX_TRIANGLES] = prefix[1];
     }
     group_barrier();
-    return (uint2)(shared[0], shared[1]);
+    return (uint2)(shared[PREFIX_VERTICES], shared[PREFIX_TRIANGLES]);
 }
 
 /* Adds the tile's prefix to the offsets of its bricks, which so far count from the start of the tile. Done for bricks
@@ -92,7 +97,7 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
         uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);
         scan_post_prefix(tiles, number, TILE_VERTICES, vertices);
         scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
-        if (number + 1 == s->tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
+        if (number + 1 == s->tiling.tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
     }
     tile_finish(s, tile_locate(s, number), prefix, emitting, bricks, active, head, shared);
 }
@@ -102,30 +107,30 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
                      global ulong *words, global ulong *offsets, global ushort *triangle_offsets,
                      global brick_state *bricks, global uint *active, global uint *state, global ulong *scratch,
                      uint scratch_words) {
-    local uint shared[4];
+    local uint shared[PREFIX_WORDS];
     local sign_room for_sign;
     local count_room for_count;
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    global uint *head = state + s.head_offset, *tiles = state + s.tiles_offset;
-    tile_words k = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
-    active += s.active_offset;
+    global uint *head = state + s.results.head_offset, *tiles = state + s.results.tiles_offset;
+    tile_words signs = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
+    active += s.results.active_offset;
     uint number = 0, cell_count = 0, nonfinite = 0;
     own_tiles own = {NO_TILE, NO_TILE};
-    while (number < s.tile_count) {
+    while (number < s.tiling.tile_count) {
         group_barrier();
         if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
         group_barrier();
         number = shared[0];
         group_barrier();
-        if (number < s.tile_count) {
+        if (number < s.tiling.tile_count) {
             tile t = tile_locate(&s, number);
-            emission sums = {0, 0, 0};
+            emit_counts sums = {0, 0, 0};
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &for_sign);
-            halo_make(&s, t, samples, ranges, k.scratch);
+            halo_make(&s, t, samples, ranges, signs.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
-                layer_count(&s, t, z, k, cells, ranges, offsets, triangle_offsets, &sums,
+                layer_count(&s, t, z, signs, cells, ranges, offsets, triangle_offsets, &sums,
                             &tiles[TILE_WORDS * number + TILE_BRICKS], &for_count);
             cell_count += sums.cells;
             if (get_local_id(0) == 0) {

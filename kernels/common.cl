@@ -7,7 +7,7 @@
  * that say so, belong to one text, the rest to both. host/lib/opencl/text.c chooses the text for a device.
  *
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
- * WORK_ITEMS, of a group; MISSING; HYBRID.
+ * WORK_ITEMS, of a group; MISSING; METHOD, a name in methods.h.
  */
 #ifndef COMMON_CL
 #define COMMON_CL

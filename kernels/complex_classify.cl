@@ -7,27 +7,27 @@
 
 #include "complex_count.cl"
 
-inline_always void cluster_tile_settle(tile_tools k, uint number, cluster_arrays a) {
-    uint missing;
+inline_always void cluster_tile_settle(tile_tools tools, uint number, cluster_arrays a) {
+    uint unposted;
     bool look = false;
     cluster_sums none = {0};
-    while (!tile_settle(k, number, look, &missing)) {
-        tile_post(k, missing, tile_count(k, missing, a, true, &none));
+    while (!tile_settle(tools, number, look, &unposted)) {
+        tile_post(tools, unposted, tile_count(tools, unposted, a, true, &none));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == k.c->cluster_tiles) {
-        a.head[HEAD_ACTIVE] = tile_before(k.tiles, number + 1, TILE_VERTICES);
-        a.head[HEAD_TRIANGLES] = tile_before(k.tiles, number + 1, TILE_TRIANGLES);
+    if (get_local_id(0) == 0 && number + 1 == tools.c->cluster_tiles) {
+        a.head[HEAD_ACTIVE] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
+        a.head[HEAD_TRIANGLES] = tile_before(tools.tiles, number + 1, TILE_TRIANGLES);
     }
 }
 
 /* state: head and tiles, cleared. active receives the clusters that have active tetrahedra. */
-kernel void complex_classify(slab s, complex_job c, global const BITS *samples, global const uint *tetrahedra,
+kernel void complex_classify(complex_job c, global const BITS *samples, global const uint *tetrahedra,
                              global brick_range *ranges, global cluster_state *clusters, global uint *active,
                              global uint *state) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools k = {&s, &c, state + HEAD_WORDS, shared, sums};
+    tile_tools tools = {&c, state + HEAD_WORDS, shared, sums};
     cluster_arrays a = {
         {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset}, ranges, clusters, active, state};
     cluster_sums found = {0};
@@ -36,16 +36,16 @@ kernel void complex_classify(slab s, complex_job c, global const BITS *samples, 
     while (number < c.cluster_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_CLASSIFY], shared);
         if (number < c.cluster_tiles) {
-            tile_post(k, number, tile_count(k, number, a, false, &found));
+            tile_post(tools, number, tile_count(tools, number, a, false, &found));
             if (SETTLES_LATER)
-                own_append(&own, number, k.tiles);
+                own_append(&own, number, tools.tiles);
             else
-                cluster_tile_settle(k, number, a);
+                cluster_tile_settle(tools, number, a);
         }
     }
     if (LIST_BATCH > 1) clusters_append(a, &found);
-    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = k.tiles[TILE_WORDS * n + TILE_NEXT])
-        cluster_tile_settle(k, n, a);
+    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tools.tiles[TILE_WORDS * n + TILE_NEXT])
+        cluster_tile_settle(tools, n, a);
     if (found.crossed) atomic_add(&state[HEAD_CROSSED], found.crossed);
     if (found.invalid) atomic_or(&state[HEAD_INVALID], 1u);
 }
@@ -56,13 +56,13 @@ inline_always void cluster_list(const complex_job *c, uint n, global const uint 
                                 global const uchar *cases, global active_tetrahedron *out) {
     cluster_state cluster = clusters[n];
     uint tile = n / c->tile_clusters;
-    uint place = tile_before(tiles, tile, TILE_VERTICES) + cluster.active_before;
+    uint first = tile_before(tiles, tile, TILE_VERTICES) + cluster.active_before;
     uint triangle = tile_before(tiles, tile, TILE_TRIANGLES) + cluster.triangles_before;
     for (ulong rest = nibbles_any(cluster.patterns); rest; rest &= rest - 1) {
         uint bit = lowest_bit(rest), pattern = (uint)(cluster.patterns >> bit) & 15;
         uint4 points = vload4(n * CLUSTER_TETRAHEDRA + bit / 4, tetrahedra);
         active_tetrahedron t = {{points.x, points.y, points.z, points.w}, pattern, triangle, 0, 0};
-        out[place++] = t;
+        out[first++] = t;
         triangle += cases[CASE_BYTES * pattern + CASE_TRIANGLES];
     }
 }

@@ -45,7 +45,7 @@ inline_always brick_range keys_range(BITS16 low, BITS16 high) {
 }
 
 /* Checks the cluster's point numbers first. Where one is invalid, *invalid is set and the range is {0, 0}. */
-inline_always brick_range cluster_range(const slab *s, const complex_job *c, uint n, complex_arrays in, uint *invalid) {
+inline_always brick_range cluster_range(const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     brick_range range = {0, 0};
     if (!cluster_valid(c, n, in.tetrahedra + (ulong)CLUSTER_POINTS * n)) {
         *invalid = 1;
@@ -53,20 +53,20 @@ inline_always brick_range cluster_range(const slab *s, const complex_job *c, uin
     }
     BITS16 low = (BITS) ~(BITS)0, high = 0;
     for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
-        BITS16 keys = keys16(cluster_samples(c, n, m, in), s);
+        BITS16 keys = keys16(cluster_samples(c, n, m, in), &c->test);
         low = min(low, keys), high = max(high, keys);
     }
     return keys_range(low, high);
 }
 
 /* What the surface makes of a cluster, whose point numbers have to be valid. */
-inline_always cluster_report cluster_count(const slab *s, const complex_job *c, uint n, complex_arrays in) {
+inline_always cluster_report cluster_count(const complex_job *c, uint n, complex_arrays in) {
     ulong inside = 0, missing = 0;
     for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
         BITS16 bits = cluster_samples(c, n, m, in);
-        inside |= (ulong)mask_pack(inside_mask(bits, s)) << (16 * m);
+        inside |= (ulong)mask_pack(inside_mask(bits, &c->test)) << (16 * m);
 #if FLOATING
-        missing |= (ulong)mask_pack(missing_mask(bits, s)) << (16 * m);
+        missing |= (ulong)mask_pack(missing_mask(bits, &c->test)) << (16 * m);
 #endif
     }
     uint size = cluster_size(c, n);

@@ -27,8 +27,8 @@ typedef struct cluster_sums {
 } cluster_sums;
 
 inline_always void clusters_append(cluster_arrays a, cluster_sums *sums) {
-    uint place = atomic_add(&a.head[HEAD_ACTIVE_CLUSTERS], sums->active_count);
-    for (uint n = 0; n < sums->active_count; n++) a.active[place + n] = sums->active[n];
+    uint first = atomic_add(&a.head[HEAD_ACTIVE_CLUSTERS], sums->active_count);
+    for (uint n = 0; n < sums->active_count; n++) a.active[first + n] = sums->active[n];
     sums->active_count = 0;
 }
 
@@ -43,22 +43,22 @@ inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) 
 
 /* Whether the surface may pass through a cluster. The first visit stores the cluster's range. A recount during that
  * visit cannot use ranges, as another group may not have stored them yet: every valid cluster counts. */
-inline_always bool cluster_mixed(tile_tools k, uint n, cluster_arrays a, bool recount, cluster_sums *sums) {
-    if (k.s->ranges_known) return range_sign(k.s, a.ranges[n]) == SIGN_MIXED;
-    if (recount) return cluster_valid(k.c, n, a.in.tetrahedra + (ulong)CLUSTER_POINTS * n);
+inline_always bool cluster_mixed(tile_tools tools, uint n, cluster_arrays a, bool recount, cluster_sums *sums) {
+    if (tools.c->ranges_known) return range_sign(&tools.c->test, a.ranges[n]) == SIGN_MIXED;
+    if (recount) return cluster_valid(tools.c, n, a.in.tetrahedra + (ulong)CLUSTER_POINTS * n);
     uint invalid = 0;
-    brick_range range = cluster_range(k.s, k.c, n, a.in, &invalid);
+    brick_range range = cluster_range(tools.c, n, a.in, &invalid);
     a.ranges[n] = range;
     sums->invalid |= invalid;
-    return !invalid && range_sign(k.s, range) == SIGN_MIXED;
+    return !invalid && range_sign(&tools.c->test, range) == SIGN_MIXED;
 }
 
 /* Counts cluster n and adds it to the group's sums *running. none: this work-item has no cluster. */
-inline_always void cluster_add(tile_tools k, uint n, bool none, cluster_arrays a, bool recount, uint2 *running,
+inline_always void cluster_add(tile_tools tools, uint n, bool none, cluster_arrays a, bool recount, uint2 *running,
                                cluster_sums *sums) {
     cluster_report report = {0, 0, 0, 0};
-    if (!none) report = cluster_count(k.s, k.c, n, a.in);
-    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, k.sums);
+    if (!none) report = cluster_count(tools.c, n, a.in);
+    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, tools.sums);
     if (recount || !report.active) return;
     cluster_state state = {report.patterns, before.x, before.y};
     a.clusters[n] = state;

@@ -15,10 +15,10 @@ inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays
 }
 
 /* Bit n: range_sign() of ranges[n] is SIGN_MIXED, n from 0 to 15. */
-inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges) {
+inline_always uint ranges_mixed(const isovalue_test *test, global const brick_range *ranges) {
     uint16 first = vload16(0, (global const uint *)ranges), second = vload16(1, (global const uint *)ranges);
     uint16 low = (uint16)(first.even, second.even), high = (uint16)(first.odd, second.odd);
-    int16 mixed = (low < s->key_inside) & (high >= s->key_outside);
+    int16 mixed = (low < test->key_inside) & (high >= test->key_outside);
 #if FLOATING
     mixed |= (high >= KEY_INFINITY) | (low <= ~KEY_INFINITY);
 #endif
@@ -27,13 +27,13 @@ inline_always uint ranges_mixed(const slab *s, global const brick_range *ranges)
 
 /* Bit m: cluster first + m is below `end`, and mixed by its known range. Prefetches the tetrahedra of these clusters.
  */
-inline_always ulong mixed_prefetch(tile_tools k, uint first, uint end, cluster_arrays a) {
+inline_always ulong mixed_prefetch(tile_tools tools, uint first, uint end, cluster_arrays a) {
     ulong mixed = 0;
     if (first + 64 <= end)
-        for (uint m = 0; m < 64; m += 16) mixed |= (ulong)ranges_mixed(k.s, a.ranges + first + m) << m;
+        for (uint m = 0; m < 64; m += 16) mixed |= (ulong)ranges_mixed(&tools.c->test, a.ranges + first + m) << m;
     else
         for (uint m = 0; first + m < end; m++)
-            mixed |= (ulong)(range_sign(k.s, a.ranges[first + m]) == SIGN_MIXED) << m;
+            mixed |= (ulong)(range_sign(&tools.c->test, a.ranges[first + m]) == SIGN_MIXED) << m;
     for (ulong rest = mixed; rest; rest &= rest - 1) {
         global const uint *points = a.in.tetrahedra + (ulong)CLUSTER_POINTS * (first + lowest_bit(rest));
         for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
@@ -42,21 +42,21 @@ inline_always ulong mixed_prefetch(tile_tools k, uint first, uint end, cluster_a
 }
 
 /* Active tetrahedra and triangles of a tile; recount: nothing is stored. */
-inline_always uint2 tile_count(tile_tools k, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
-    uint first = number * k.c->tile_clusters, end = min(first + k.c->tile_clusters, k.c->cluster_count);
+inline_always uint2 tile_count(tile_tools tools, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
+    uint first = number * tools.c->tile_clusters, end = min(first + tools.c->tile_clusters, tools.c->cluster_count);
     uint2 running = 0;
-    if (!k.s->ranges_known) {
+    if (!tools.c->ranges_known) {
         for (uint n = first; n < end; n++)
-            if (cluster_mixed(k, n, a, recount, sums)) cluster_add(k, n, false, a, recount, &running, sums);
+            if (cluster_mixed(tools, n, a, recount, sums)) cluster_add(tools, n, false, a, recount, &running, sums);
         return running;
     }
-    ulong next = mixed_prefetch(k, first, end, a);
+    ulong next = mixed_prefetch(tools, first, end, a);
     for (uint start = first; start < end; start += 64) {
         ulong mixed = next;
-        next = mixed_prefetch(k, start + 64, end, a);
+        next = mixed_prefetch(tools, start + 64, end, a);
         for (; mixed; mixed &= mixed - 1) {
-            if (mixed & (mixed - 1)) cluster_prefetch(k.c, start + lowest_bit(mixed & (mixed - 1)), a.in);
-            cluster_add(k, start + lowest_bit(mixed), false, a, recount, &running, sums);
+            if (mixed & (mixed - 1)) cluster_prefetch(tools.c, start + lowest_bit(mixed & (mixed - 1)), a.in);
+            cluster_add(tools, start + lowest_bit(mixed), false, a, recount, &running, sums);
         }
     }
     return running;

@@ -7,7 +7,7 @@
 #include "complex_number.cl"
 #include "crossing.cl"
 
-/* The number of the vertex at place `owner`, whose tetrahedron owns it. */
+/* The number of the vertex in slot `owner`, whose tetrahedron owns it. */
 inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
                                  global const uint *tiles) {
     global const active_tetrahedron *t = active + owner / 4;
@@ -16,9 +16,9 @@ inline_always uint vertex_number(const complex_job *c, uint owner, global const 
 }
 
 /* The vertex on an edge. */
-inline_always void edge_vertex(const slab *s, uint2 edge, global const BITS *samples, global const float *points,
+inline_always void edge_vertex(const complex_job *c, uint2 edge, global const BITS *samples, global const float *points,
                                global float *out) {
-    float t = crossing(SAMPLE_VALUE(samples[edge.x]), SAMPLE_VALUE(samples[edge.y]), ISOVALUE(s));
+    float t = crossing(SAMPLE_VALUE(samples[edge.x]), SAMPLE_VALUE(samples[edge.y]), ISOVALUE(&c->test));
     float3 p0 = vload3(edge.x, points), p1 = vload3(edge.y, points);
     out[0] = t == 1 ? p1.x : p0.x + t * (p1.x - p0.x);
     out[1] = t == 1 ? p1.y : p0.y + t * (p1.y - p0.y);
@@ -47,7 +47,7 @@ inline_always uint number_at(uint4 numbers, uint n) {
     return n & 1 ? pair.y : pair.x;
 }
 
-inline_always void tetrahedron_emit(const slab *s, const complex_job *c, uint a, global const BITS *samples,
+inline_always void tetrahedron_emit(const complex_job *c, uint a, global const BITS *samples,
                                     global const float *points, global const active_tetrahedron *active,
                                     global const uchar *cases, global const uint *tiles, global const uint *table,
                                     global const uint *entries, global float *positions, global uint *triangles) {
@@ -60,14 +60,14 @@ inline_always void tetrahedron_emit(const slab *s, const complex_job *c, uint a,
         uint owner = table[entries[4 * a + n]];
         numbers[n] = vertex_number(c, owner, active, tiles);
         if (owner == 4 * a + n)
-            edge_vertex(s, edge_points(active, owner, cases), samples, points, positions + 3ul * numbers[n]);
+            edge_vertex(c, edge_points(active, owner, cases), samples, points, positions + 3ul * numbers[n]);
     }
     const uint4 all = (uint4)(numbers[0], numbers[1], numbers[2], numbers[3]);
     global uint *out = triangles + 3ul * active[a].triangle;
     for (uint n = 0; n < 3u * row[CASE_TRIANGLES]; n++) out[n] = number_at(all, row[CASE_CORNERS + n]);
 }
 
-kernel void complex_emit(slab s, complex_job c, global const BITS *samples, global const float *points,
+kernel void complex_emit(complex_job c, global const BITS *samples, global const float *points,
                          global const active_tetrahedron *active, global const uchar *cases, global uint *state,
                          global const uint *tiles, global const uint *table, global const uint *entries,
                          global float *positions, global uint *triangles) {
@@ -81,8 +81,7 @@ kernel void complex_emit(slab s, complex_job c, global const BITS *samples, glob
             if (WORK_ITEMS == 1 && number < c.active_tiles)
                 tetrahedron_prefetch(&c, a + FETCH_AHEAD, samples, points, active, table, entries);
             if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
-                tetrahedron_emit(&s, &c, a, samples, points, active, cases, tiles, table, entries, positions,
-                                 triangles);
+                tetrahedron_emit(&c, a, samples, points, active, cases, tiles, table, entries, positions, triangles);
         }
     }
 }

@@ -1,6 +1,5 @@
 /*
- * complex_job.h - what host and kernels share about a tetrahedral complex; of slab.h only isovalue, sample keys and the
- * limit of the scan apply
+ * complex_job.h - what the host tells the kernels about a part of a tetrahedral complex: read by both compilers
  */
 #ifndef COMPLEX_JOB_H
 #define COMPLEX_JOB_H
@@ -17,8 +16,8 @@ typedef struct cluster_state {
     slab_u32 triangles_before;
 } cluster_state;
 
-/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have places 0 to 3 in the order of
- * edges; place n of active tetrahedron a is known as 4 a + n. */
+/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have slots 0 to 3 in the order of
+ * edges; slot n of active tetrahedron a is slot 4 a + n of all. */
 typedef struct active_tetrahedron {
     slab_u32 points[4];
     slab_u32 pattern;  /* bit n: point n is inside */
@@ -28,7 +27,7 @@ typedef struct active_tetrahedron {
 } active_tetrahedron;
 
 /* The table of the 16 cases. For each: the number of crossed edges and of triangles; the two ends of each edge; the
- * triangles' corners, as places of edges. Derived from the tables of host/lib/grid/tables.h. */
+ * triangles' corners, as slots of edges. Derived from the tables of host/lib/grid/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
 /* The head of the state buffer, before the tiles of kernel 1. */
@@ -49,14 +48,17 @@ enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, CO
 #define EDGE_NONE 0xffffffffu
 
 typedef struct complex_job {
+    isovalue_test test;
     slab_u64 sample_offset;      /* of the first sample in its buffer, in samples */
     slab_u64 point_offset;       /* in floats */
     slab_u64 tetrahedron_offset; /* in words of 32 bits */
     slab_u32 point_count, tetrahedron_count, cluster_count, active_count;
     slab_u32 tile_clusters, tile_actives; /* per tile of kernel 1 and of the numbering */
     slab_u32 cluster_tiles, active_tiles;
-    slab_u32 table_mask;  /* entries of the table of edges, a power of two, less 1 */
-    slab_u32 probe_limit; /* entries looked at before the table counts as full */
+    slab_u32 spin_limit;   /* of the scan */
+    slab_u32 ranges_known; /* of clusters */
+    slab_u32 table_mask;   /* entries of the table of edges, a power of two, less 1 */
+    slab_u32 probe_limit;  /* entries looked at before the table counts as full */
 } complex_job;
 
 #endif

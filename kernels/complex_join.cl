@@ -3,8 +3,8 @@
  * joined, and the first tetrahedron with an edge owns its vertex
  *
  * The edges go into a hash table with open addressing, whose size is proportional to their number. An entry is the
- * place of an edge in the list of active tetrahedra, from which its points are read, so 32-bit atomics suffice. Once
- * taken, an entry only changes to an earlier place of the same edge: in the end it holds the first place, whatever the
+ * slot of an edge in the list of active tetrahedra, from which its points are read, so 32-bit atomics suffice. Once
+ * taken, an entry only changes to an earlier slot of the same edge: in the end it holds the first slot, whatever the
  * order of insertions.
  */
 #ifndef COMPLEX_JOIN_CL
@@ -13,9 +13,9 @@
 #include "complex_tile.cl"
 
 /* The two points of an edge, the lower first. */
-inline_always uint2 edge_points(global const active_tetrahedron *active, uint place, global const uchar *cases) {
-    global const active_tetrahedron *t = active + place / 4;
-    global const uchar *ends = cases + CASE_BYTES * t->pattern + CASE_ENDS + 2 * (place % 4);
+inline_always uint2 edge_points(global const active_tetrahedron *active, uint slot, global const uchar *cases) {
+    global const active_tetrahedron *t = active + slot / 4;
+    global const uchar *ends = cases + CASE_BYTES * t->pattern + CASE_ENDS + 2 * (slot % 4);
     uint a = t->points[ends[0]], b = t->points[ends[1]];
     return (uint2)(min(a, b), max(a, b));
 }
@@ -33,16 +33,16 @@ inline_always uint edges_of(uint a, global const active_tetrahedron *active, glo
 
 /* Enters an edge; `entry` is where the search begins. Returns the edge's entry, or 0 with *full set where none was free
  * within probe_limit. */
-inline_always uint edge_enter(const complex_job *c, uint place, uint entry, global const active_tetrahedron *active,
+inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
-    uint2 edge = edge_points(active, place, cases);
+    uint2 edge = edge_points(active, slot, cases);
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
         uint there = table[entry];
-        if (there == EDGE_NONE) there = atomic_cmpxchg(&table[entry], EDGE_NONE, place);
+        if (there == EDGE_NONE) there = atomic_cmpxchg(&table[entry], EDGE_NONE, slot);
         if (there == EDGE_NONE) return entry;
         uint2 other = edge_points(active, there, cases);
         if (other.x == edge.x && other.y == edge.y) {
-            if (place < there) atomic_min(&table[entry], place);
+            if (slot < there) atomic_min(&table[entry], slot);
             return entry;
         }
         entry = (entry + 1) & c->table_mask;

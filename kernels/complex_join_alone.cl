@@ -16,16 +16,16 @@ enum { EDGE_WAIT = 16, EDGE_QUEUE = 32 };
 
 typedef struct edge_work {
     uint2 points[RECENT_EDGES + 1];
-    uint places[RECENT_EDGES + 1];
+    uint slots[RECENT_EDGES + 1];
     uint queue[EDGE_QUEUE];
     uint hashed, asked, entered; /* new edges so far */
 } edge_work;
 
-/* This bit marks an edge that has been met before; the other bits are the place where. */
+/* This bit marks an edge that has been met before; the other bits are the slot where. */
 #define EDGE_MET 0x80000000u
 
 /* Stores for each edge of tetrahedron a where the search in the table begins, and prefetches that entry; or, for an
- * edge met lately, the place where it was met. Without branches: which edges are new is unpredictable. */
+ * edge met lately, the slot where it was met. Without branches: which edges are new is unpredictable. */
 inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, global uint *entries,
                               edge_work *work) {
@@ -34,14 +34,14 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
     loop_unrolled for (uint n = 0; n < 4; n++) edge[n] = edge_points(active, 4 * a + n, cases),
                                                hash[n] = edge_hash(edge[n]);
     loop_unrolled for (uint n = 0; n < 4; n++) {
-        uint place = 4 * a + n, exists = n < edges, first = hash[n] & c->table_mask & ~EDGE_MET;
-        uint r = exists ? hash[n] >> 21 : RECENT_EDGES, where = work->places[r];
+        uint slot = 4 * a + n, exists = n < edges, first = hash[n] & c->table_mask & ~EDGE_MET;
+        uint r = exists ? hash[n] >> 21 : RECENT_EDGES, where = work->slots[r];
         bool met = (work->points[r].x == edge[n].x) & (work->points[r].y == edge[n].y) & exists;
         work->points[r] = edge[n];
-        work->places[r] = met ? where : place;
-        entries[place] = met ? EDGE_MET | where : first;
+        work->slots[r] = met ? where : slot;
+        entries[slot] = met ? EDGE_MET | where : first;
         line_prefetch(table + first);
-        work->queue[hashed % EDGE_QUEUE] = place;
+        work->queue[hashed % EDGE_QUEUE] = slot;
         hashed += exists & !met;
     }
     work->hashed = hashed;
@@ -57,8 +57,8 @@ inline_always void edges_enter(const complex_job *c, uint wait, global const act
         line_prefetch(active + (there == EDGE_NONE ? 0 : there / 4));
     }
     for (; work->entered + wait < work->hashed; work->entered++) {
-        uint place = work->queue[work->entered % EDGE_QUEUE];
-        entries[place] = edge_enter(c, place, entries[place], active, cases, table, full);
+        uint slot = work->queue[work->entered % EDGE_QUEUE];
+        entries[slot] = edge_enter(c, slot, entries[slot], active, cases, table, full);
     }
 }
 
@@ -78,9 +78,9 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
             edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &full);
         }
         edges_enter(&c, 0, active, cases, table, entries, &work, &full);
-        for (uint place = 4 * first; place < 4 * (first + count); place++) {
-            uint entry = entries[place]; /* of an edge met before: the place whose entry it shares */
-            entries[place] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : place];
+        for (uint slot = 4 * first; slot < 4 * (first + count); slot++) {
+            uint entry = entries[slot]; /* of an edge met before: the slot whose entry it shares */
+            entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
         }
         if (full) break; /* the host starts again with a larger table */
     }

@@ -16,9 +16,9 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
         if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
         for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
             uint a = first + n, edges = edges_of(a, active, cases);
-            for (uint place = 4 * a; place < 4 * a + edges; place++) {
-                uint entry = edge_hash(edge_points(active, place, cases)) & c.table_mask;
-                entries[place] = edge_enter(&c, place, entry, active, cases, table, &full);
+            for (uint slot = 4 * a; slot < 4 * a + edges; slot++) {
+                uint entry = edge_hash(edge_points(active, slot, cases)) & c.table_mask;
+                entries[slot] = edge_enter(&c, slot, entry, active, cases, table, &full);
             }
         }
     }

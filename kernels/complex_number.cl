@@ -15,57 +15,57 @@ inline_always uint owned_edges(uint a, global const active_tetrahedron *active, 
 }
 
 /* Counts the vertices of a tile of active tetrahedra; stores numbers and owned edges unless `out` is NULL. */
-inline_always uint2 tile_number(tile_tools k, uint number, global const active_tetrahedron *active,
+inline_always uint2 tile_number(tile_tools tools, uint number, global const active_tetrahedron *active,
                                 global const uchar *cases, global const uint *table, global const uint *entries,
                                 global active_tetrahedron *out) {
     uint2 running = 0;
-    for (uint start = 0; start < k.c->tile_actives; start += WORK_ITEMS) {
-        uint a = number * k.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
-        bool exists = start + (uint)get_local_id(0) < k.c->tile_actives && a < k.c->active_count;
-        if (WORK_ITEMS == 1 && a + FETCH_AHEAD < k.c->active_count)
+    for (uint start = 0; start < tools.c->tile_actives; start += WORK_ITEMS) {
+        uint a = number * tools.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
+        bool exists = start + (uint)get_local_id(0) < tools.c->tile_actives && a < tools.c->active_count;
+        if (WORK_ITEMS == 1 && a + FETCH_AHEAD < tools.c->active_count)
             for (uint n = 0; n < 4; n++) line_prefetch(table + entries[4 * (a + FETCH_AHEAD) + n]);
         if (exists) owned = owned_edges(a, active, cases, table, entries);
-        uint2 before = group_prefix((uint2)((uint)popcount(owned), 0), &running, k.sums);
+        uint2 before = group_prefix((uint2)((uint)popcount(owned), 0), &running, tools.sums);
         if (exists && out) out[a].vertex = before.x, out[a].owned = owned;
     }
     return running;
 }
 
-inline_always void active_tile_settle(tile_tools k, uint number, global const active_tetrahedron *active,
+inline_always void active_tile_settle(tile_tools tools, uint number, global const active_tetrahedron *active,
                                       global const uchar *cases, global const uint *table, global const uint *entries,
                                       global uint *head) {
-    uint missing;
+    uint unposted;
     bool look = false;
-    while (!tile_settle(k, number, look, &missing)) {
-        tile_post(k, missing, tile_number(k, missing, active, cases, table, entries, NULL));
+    while (!tile_settle(tools, number, look, &unposted)) {
+        tile_post(tools, unposted, tile_number(tools, unposted, active, cases, table, entries, NULL));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == k.c->active_tiles)
-        head[HEAD_VERTICES] = tile_before(k.tiles, number + 1, TILE_VERTICES);
+    if (get_local_id(0) == 0 && number + 1 == tools.c->active_tiles)
+        head[HEAD_VERTICES] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
 }
 
 /* Numbers the vertices in the order of their owners. `tiles` has to be cleared. */
-kernel void complex_number(slab s, complex_job c, global active_tetrahedron *active, global const uchar *cases,
+kernel void complex_number(complex_job c, global active_tetrahedron *active, global const uchar *cases,
                            global uint *state, global uint *tiles, global const uint *table,
                            global const uint *entries) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools k = {&s, &c, tiles, shared, sums};
+    tile_tools tools = {&c, tiles, shared, sums};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
     if (WORK_ITEMS == 1 && state[HEAD_FULL]) return; /* entries are incomplete */
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
         if (number < c.active_tiles) {
-            tile_post(k, number, tile_number(k, number, active, cases, table, entries, active));
+            tile_post(tools, number, tile_number(tools, number, active, cases, table, entries, active));
             if (SETTLES_LATER)
                 own_append(&own, number, tiles);
             else
-                active_tile_settle(k, number, active, cases, table, entries, state);
+                active_tile_settle(tools, number, active, cases, table, entries, state);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
-        active_tile_settle(k, n, active, cases, table, entries, state);
+        active_tile_settle(tools, n, active, cases, table, entries, state);
 }
 
 #endif

@@ -11,7 +11,6 @@
 #include "scan.cl"
 
 typedef struct tile_tools {
-    const slab *s;
     const complex_job *c;
     global uint *tiles;
     local uint *shared; /* 4 words */
@@ -60,43 +59,44 @@ inline_always uint tile_before(global const uint *tiles, uint number, uint chann
     return number ? tiles[TILE_WORDS * (number - 1) + channel] & SCAN_VALUE : 0;
 }
 
-inline_always void tile_post(tile_tools k, uint number, uint2 sums) {
+inline_always void tile_post(tile_tools tools, uint number, uint2 sums) {
     if (get_local_id(0) != 0) return;
-    scan_post_sum(k.tiles, number, TILE_VERTICES, sums.x);
-    scan_post_sum(k.tiles, number, TILE_TRIANGLES, sums.y);
+    scan_post_sum(tools.tiles, number, TILE_VERTICES, sums.x);
+    scan_post_sum(tools.tiles, number, TILE_TRIANGLES, sums.y);
 }
 
 /* Looks back from a tile for the sum over all tiles before it. Where that is not complete, shared[1] - 1 is the tile
- * whose sum is missing. */
-inline_always bool tile_look_back(tile_tools k, uint number, uint channel, uint *prefix) {
+ * whose sum is not posted. */
+inline_always bool tile_look_back(tile_tools tools, uint number, uint channel, uint *prefix) {
     uint back = number;
-    bool done = scan_look_back(k.tiles, channel, &back, prefix, k.s->spin_limit);
-    k.shared[1] = back;
+    bool done = scan_look_back(tools.tiles, channel, &back, prefix, tools.c->spin_limit);
+    tools.shared[1] = back;
     return done;
 }
 
 /* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else tile
- * *missing has to be recounted first. With spin_limit 1 the tile before is always recounted: a test reaches the
+ * *unposted has to be recounted first. With spin_limit 1 the tile before is always recounted: a test reaches the
  * fallback so. */
-inline_always bool tile_settle(tile_tools k, uint number, bool look, uint *missing) {
+inline_always bool tile_settle(tile_tools tools, uint number, bool look, uint *unposted) {
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
         uint vertices = 0, triangles = 0; /* in kernel 1 `vertices` counts active tetrahedra */
-        k.shared[1] = number;
-        done = (look || k.s->spin_limit > 1 || number == 0) && tile_look_back(k, number, TILE_VERTICES, &vertices) &&
-               tile_look_back(k, number, TILE_TRIANGLES, &triangles);
+        tools.shared[1] = number;
+        done = (look || tools.c->spin_limit > 1 || number == 0) &&
+               tile_look_back(tools, number, TILE_VERTICES, &vertices) &&
+               tile_look_back(tools, number, TILE_TRIANGLES, &triangles);
         if (done) {
-            vertices += scan_own_sum(k.tiles, number, TILE_VERTICES);
-            triangles += scan_own_sum(k.tiles, number, TILE_TRIANGLES);
-            scan_post_prefix(k.tiles, number, TILE_VERTICES, vertices);
-            scan_post_prefix(k.tiles, number, TILE_TRIANGLES, triangles);
+            vertices += scan_own_sum(tools.tiles, number, TILE_VERTICES);
+            triangles += scan_own_sum(tools.tiles, number, TILE_TRIANGLES);
+            scan_post_prefix(tools.tiles, number, TILE_VERTICES, vertices);
+            scan_post_prefix(tools.tiles, number, TILE_TRIANGLES, triangles);
         }
-        k.shared[0] = done;
+        tools.shared[0] = done;
     }
     group_barrier();
-    done = k.shared[0];
-    *missing = k.shared[1] - 1;
+    done = tools.shared[0];
+    *unposted = tools.shared[1] - 1;
     group_barrier();
     return done;
 }

@@ -18,11 +18,11 @@ typedef struct tile {
 
 inline_always tile tile_locate(const slab *s, uint n) {
     tile t;
-    uint groups_y = (s->bricks_y + s->tile_rows - 1) / s->tile_rows;
-    t.y0 = n % groups_y * s->tile_rows * BRICK_ROWS;
-    t.y1 = min(t.y0 + s->tile_rows * BRICK_ROWS, s->ny);
-    t.z0 = s->z0 + n / groups_y * s->tile_layers * BRICK_PLANES;
-    t.z1 = min(t.z0 + s->tile_layers * BRICK_PLANES, s->z1);
+    uint groups_y = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows;
+    t.y0 = n % groups_y * s->tiling.tile_rows * BRICK_ROWS;
+    t.y1 = min(t.y0 + s->tiling.tile_rows * BRICK_ROWS, s->ny);
+    t.z0 = s->z0 + n / groups_y * s->tiling.tile_layers * BRICK_PLANES;
+    t.z1 = min(t.z0 + s->tiling.tile_layers * BRICK_PLANES, s->z1);
     return t;
 }
 
@@ -38,15 +38,15 @@ inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
 }
 
 inline_always ulong halo_row(const slab *s, tile t, uint z, uint w) {
-    return BRICK_ROWS * (ulong)(s->tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
+    return BRICK_ROWS * (ulong)(s->tiling.tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
 }
 
 /* The word of a row in the grid. The words of the next rows of its brick follow it, except in row y1. */
-inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    if (z >= t.z1) return k.scratch + halo_plane(s, t, y, w);
-    if (y >= t.y1) return k.scratch + halo_row(s, t, z, w);
+inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+    if (z >= t.z1) return signs.scratch + halo_plane(s, t, y, w);
+    if (y >= t.y1) return signs.scratch + halo_row(s, t, z, w);
     uint number = brick_index(s, y, z, w);
-    return brick_words(number, k.bricks[number].sign, k.words) + row_place(s, y, z);
+    return brick_words(number, signs.bricks[number].sign, signs.words) + row_in_brick(s, y, z);
 }
 
 inline_always void halo_make(const slab *s, tile t, global const BITS *samples, global const brick_range *ranges,
@@ -58,9 +58,9 @@ inline_always void halo_make(const slab *s, tile t, global const BITS *samples, 
             rows_words_make(s, y, min(t.y1 + 1, s->ny), t.z1, samples, ranges, scratch + halo_plane(s, t, y, 0));
 }
 
-typedef struct emission {
+typedef struct emit_counts {
     uint vertices, triangles, cells;
-} emission;
+} emit_counts;
 
 /* Of LANES rows of 64 cubes. */
 typedef struct row_counts {
@@ -71,14 +71,14 @@ typedef struct row_counts {
 inline_always row_counts rows_count(const slab *s, const cube_rows *r, uint y, uint z, uint w,
                                     global const ulong *cells) {
     row_counts c = {0, 0, 0, 0};
-    crossings k = crossings_owned(r);
+    crossings edges = crossings_owned(r);
     lanes active = cubes_active(r);
 #if MISSING
-    crossings_keep(s, cells, y, z, w, &k);
+    crossings_keep(s, cells, y, z, w, &edges);
     active &= cells_rows(s, cells, y, z, w);
 #endif
-    if (!lanes_any(active | crossings_any(&k))) return c;
-    c.packed = offsets_pack(&k, &c.vertices);
+    if (!lanes_any(active | crossings_any(&edges))) return c;
+    c.packed = offsets_pack(&edges, &c.vertices);
     c.triangles = triangles_count(r, active);
     c.cells = lanes_popcount(active);
     return c;
@@ -101,9 +101,10 @@ inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global co
 }
 
 /* The fallback of the scan: one work-item's share of a tile's sums, made of the samples alone. */
-inline_always emission tile_recount(const slab *s, uint number, global const BITS *samples, global const ulong *cells) {
+inline_always emit_counts tile_recount(const slab *s, uint number, global const BITS *samples,
+                                       global const ulong *cells) {
     tile t = tile_locate(s, number);
-    emission sums = {0, 0, 0};
+    emit_counts sums = {0, 0, 0};
     uint rows = (t.y1 - t.y0 + LANES - 1) / LANES, count = rows * (t.z1 - t.z0) * s->words_x;
     for (uint first = 0; first < count; first += WORK_ITEMS) {
         uint n = first + (uint)get_local_id(0);
@@ -113,7 +114,7 @@ inline_always emission tile_recount(const slab *s, uint number, global const BIT
 #pragma unroll 1
         for (uint m = 0; m < 8; m++) {
 #pragma unroll
-            for (uint k = 0; k < 7; k++) words[k] = words[k + 1];
+            for (uint m = 0; m < 7; m++) words[m] = words[m + 1];
             words[7] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
         }
         cube_rows r = cube_rows_of(s, y, z, w, rows_shifted(words[0], words[1]), rows_shifted(words[2], words[3]),

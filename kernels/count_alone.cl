@@ -14,18 +14,18 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
 
 /* Whether any sample that follows a uniform brick in x, y or z is on the other side. Bricks of the same tile that are
  * uniform decide by their sign; in others the words are read. */
-inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words k, uint sign) {
+inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words signs, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {
         const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
         if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
-        const uint found = up < t.y1 && deep < t.z1 ? k.bricks[brick_index(s, up, deep, across)].sign : SIGN_MIXED;
+        const uint found = up < t.y1 && deep < t.z1 ? signs.bricks[brick_index(s, up, deep, across)].sign : SIGN_MIXED;
         if (found == sign) continue;
         if (found != SIGN_MIXED) return true;
         const ulong columns = n & 1 ? 1 : word_valid(s, across);
         const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
         const uint stride = up < t.y1 ? BRICK_ROWS : s->words_x; /* from plane to plane */
-        global const ulong *row = tile_row(s, t, up, deep, across, k);
+        global const ulong *row = tile_row(s, t, up, deep, across, signs);
         lanes differ = 0;
         ulong differs = 0;
         for (uint plane = 0; plane < planes; plane++, row += stride)
@@ -40,17 +40,17 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
 
 /* Whether a uniform brick emits something; true for a mixed brick, which may. Where the seven bricks at higher x, y and
  * z are in this tile and on the same side, their signs suffice. */
-inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    const uint number = brick_index(s, y, z, w), sign = k.bricks[number].sign;
+inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+    const uint number = brick_index(s, y, z, w), sign = signs.bricks[number].sign;
     if (sign == SIGN_MIXED) return true;
     const uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
     const uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
-    global const brick_state *here = k.bricks + number, *behind = here + deep;
+    global const brick_state *here = signs.bricks + number, *behind = here + deep;
     const uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
                         (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
                         (behind[up + across].sign ^ sign);
     const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);
-    return (differ || halo) && neighbours_differ(s, t, y, z, w, k, sign);
+    return (differ || halo) && neighbours_differ(s, t, y, z, w, signs, sign);
 }
 
 /* Where the words are that the cubes of a brick take from one brick in x and y: its planes, and the plane after. */
@@ -61,13 +61,13 @@ typedef struct column {
 } column;
 
 /* Outside the grid all words are 0. */
-inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    global const ulong *none = brick_words(0, SIGN_OUTSIDE, k.words);
+inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+    global const ulong *none = brick_words(0, SIGN_OUTSIDE, signs.words);
     column c = {none, none, 0, 0};
     if (w >= s->words_x || y >= s->ny) return c;
     const uint end = min(z + BRICK_PLANES, t.z1);
-    c.first = tile_row(s, t, y, z, w, k), c.stride = y < t.y1 ? BRICK_ROWS : s->words_x;
-    if (end < s->nz) c.after = tile_row(s, t, y, end, w, k);
+    c.first = tile_row(s, t, y, z, w, signs), c.stride = y < t.y1 ? BRICK_ROWS : s->words_x;
+    if (end < s->nz) c.after = tile_row(s, t, y, end, w, signs);
     c.valid = rows_valid(s, y, w);
     return c;
 }
@@ -77,9 +77,9 @@ typedef struct brick_columns {
     column at, next, last, last_next;
 } brick_columns;
 
-inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
-    brick_columns c = {column_of(s, t, y, z, w, k), column_of(s, t, y, z, w + 1, k),
-                       column_of(s, t, y + BRICK_ROWS, z, w, k), column_of(s, t, y + BRICK_ROWS, z, w + 1, k)};
+inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+    brick_columns c = {column_of(s, t, y, z, w, signs), column_of(s, t, y, z, w + 1, signs),
+                       column_of(s, t, y + BRICK_ROWS, z, w, signs), column_of(s, t, y + BRICK_ROWS, z, w + 1, signs)};
     return c;
 }
 
@@ -94,7 +94,7 @@ inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_ro
     ulong last = *column_row(c.last, plane, after) & c.last.valid.s0;
     ulong last_next = *column_row(c.last_next, plane, after) & c.last_next.valid.s0;
     *a = rows_shifted(at, next);
-    *b = rows_shifted(lanes_up(at, last), lanes_up(next, last_next));
+    *b = rows_shifted(lanes_next_row(at, last), lanes_next_row(next, last_next));
 }
 
 /* Exclusive prefix sum over lanes. */
@@ -106,10 +106,11 @@ inline_always lanes lanes_before(lanes x) {
 }
 
 /* Counts a brick, stores where in it each row's output begins and returns which rows emit. */
-inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, tile_words k, global const ulong *cells,
-                               global ulong *offsets, global ushort *triangle_offsets, emission *sums) {
+inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, tile_words signs,
+                               global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets,
+                               emit_counts *sums) {
     const uint number = brick_index(s, y, z, w), planes = min((uint)BRICK_PLANES, t.z1 - z);
-    const brick_columns columns = columns_of(s, t, y, z, w, k);
+    const brick_columns columns = columns_of(s, t, y, z, w, signs);
     uint mask = 0;
     lanes cells_seen = 0, begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
     sample_rows a, b, c, d;
@@ -141,13 +142,13 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
     const uint deep = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
     const uint across = w + count < s->words_x ? count : count - 1;
     if (z + BRICK_PLANES >= s->z1 && s->z1 < s->nz) return false;
-    if (!s->ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
-    global const brick_range *here = ranges + s->range_offset + brick_index(s, y, z, w);
-    uint sign = run_sign(s, here, count);
-    return sign != SIGN_MIXED && run_sign(s, here + up, count) == sign && run_sign(s, here + deep, count) == sign &&
-           run_sign(s, here + up + deep, count) == sign && range_sign(s, here[across]) == sign &&
-           range_sign(s, here[up + across]) == sign && range_sign(s, here[deep + across]) == sign &&
-           range_sign(s, here[up + deep + across]) == sign;
+    if (!s->results.ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
+    global const brick_range *here = ranges + s->results.range_offset + brick_index(s, y, z, w);
+    uint sign = run_sign(&s->test, here, count);
+    return sign != SIGN_MIXED && run_sign(&s->test, here + up, count) == sign &&
+           run_sign(&s->test, here + deep, count) == sign && run_sign(&s->test, here + up + deep, count) == sign &&
+           range_sign(&s->test, here[across]) == sign && range_sign(&s->test, here[up + across]) == sign &&
+           range_sign(&s->test, here[deep + across]) == sign && range_sign(&s->test, here[up + deep + across]) == sign;
 }
 
 /* A group needs no local memory here. */
@@ -157,20 +158,20 @@ typedef struct count_room {
 
 /* Counts the layer that begins with plane z, brick by brick, and adds to *sums. A brick stores the sums before it, from
  * the start of the tile. *emitting: how many bricks of the tile emit something. */
-inline_always void layer_count(const slab *s, tile t, uint z, tile_words k, global const ulong *cells,
+inline_always void layer_count(const slab *s, tile t, uint z, tile_words signs, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
-                               emission *sums, global uint *emitting, local count_room *room) {
-    global brick_state *first = &k.bricks[brick_index(s, t.y0, z, 0)];
+                               emit_counts *sums, global uint *emitting, local count_room *room) {
+    global brick_state *first = &signs.bricks[brick_index(s, t.y0, z, 0)];
     first->vertices = sums->vertices, first->triangles = sums->triangles;
     for (uint y = t.y0; y < t.y1; y += BRICK_ROWS)
         for (uint run = 0; run < s->words_x; run += RUN_BRICKS_X) {
             uint end = min(run + RUN_BRICKS_X, s->words_x);
             if (run_skipped(s, t, y, z, run, end - run, ranges)) continue;
             for (uint w = run; w < end; w++) {
-                if (!brick_emits(s, t, y, z, w, k)) continue;
-                global brick_state *b = &k.bricks[brick_index(s, y, z, w)];
+                if (!brick_emits(s, t, y, z, w, signs)) continue;
+                global brick_state *b = &signs.bricks[brick_index(s, y, z, w)];
                 b->vertices = sums->vertices, b->triangles = sums->triangles;
-                b->rows = brick_count(s, t, y, z, w, k, cells, offsets, triangle_offsets, sums);
+                b->rows = brick_count(s, t, y, z, w, signs, cells, offsets, triangle_offsets, sums);
                 *emitting += b->rows != 0;
             }
         }

@@ -16,11 +16,11 @@ inline_always brick brick_locate(const slab *s, tile t, uint n) {
     return b;
 }
 
-inline_always sample_rows tile_rows_at(const slab *s, tile t, uint y, uint z, uint w, tile_words k) {
+inline_always sample_rows tile_rows_at(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
     ulong at = 0, next = 0;
     if (y < s->ny && z < s->nz) {
-        at = *tile_row(s, t, y, z, w, k) & word_valid(s, w);
-        if (w + 1 < s->words_x) next = *tile_row(s, t, y, z, w + 1, k) & word_valid(s, w + 1);
+        at = *tile_row(s, t, y, z, w, signs) & word_valid(s, w);
+        if (w + 1 < s->words_x) next = *tile_row(s, t, y, z, w + 1, signs) & word_valid(s, w + 1);
     }
     return rows_shifted(at, next);
 }
@@ -28,13 +28,13 @@ inline_always sample_rows tile_rows_at(const slab *s, tile t, uint y, uint z, ui
 /* What a work-item tells its group about the row that it counted. */
 typedef struct row_report {
     ulong packed;
-    emission e;
+    emit_counts e;
 } row_report;
 
-inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w, tile_words k,
+inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w, tile_words signs,
                                    global const ulong *cells) {
-    cube_rows r = cube_rows_of(s, y, z, w, tile_rows_at(s, t, y, z, w, k), tile_rows_at(s, t, y + 1, z, w, k),
-                               tile_rows_at(s, t, y, z + 1, w, k), tile_rows_at(s, t, y + 1, z + 1, w, k));
+    cube_rows r = cube_rows_of(s, y, z, w, tile_rows_at(s, t, y, z, w, signs), tile_rows_at(s, t, y + 1, z, w, signs),
+                               tile_rows_at(s, t, y, z + 1, w, signs), tile_rows_at(s, t, y + 1, z + 1, w, signs));
     row_counts c = rows_count(s, &r, y, z, w, cells);
     row_report report = {c.packed, {(uint)c.vertices, (uint)c.triangles, (uint)c.cells}};
     return report;
@@ -42,7 +42,7 @@ inline_always row_report row_count(const slab *s, tile t, uint y, uint z, uint w
 
 /* What a brick emits: sums over its rows; bit n of `rows`: row n emits something. */
 typedef struct brick_report {
-    emission e;
+    emit_counts e;
     uint rows;
 } brick_report;
 
@@ -52,45 +52,45 @@ typedef struct count_room {
     brick_report bricks[BRICKS_AT_ONCE];
 } count_room;
 
-inline_always void emission_add(emission *sum, emission e) {
+inline_always void emit_counts_add(emit_counts *sum, emit_counts e) {
     sum->vertices += e.vertices, sum->triangles += e.triangles, sum->cells += e.cells;
 }
 
 /* For brick `number` with rows[0] to [31]: stores where in it the work-item's row begins, and what the brick emits. */
 inline_always void brick_sum(uint number, const local row_report *rows, global ulong *offsets,
                              global ushort *triangle_offsets, local brick_report *out) {
-    const uint place = (uint)get_local_id(0) % BRICK_WORDS;
-    const row_report own = rows[place];
+    const uint brick_row = (uint)get_local_id(0) % BRICK_WORDS;
+    const row_report own = rows[brick_row];
     brick_report all = {{0, 0, 0}, 0};
-    emission before = all.e;
+    emit_counts before = all.e;
 #pragma unroll 4
     for (uint m = 0; m < BRICK_WORDS; m++) {
-        const emission row = rows[m].e;
-        if (m == place) before = all.e;
-        emission_add(&all.e, row);
+        const emit_counts row = rows[m].e;
+        if (m == brick_row) before = all.e;
+        emit_counts_add(&all.e, row);
         all.rows |= (uint)(row.vertices + row.triangles > 0) << m;
     }
     if (own.e.vertices + own.e.triangles > 0) {
-        offsets[BRICK_WORDS * number + place] = own.packed + before.vertices;
-        triangle_offsets[BRICK_WORDS * number + place] = (ushort)before.triangles;
+        offsets[BRICK_WORDS * number + brick_row] = own.packed + before.vertices;
+        triangle_offsets[BRICK_WORDS * number + brick_row] = (ushort)before.triangles;
     }
-    if (place == 0) *out = all;
+    if (brick_row == 0) *out = all;
 }
 
 /* Counts the layer that begins with plane z0, and adds to *sums, equally in all work-items. A brick stores the sums
  * before it, from the start of the tile. *emitting: how many bricks of the tile emit something. Only the sums live
  * across a barrier, and a work-item without a row counts another one's: some compilers make wrong code otherwise. */
-inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, global const ulong *cells,
+inline_always void layer_count(const slab *s, tile t, uint z0, tile_words signs, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
-                               emission *sums, global uint *emitting, local count_room *room) {
+                               emit_counts *sums, global uint *emitting, local count_room *room) {
     const uint count = layer_bricks(s, t);
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
         {
-            uint lid = (uint)get_local_id(0), place = lid % BRICK_WORDS;
+            uint lid = (uint)get_local_id(0), brick_row = lid % BRICK_WORDS;
             brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
-            uint y = b.y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+            uint y = b.y0 + brick_row % BRICK_ROWS, z = z0 + brick_row / BRICK_ROWS;
             bool mine = n + lid / BRICK_WORDS < count && y < t.y1 && z < t.z1;
-            row_report report = row_count(s, t, mine ? y : b.y0, mine ? z : z0, b.w, k, cells);
+            row_report report = row_count(s, t, mine ? y : b.y0, mine ? z : z0, b.w, signs, cells);
             if (!mine) report.e.vertices = 0, report.e.triangles = 0, report.e.cells = 0;
             room->rows[lid] = report;
         }
@@ -104,14 +104,14 @@ inline_always void layer_count(const slab *s, tile t, uint z0, tile_words k, glo
         group_barrier();
         {
             uint own = (uint)get_local_id(0);
-            emission before = *sums;
+            emit_counts before = *sums;
             for (uint m = 0; m < BRICKS_AT_ONCE; m++) {
                 if (m == own) before = *sums;
-                emission_add(sums, room->bricks[m].e);
+                emit_counts_add(sums, room->bricks[m].e);
             }
             if (own < BRICKS_AT_ONCE && n + own < count) {
                 brick b = brick_locate(s, t, n + own);
-                global brick_state *state = &k.bricks[brick_index(s, b.y0, z0, b.w)];
+                global brick_state *state = &signs.bricks[brick_index(s, b.y0, z0, b.w)];
                 state->vertices = before.vertices, state->triangles = before.triangles;
                 state->rows = room->bricks[own].rows;
                 if (state->rows) atomic_inc(emitting);

@@ -68,13 +68,13 @@ inline_always float root(float a) {
 #endif
 
 #if WIDE
-#define DIVIDE(a, b) ((a) / (b))
-#define ROOT(a)      sqrt(a)
-#define ISOVALUE(s)  as_double((s)->isovalue64)
+#define DIVIDE(a, b)   ((a) / (b))
+#define ROOT(a)        sqrt(a)
+#define ISOVALUE(test) as_double((test)->isovalue64)
 #else
-#define DIVIDE(a, b) divide(a, b)
-#define ROOT(a)      root(a)
-#define ISOVALUE(s)  ((s)->isovalue32)
+#define DIVIDE(a, b)   divide(a, b)
+#define ROOT(a)        root(a)
+#define ISOVALUE(test) ((test)->isovalue32)
 #endif
 
 /* Where the isovalue lies between the samples at the two ends. All three are halved where the difference overflows. */

@@ -30,11 +30,12 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
     local uint shared[1];
     local emit_room room;
     brick_work work;
-    mesh_buffers mesh = {positions + s.position_offset, normals + s.position_offset, triangles + s.triangle_offset};
+    mesh_buffers mesh = {positions + s.mesh.vertex_offset, normals + s.mesh.vertex_offset,
+                         triangles + s.mesh.triangle_offset};
     grid_arrays in = {samples, coordinates, blanked};
     row_results k1 = {words + UNIFORM_BRICKS * BRICK_WORDS, offsets, cells, triangle_offsets, bricks};
-    global uint *head = state + s.head_offset;
-    active += s.active_offset;
+    global uint *head = state + s.results.head_offset;
+    active += s.results.active_offset;
     uint active_count = head[STATE_ACTIVE_BRICKS], lid = (uint)get_local_id(0), run = 0;
     const uint run_bricks =
         clamp(active_count / (RUNS_PER_GROUP * (uint)get_num_groups(0)), (uint)RUN_LEAST, (uint)RUN_MOST);
@@ -48,7 +49,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
             uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
             next_prefetch(&s, active + n, active_count - n, k1, samples);
-            bool wanted = n < end && number >= s.brick_first && number < s.brick_last;
+            bool wanted = n < end && number >= s.mesh.brick_first && number < s.mesh.brick_last;
             brick_emit(&s, number, wanted, in, k1, cases, mesh, &room, &work);
         }
     }

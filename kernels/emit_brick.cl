@@ -18,7 +18,7 @@
 #include "vertex.cl"
 
 #define CASE_BITS  9
-#define CASE_STEP  (HYBRID ? 9 : 15) /* indices that are copied at once, as many as most cubes have */
+#define CASE_STEP  (3 * OF_METHOD(triangles_usual)) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
 /* The signs of a cube's corners, corner n in bit n. */
@@ -47,13 +47,13 @@ inline_always void lines_store(const void *words, uint count, global void *out) 
 /* Loads the samples at the ends of listed edges, and prefetches their points. */
 inline_always void batch_gather(const slab *s, const uint *list, uint count, grid_arrays in, brick_work *work) {
     for (uint n = 0; n < count; n++) {
-        const ulong place = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
+        const ulong sample = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
         const long step = work->step[list[n] >> 14];
-        global const BITS *from = in.samples + place;
+        global const BITS *from = in.samples + sample;
         work->a[n] = *from;
         work->b[n] = from[step];
 #if GRID == 2
-        global const float *p0 = in.coordinates + (3 * place + s->point_offset);
+        global const float *p0 = in.coordinates + (3 * sample + s->arrays.point_offset);
         line_prefetch(p0);
         line_prefetch(p0 + 3 * step);
 #endif
@@ -70,16 +70,16 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
         uint left = min(count - first, (uint)BATCH_STEP);
 #endif
         for (uint n = 0; n < BATCH_STEP; n++) {
-            t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(s));
+            t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(&s->test));
 #if GRID == 0
             position_make(s, brick, list[first + n], t[n], positions + 3 * n);
 #endif
         }
-#if GRID /* items past the end of the list are no valid places */
+#if GRID /* items past the end of the list are no valid edges */
         for (uint n = 0; n < left; n++) {
-            uint place = list[first + n];
-            position_between(s, in, brick, place, work->row_start[place >> 7 & 0x7f] + (place & 0x7f),
-                             work->step[place >> 14], t[n], positions + 3 * n);
+            uint edge = list[first + n];
+            position_between(s, in, brick, edge, work->row_start[edge >> 7 & 0x7f] + (edge & 0x7f),
+                             work->step[edge >> 14], t[n], positions + 3 * n);
         }
 #endif
         for (uint n = 0; n < 3; n++)
@@ -125,17 +125,17 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
     const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     uint count = 0;
     for (uint rows = mask; rows; rows &= rows - 1) {
-        uint place = lowest_bit(rows), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
-        work->patterns[place] = row_patterns(work->corners[z] + 2 * y, work->corners[z + 1] + 2 * y);
+        uint brick_row = lowest_bit(rows), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
+        work->patterns[brick_row] = row_patterns(work->corners[z] + 2 * y, work->corners[z + 1] + 2 * y);
     }
     for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, x = 0;
-        const uchar *patterns = (const uchar *)&work->patterns[place];
+        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS, x = 0;
+        const uchar *patterns = (const uchar *)&work->patterns[brick_row];
         ulong active = work->active[z][y];
         do {
             uint skipped = lowest_bit(active);
             x += skipped, active >>= skipped;
-            uint16 odd = (lane ^ x ^ row_odd(s, y, z)) & 1, number = NUMBER_PLACE(x, y, z) + lane;
+            uint16 odd = (lane ^ x ^ row_odd(s, y, z)) & 1, number = NUMBER_INDEX(x, y, z) + lane;
             uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << 8 | number << CASE_BITS;
             count += items_keep(items, active, work->list + count);
             x += 16, active >>= 16;
@@ -147,11 +147,11 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
 inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS;
+        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         ulong active = work->active[z][y];
         uint end = count + (uint)popcount(active);
         do {
-            work->list[count++] = place << 7 | lowest_bit(active);
+            work->list[count++] = brick_row << 7 | lowest_bit(active);
             active &= active - 1;
         } while (active);
         count = end;
@@ -160,7 +160,7 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
         uint x = work->list[n] & 0x7f, y = (work->list[n] >> 7) % BRICK_ROWS, z = (work->list[n] >> 7) / BRICK_ROWS;
         uint odd = (x ^ row_odd(s, y, z)) & 1;
         ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
-        work->list[n] = pattern_at(corners, x) | odd << 8 | NUMBER_PLACE(x, y, z) << CASE_BITS;
+        work->list[n] = pattern_at(corners, x) | odd << 8 | NUMBER_INDEX(x, y, z) << CASE_BITS;
     }
     return count;
 }
@@ -178,15 +178,15 @@ inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
     words16 rows[4];
     loop_unrolled for (uint n = 0; n < 4; n++) rows[n] =
-        *(const words16 *)(number + NUMBER_STEP * NUMBER_PLACE(0, n & 1, n >> 1));
+        *(const words16 *)(number + NUMBER_STEP * NUMBER_INDEX(0, n & 1, n >> 1));
     *(words16 *)out = numbers_shuffled(rows, entry + 1);
     *(words16 *)(out + 15) = numbers_shuffled(rows, entry + 16);
 }
 #else
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
-    loop_copied for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+    loop_copied for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_index[entry[1 + n]]];
     if (3 * entry[0] > CASE_STEP)
-        loop_copied for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_place[entry[1 + n]]];
+        loop_copied for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_index[entry[1 + n]]];
 }
 #endif
 
@@ -255,19 +255,19 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     brick_signs signs;
     const corner c = brick_corner(s, number);
     const brick_state state = k1.bricks[number];
-    uint first = s->vertex_base + state.vertices;
+    uint first = s->mesh.vertex_base + state.vertices;
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
     uint count = edges_list(s, state.rows, first, work);
 #ifdef REAL
-    vertices_emit(s, c, count, first - s->vertex_window, in, mesh, work);
+    vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif
     plane_number(s, c, &signs, k1, work);
     next_rows_number(s, c, &signs, k1, work);
     column_number(s, c, &signs, k1, work);
     count = cubes_list(s, state.rows, work);
-    triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->triangle_window), work);
+    triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->mesh.triangle_window), work);
 }
 
 #endif

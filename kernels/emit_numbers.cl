@@ -16,12 +16,12 @@
 #include "mesh.cl"
 #include "tetrahedra.cl"
 
-#define NUMBER_STEP NUMBER_TYPES(HYBRID)
+#define NUMBER_STEP NUMBER_TYPES(EDGE_TYPES)
 #define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
 #define LIST_MORE   16 /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
-#define CASE_ITEMS  (HYBRID ? 18 : 30) /* indices that a cube has at the most */
+#define CASE_ITEMS  (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
 
 /* Sign words of the brick's rows [0] and of the next brick in y [1], in the brick's planes and the next plane. */
 typedef struct brick_signs {
@@ -34,14 +34,14 @@ typedef struct brick_work {
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
     uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
-    uint list[LIST_EDGES + LIST_MORE]; /* edges as PLACE has them; cubes: see cubes_list */
+    uint list[LIST_EDGES + LIST_MORE]; /* edges as EDGE_CODE has them; cubes: see cubes_list */
 #ifdef MASK_REGISTERS
     bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
 #endif
-    ushort lane_place[4 * NUMBER_LANES];
+    ushort lane_index[4 * NUMBER_LANES];
     uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
 #ifdef REAL
-    ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of PLACE */
+    ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
     float positions[3 * BATCH_EDGES];
@@ -50,10 +50,10 @@ typedef struct brick_work {
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) {
     for (uint n = 0; n < 4 * NUMBER_LANES; n++)
-        work->lane_place[n] =
-            NUMBER_STEP * NUMBER_PLACE(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
+        work->lane_index[n] =
+            NUMBER_STEP * NUMBER_INDEX(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
 #ifdef REAL
-    for (uint n = 0; n < 64; n++) work->step[n] = place_step(s, n << 14);
+    for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
 #endif
 }
 
@@ -84,7 +84,7 @@ inline_always void signs_load(const slab *s, corner c, uint number, row_results 
 /* Rows 1 to 8 of plane z, where the brick has rows 0 to 7. */
 inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
     const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
-    sample_rows r = {lanes_up(here->at, up->at.s0), lanes_up(here->next, up->next.s0)};
+    sample_rows r = {lanes_next_row(here->at, up->at.s0), lanes_next_row(here->next, up->next.s0)};
     return r;
 }
 
@@ -105,13 +105,13 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
     for (uint n = 0; n < BRICK_PLANES; n++) {
         cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
                                    signs->rows[0][n + 1], signs_up(signs, n + 1));
-        crossings k = crossings_owned(&r);
+        crossings edges = crossings_owned(&r);
         lanes active = cubes_active(&r);
 #if MISSING
-        crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &k);
+        crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &edges);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
-        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(k.type[type], 0, work->crossed[n][type]);
+        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(edges.type[type], 0, work->crossed[n][type]);
         vstore8(active, 0, work->active[n]);
     }
 }
@@ -122,7 +122,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
 inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
 
 /* Numbers the crossed edges of a row of another brick. Where there are none, column 64 gets a meaningless number. */
-inline_always void row_number(uint *number, ulong crossed, uint first) {
+inline_always void neighbour_row_number(uint *number, ulong crossed, uint first) {
     do {
         number[NUMBER_STEP * lowest_bit(crossed)] = first++;
         crossed &= crossed - 1;
@@ -133,10 +133,11 @@ inline_always void row_number(uint *number, ulong crossed, uint first) {
 inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
-        uint place = lowest_bit(mask), y = place % BRICK_ROWS, z = place / BRICK_ROWS, row = y << 7 | z << 11;
-        uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, z);
+        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS,
+             row = y << 7 | z << 11;
+        uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
         loop_unrolled for (uint type = 0; type < EDGE_TYPES; type++) {
-            const uint codes[2] = {row + edge_place(type, odd), row + edge_place(type, !odd)};
+            const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
             do {
@@ -157,18 +158,18 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
     if (z >= s->nz) return;
     cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
-    crossings k = crossings_owned(&r);
+    crossings edges = crossings_owned(&r);
 #if MISSING
-    crossings_keep(s, k1.cells, c.y, z, w, &k);
+    crossings_keep(s, k1.cells, c.y, z, w, &edges);
 #endif
     ulong crossed[3][BRICK_ROWS];
-    vstore8(k.type[0], 0, crossed[0]), vstore8(k.type[1], 0, crossed[1]), vstore8(k.type[3], 0, crossed[2]);
-    for (uint rows = lanes_nonzero(k.type[0] | k.type[1] | k.type[3]); rows; rows &= rows - 1) {
-        uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, y, BRICK_PLANES);
+    vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
+    for (uint rows = lanes_nonzero(edges.type[0] | edges.type[1] | edges.type[3]); rows; rows &= rows - 1) {
+        uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
-        row_number(number, crossed[0][y], number_of(o, 0));
-        row_number(number + 1, crossed[1][y], number_of(o, 1));
-        if (!HYBRID) row_number(number + 3, crossed[2][y], number_of(o, 3));
+        neighbour_row_number(number, crossed[0][y], number_of(o, 0));
+        neighbour_row_number(number + 1, crossed[1][y], number_of(o, 1));
+        if (DIAGONALS) neighbour_row_number(number + 3, crossed[2][y], number_of(o, 3));
     }
 }
 
@@ -184,31 +185,31 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         const sample_rows *here = &signs->rows[1][n], *behind = last ? here : here + 1;
         const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = behind->at.s0, c1 = behind->next.s0;
         ulong x = (a0 ^ a1) & has_x, z = (a0 ^ c0) & has_z;
-        ulong xz = HYBRID ? 0 : ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z;
+        ulong xz = DIAGONALS ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z : 0;
 #if MISSING
-        crossings k = {{x, 0, z, 0, xz, 0}};
-        crossings_keep(s, k1.cells, y, c.z + n, w, &k);
-        x = k.type[0].s0, z = k.type[2].s0, xz = k.type[4].s0;
+        crossings edges = {{x, 0, z, 0, xz, 0}};
+        crossings_keep(s, k1.cells, y, c.z + n, w, &edges);
+        x = edges.type[0].s0, z = edges.type[2].s0, xz = edges.type[4].s0;
 #endif
         if (!(x | z | xz)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
-        uint *number = work->number + NUMBER_STEP * NUMBER_PLACE(0, BRICK_ROWS, n);
-        row_number(number, x, number_of(o, 0));
-        row_number(number + 2, z, number_of(o, 2));
-        if (!HYBRID) row_number(number + 4, xz, number_of(o, 4));
+        uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
+        neighbour_row_number(number, x, number_of(o, 0));
+        neighbour_row_number(number + 2, z, number_of(o, 2));
+        if (DIAGONALS) neighbour_row_number(number + 4, xz, number_of(o, 4));
     }
 }
 
 /* The first samples of the rows in the next brick in x. */
-inline_always lanes column_of(sample_rows rows) { return rows.next >> 63; }
+inline_always lanes next_column(sample_rows rows) { return rows.next >> 63; }
 
 /* Numbers the first edge of one type of the rows from y on in plane z of word w. */
 inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, corner c, row_results k1,
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint place = NUMBER_STEP * NUMBER_PLACE(64, row - c.y, z - c.z) + type;
-        work->number[place] = number_of(owner_of(s, row, z, w, k1), type);
+        uint index = NUMBER_STEP * NUMBER_INDEX(64, row - c.y, z - c.z) + type;
+        work->number[index] = number_of(owner_of(s, row, z, w, k1), type);
     }
 }
 
@@ -220,22 +221,22 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
         const uint z = c.z + n;
         const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
-        const lanes a = column_of(signs->rows[0][n]), b = column_of(signs_up(signs, n));
-        crossings k = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
-        k.type[1] = (a ^ b) & has_y;
+        const lanes a = next_column(signs->rows[0][n]), b = next_column(signs_up(signs, n));
+        crossings edges = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
+        edges.type[1] = (a ^ b) & has_y;
         if (n < BRICK_PLANES && z + 1 < s->nz) {
-            const lanes behind = column_of(signs->rows[0][n + 1]), diagonal = column_of(signs_up(signs, n + 1));
-            k.type[2] = a ^ behind;
-            if (!HYBRID) k.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
+            const lanes behind = next_column(signs->rows[0][n + 1]), diagonal = next_column(signs_up(signs, n + 1));
+            edges.type[2] = a ^ behind;
+            if (DIAGONALS) edges.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
             up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
         }
 #if MISSING
-        crossings_keep(s, k1.cells, c.y, z, w, &k);
+        crossings_keep(s, k1.cells, c.y, z, w, &edges);
         crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
 #endif
-        column_store(s, c.y, z, w, 1, lanes_nonzero(k.type[1]), c, k1, work);
-        column_store(s, c.y, z, w, 2, lanes_nonzero(k.type[2]), c, k1, work);
-        column_store(s, c.y, z, w, 5, lanes_nonzero(k.type[5]), c, k1, work);
+        column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
+        column_store(s, c.y, z, w, 2, lanes_nonzero(edges.type[2]), c, k1, work);
+        column_store(s, c.y, z, w, 5, lanes_nonzero(edges.type[5]), c, k1, work);
         if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
     }
 }

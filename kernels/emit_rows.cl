@@ -49,9 +49,9 @@ inline_always void next_prefetch(const slab *s, global const uint *active, uint 
 /* The sign word of a row, and the same shifted; 0 outside the grid. */
 inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_results k1) {
     if (y >= s->ny || z >= s->nz) return rows_shifted(0, 0);
-    uint number = brick_index(s, y, z, w), place = row_place(s, y, z);
-    ulong next = 0, at = brick_words(number, k1.bricks[number].sign, k1.words)[place] & word_valid(s, w);
-    if (w + 1 < s->words_x) next = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words)[place];
+    uint number = brick_index(s, y, z, w), brick_row = row_in_brick(s, y, z);
+    ulong next = 0, at = brick_words(number, k1.bricks[number].sign, k1.words)[brick_row] & word_valid(s, w);
+    if (w + 1 < s->words_x) next = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words)[brick_row];
     return rows_shifted(at, next);
 }
 
@@ -72,13 +72,13 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
     const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
     if (y >= s->ny || z >= s->nz) return;
     cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
-    crossings k = crossings_owned(&r);
+    crossings edges = crossings_owned(&r);
 #if MISSING
-    crossings_keep(s, k1.cells, y, z, w, &k);
+    crossings_keep(s, k1.cells, y, z, w, &edges);
 #endif
     const owner o = owner_of(s, y, z, w, k1);
 #pragma unroll
-    for (uint type = 0; type < EDGE_TYPES; type++) table->crossed[type][n] = k.type[type];
+    for (uint type = 0; type < EDGE_TYPES; type++) table->crossed[type][n] = edges.type[type];
     table->first[n] = o.first, table->packed[n] = o.packed;
 }
 
@@ -100,25 +100,25 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
                                 const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
     const uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
-    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->vertex_window);
+    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < EDGE_TYPES; type++) {
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint place = edge_place(type, !(even >> bit & 1)) + row + bit;
-            ulong from = row_start(s, brick.y + (place >> 7 & 0xf), z) + brick.x + (place & 0x7f);
-            long step = place_step(s, place);
+            uint edge = edge_code(type, !(even >> bit & 1)) + row + bit;
+            ulong from = row_start(s, brick.y + (edge >> 7 & 0xf), z) + brick.x + (edge & 0x7f);
+            long step = edge_step(s, edge);
             BITS a = in.samples[from], b = in.samples[from + step];
-            float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(s));
+            float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
 #if GRID
-            position_between(s, in, brick, place, from, step, t, position);
+            position_between(s, in, brick, edge, from, step, t, position);
 #else
-            position_make(s, brick, place, t, position);
+            position_make(s, brick, edge, t, position);
 #endif
             for (uint m = 0; m < 3; m++) mesh.positions[3 * out + m] = position[m];
 #if NORMALS
-            normal_store(in, s, brick, place, t, mesh.normals + 3 * out);
+            normal_store(in, s, brick, edge, t, mesh.normals + 3 * out);
 #endif
         }
     }
@@ -145,7 +145,7 @@ inline_always uint pattern_at(const cube_rows *r, uint bit) {
            (uint)(r->d0 >> bit & 1) << 6 | (uint)(r->d1 >> bit & 1) << 7;
 }
 
-/* All triangles of row n of a table, in order, from place `out` in the mesh on. */
+/* All triangles of row n of a table, in order, from index `out` of the mesh on. */
 inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, uint out, row_results k1,
                                  const local row_table *table, global const uchar *cases, mesh_buffers mesh) {
     const cube_rows r = row_cubes(s, y, z, w, true, true, k1);
@@ -165,17 +165,17 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, 
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
 
-/* Emits the row at a place of brick `number`. */
-inline_always void row_emit(const slab *s, uint number, uint place, grid_arrays in, row_results k1,
+/* Emits a row of brick `number`. */
+inline_always void row_emit(const slab *s, uint number, uint brick_row, grid_arrays in, row_results k1,
                             global const uchar *cases, mesh_buffers mesh, const local row_table *table) {
     const corner brick = brick_corner(s, number);
-    const uint y = brick.y + place % BRICK_ROWS, z = brick.z + place / BRICK_ROWS;
-    const uint n = place % BRICK_ROWS + TABLE_ROWS_Y * (place / BRICK_ROWS);
-    const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + place];
+    const uint y = brick.y + brick_row % BRICK_ROWS, z = brick.z + brick_row / BRICK_ROWS;
+    const uint n = brick_row % BRICK_ROWS + TABLE_ROWS_Y * (brick_row / BRICK_ROWS);
+    const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + brick_row];
 #ifdef REAL
     row_vertices(s, brick, y, z, n, in, table, mesh);
 #endif
-    row_triangles(s, y, z, brick.x / 64, n, before - s->triangle_window, k1, table, cases, mesh);
+    row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }
 
 /* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group. No variable lives
@@ -186,8 +186,8 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     group_barrier();
     if (wanted) table_make(s, brick_corner(s, number), k1, table);
     group_barrier();
-    uint place = (uint)get_local_id(0) % BRICK_WORDS;
-    if (wanted && k1.bricks[number].rows >> place & 1) row_emit(s, number, place, in, k1, cases, mesh, table);
+    uint brick_row = (uint)get_local_id(0) % BRICK_WORDS;
+    if (wanted && k1.bricks[number].rows >> brick_row & 1) row_emit(s, number, brick_row, in, k1, cases, mesh, table);
 }
 
 #endif

@@ -23,9 +23,9 @@
 #define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
 #endif
 
-/* Stores a whole cache line without reading it into the caches; `place` is the start of a line. */
+/* Stores a whole cache line without reading it into the caches; `out` is the start of a line. */
 #ifndef line_store
-#define line_store(value, place) __builtin_nontemporal_store(value, place)
+#define line_store(value, out) __builtin_nontemporal_store(value, out)
 #endif
 
 /* Hints for the loop that follows. */

@@ -43,7 +43,7 @@ inline_always uint lanes_nonzero(lanes x) {
 #endif
 
 /* Lane n of the result is lane n + 1 of x; the highest lane is `last`. */
-inline_always lanes lanes_up(lanes x, ulong last) { return ulongs_joined(x, last); }
+inline_always lanes lanes_next_row(lanes x, ulong last) { return ulongs_joined(x, last); }
 
 /* For normals: axes that are computed at once. */
 #define AXES_AT_ONCE 3

@@ -26,12 +26,12 @@ typedef struct row_results {
 
 inline_always corner brick_corner(const slab *s, uint number) {
     corner c = {number % s->words_x * 64, number / s->words_x % s->bricks_y * BRICK_ROWS,
-                s->word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
+                s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
     return c;
 }
 
 inline_always uint brick_vertices(const slab *s, uint z, uint number, row_results k1) {
-    return (z < s->z1 ? s->vertex_base : s->vertex_base_next) + k1.bricks[number].vertices;
+    return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[number].vertices;
 }
 
 /* Where the numbers of the vertices that a row of 64 samples owns begin. */
@@ -42,35 +42,35 @@ typedef struct owner {
 
 inline_always owner owner_of(const slab *s, uint y, uint z, uint w, row_results k1) {
     uint number = brick_index(s, y, z, w);
-    owner o = {brick_vertices(s, z, number, k1), k1.offsets[BRICK_WORDS * number + row_place(s, y, z)]};
+    owner o = {brick_vertices(s, z, number, k1), k1.offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
     return o;
 }
 
 inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
 /* Where an edge of a type lies, from the sample that owns it. Diagonals depend on the parity of the cube. */
-inline_always uint edge_place(uint type, bool odd) {
+inline_always uint edge_code(uint type, bool odd) {
     switch (type) {
     case 0:
-        return PLACE(0, 0, 0, 1, 0, 0);
+        return EDGE_CODE(0, 0, 0, 1, 0, 0);
     case 1:
-        return PLACE(0, 0, 0, 0, 1, 0);
+        return EDGE_CODE(0, 0, 0, 0, 1, 0);
     case 2:
-        return PLACE(0, 0, 0, 0, 0, 1);
+        return EDGE_CODE(0, 0, 0, 0, 0, 1);
     case 3:
-        return odd ? PLACE(1, 0, 0, -1, 1, 0) : PLACE(0, 0, 0, 1, 1, 0);
+        return odd ? EDGE_CODE(1, 0, 0, -1, 1, 0) : EDGE_CODE(0, 0, 0, 1, 1, 0);
     case 4:
-        return odd ? PLACE(1, 0, 0, -1, 0, 1) : PLACE(0, 0, 0, 1, 0, 1);
+        return odd ? EDGE_CODE(1, 0, 0, -1, 0, 1) : EDGE_CODE(0, 0, 0, 1, 0, 1);
     default:
-        return odd ? PLACE(0, 1, 0, 0, -1, 1) : PLACE(0, 0, 0, 0, 1, 1);
+        return odd ? EDGE_CODE(0, 1, 0, 0, -1, 1) : EDGE_CODE(0, 0, 0, 0, 1, 1);
     }
 }
 
 #ifdef REAL
 
 /* Distance of an edge's two samples in the sample buffer. */
-inline_always long place_step(const slab *s, uint place) {
-    long x = (long)(place >> 14 & 3) - 1, y = (long)(place >> 16 & 3) - 1, z = (long)(place >> 18 & 3) - 1;
+inline_always long edge_step(const slab *s, uint edge) {
+    long x = (long)(edge >> 14 & 3) - 1, y = (long)(edge >> 16 & 3) - 1, z = (long)(edge >> 18 & 3) - 1;
     return x + (y + z * s->ny) * s->nx;
 }
 

@@ -33,16 +33,16 @@ inline_always bool range_finite(brick_range range) {
 #endif
 }
 
-inline_always uint range_sign(const slab *s, brick_range range) {
+inline_always uint range_sign(const isovalue_test *test, brick_range range) {
     if (!range_finite(range)) return SIGN_MIXED;
-    return range.low >= s->key_inside ? SIGN_INSIDE : range.high < s->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
+    return range.low >= test->key_inside ? SIGN_INSIDE : range.high < test->key_outside ? SIGN_OUTSIDE : SIGN_MIXED;
 }
 
-inline_always BITS key_of(BITS bits, const slab *s) {
+inline_always BITS key_of(BITS bits, const isovalue_test *test) {
 #if FLOATING
     return bits ^ ((BITS)((signed_bits)bits >> (FLOATING - 1)) | KEY_SIGN);
 #else
-    return bits ^ (BITS)s->key_flip;
+    return bits ^ (BITS)test->key_flip;
 #endif
 }
 

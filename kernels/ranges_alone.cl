@@ -6,11 +6,11 @@
 
 #include "ranges.cl"
 
-inline_always BITS16 keys16(BITS16 bits, const slab *s) {
+inline_always BITS16 keys16(BITS16 bits, const isovalue_test *test) {
 #if FLOATING
     return bits ^ (PASTE(as_, BITS16)((PASTE(as_, SIGNED16)(bits)) >> (FLOATING - 1)) | KEY_SIGN);
 #else
-    return bits ^ (BITS)s->key_flip;
+    return bits ^ (BITS)test->key_flip;
 #endif
 }
 

@@ -17,7 +17,8 @@ inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0
 
 /* The side of the brick that holds a word, also in another tile. On the first visit ranges are unknown: SIGN_MIXED. */
 inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global const brick_range *ranges) {
-    return s->ranges_known ? range_sign(s, ranges[s->range_offset + brick_index(s, y, z, w)]) : SIGN_MIXED;
+    return s->results.ranges_known ? range_sign(&s->test, ranges[s->results.range_offset + brick_index(s, y, z, w)])
+                                   : SIGN_MIXED;
 }
 
 inline_always void brick_sign_store(uint number, uint sign, global brick_state *bricks) {

@@ -7,16 +7,16 @@
 
 #include "sign.cl"
 
-inline_always samples64 keys64(samples64 bits, const slab *s) {
+inline_always samples64 keys64(samples64 bits, const isovalue_test *test) {
 #if FLOATING
     return bits ^ (signs64(bits) | KEY_SIGN);
 #else
-    return bits ^ (BITS)s->key_flip;
+    return bits ^ (BITS)test->key_flip;
 #endif
 }
 
-inline_always ulong word_make(samples64 bits, const slab *s) {
-    return at_most64(bits - (BITS)s->inside_low, (samples64)(BITS)s->inside_span);
+inline_always ulong word_make(samples64 bits, const isovalue_test *test) {
+    return at_most64(bits - (BITS)test->inside_low, (samples64)(BITS)test->inside_span);
 }
 
 /* 64 samples of a row; those past its end repeat the first. */
@@ -25,7 +25,7 @@ inline_always samples64 samples_load64(global const BITS *samples, const slab *s
     ulong start = row_start(s, y, z) + 64ul * w;
     global const BITS *first = samples + start;
     if (left >= 64) return *(global const samples64_unaligned *)first;
-    if (start + 64 <= s->sample_offset + s->sample_count) {
+    if (start + 64 <= s->arrays.sample_offset + s->arrays.sample_count) {
         samples64 bits = *(global const samples64_unaligned *)first;
         return lane64 < (BITS)left ? bits : (samples64)bits[0];
     }
@@ -41,11 +41,11 @@ typedef union keys_parts {
 } keys_parts;
 
 inline_always void line_widen(samples64 keys, line_keys *low, line_keys *high) {
-    keys_parts k = {keys};
+    keys_parts parts = {keys};
     line_keys least = *low, most = *high;
     loop_unrolled for (uint n = 0; n < 64 / LINE_KEYS; n++) {
-        least = k.line[n] < least ? k.line[n] : least;
-        most = k.line[n] > most ? k.line[n] : most;
+        least = parts.line[n] < least ? parts.line[n] : least;
+        most = parts.line[n] > most ? parts.line[n] : most;
     }
     *low = least, *high = most;
 }
@@ -63,10 +63,10 @@ inline_always brick_range line_range(line_keys low, line_keys high) {
 inline_always void brick_words_make(const slab *s, uint y0, uint z0, uint w, global const BITS *samples,
                                     global ulong *out) {
     ulong valid = word_valid(s, w);
-    for (uint place = 0; place < BRICK_WORDS; place++) {
-        uint y = y0 + place % BRICK_ROWS, z = z0 + place / BRICK_ROWS;
+    for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++) {
+        uint y = y0 + brick_row % BRICK_ROWS, z = z0 + brick_row / BRICK_ROWS;
         bool exists = y < s->ny && z < s->z1;
-        out[place] = exists ? word_make(samples_load64(samples, s, y, z, w), s) & valid : 0;
+        out[brick_row] = exists ? word_make(samples_load64(samples, s, y, z, w), &s->test) & valid : 0;
     }
 }
 
@@ -102,36 +102,36 @@ inline_always void strip_visit(const slab *s, strip p, global const BITS *sample
         const bool last = plane + 1 == BRICK_PLANES;
         global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + later * (ulong)s->nx;
         for (uint row = 0; row < rows; row++, ahead += s->nx) {
-            const uint first = row / BRICK_ROWS * p.count, place = BRICK_ROWS * plane + row % BRICK_ROWS;
+            const uint first = row / BRICK_ROWS * p.count, brick_row = BRICK_ROWS * plane + row % BRICK_ROWS;
             if (row + later == rows)
                 ahead = samples + row_start(s, last ? p.y + rows : p.y, last ? p.z : z + 1) + 64ul * p.w;
             for (uint n = 0; n < p.count && row < have; n++) {
                 loop_unrolled for (uint m = 0; m < 64; m += 64 / sizeof(BITS)) line_prefetch(ahead + 64 * n + m);
                 samples64 bits = samples_load64(samples, s, p.y + row, z, p.w + n);
-                word[first + n][place] = word_make(bits, s);
-                line_widen(keys64(bits, s), &low[first + n], &high[first + n]);
+                word[first + n][brick_row] = word_make(bits, &s->test);
+                line_widen(keys64(bits, &s->test), &low[first + n], &high[first + n]);
             }
-            for (uint n = 0; n < p.count && row >= have; n++) word[first + n][place] = 0;
+            for (uint n = 0; n < p.count && row >= have; n++) word[first + n][brick_row] = 0;
         }
     }
     for (uint n = 0; n < p.rows * p.count; n++) {
         uint w = p.w + n % p.count, number = brick_index(s, p.y + n / p.count * BRICK_ROWS, p.z, w);
         brick_range range = line_range(low[n], high[n]);
-        uint sign = range_sign(s, range);
-        ranges[s->range_offset + number] = range;
+        uint sign = range_sign(&s->test, range);
+        ranges[s->results.range_offset + number] = range;
         brick_sign_store(number, sign, bricks);
 #if FLOATING && !MISSING
         *nonfinite |= !range_finite(range);
 #endif
         if (sign != SIGN_MIXED) continue;
         ulong valid = word_valid(s, w);
-        for (uint place = 0; place < BRICK_WORDS; place++)
-            words[(ulong)BRICK_WORDS * number + place] = word[n][place] & valid;
+        for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++)
+            words[(ulong)BRICK_WORDS * number + brick_row] = word[n][brick_row] & valid;
     }
 }
 
 /* The side that all bricks of a run are on by their ranges, or SIGN_MIXED. */
-inline_always uint run_sign(const slab *s, global const brick_range *ranges, uint count) {
+inline_always uint run_sign(const isovalue_test *test, global const brick_range *ranges, uint count) {
     brick_range whole = ranges[0];
     if (count == RUN_BRICKS_X) {
         uint16 r = vload16(0, (global const uint *)ranges);
@@ -143,23 +143,23 @@ inline_always uint run_sign(const slab *s, global const brick_range *ranges, uin
         whole.low = min(whole.low, ranges[n].low);
         whole.high = max(whole.high, ranges[n].high);
     }
-    return range_sign(s, whole);
+    return range_sign(test, whole);
 }
 
 /* Stores signs of bricks whose ranges are known. Prefetches the samples of mixed bricks; returns these, a bit each. */
 inline_always uint run_sign_again(const slab *s, uint y0, uint z0, uint w, uint count, global const BITS *samples,
                                   global brick_state *bricks, global const brick_range *ranges) {
     const uint first = brick_index(s, y0, z0, w);
-    const uint sign = run_sign(s, ranges + s->range_offset + first, count);
+    const uint sign = run_sign(&s->test, ranges + s->results.range_offset + first, count);
     uint mixed = 0;
     for (uint n = 0; n < count; n++) brick_sign_store(first + n, sign, bricks);
     for (uint n = 0; n < count && sign == SIGN_MIXED; n++) {
-        uint own = range_sign(s, ranges[s->range_offset + first + n]);
+        uint own = range_sign(&s->test, ranges[s->results.range_offset + first + n]);
         bricks[first + n].sign = own;
         if (own != SIGN_MIXED) continue;
         mixed |= 1u << n;
-        for (uint place = 0; place < BRICK_WORDS; place++)
-            row_prefetch(s, y0 + place % BRICK_ROWS, z0 + place / BRICK_ROWS, w + n, 1, samples);
+        for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++)
+            row_prefetch(s, y0 + brick_row % BRICK_ROWS, z0 + brick_row / BRICK_ROWS, w + n, 1, samples);
     }
     return mixed;
 }
@@ -196,7 +196,7 @@ typedef struct sign_room {
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
                               local sign_room *room) {
-    if (s->ranges_known) {
+    if (s->results.ranges_known) {
         layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
         return;
     }
@@ -210,7 +210,7 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
 
 /* The word at w of a row of any tile; `sign` is the side of its brick. */
 inline_always ulong word_at(const slab *s, uint y, uint z, uint w, uint sign, global const BITS *samples) {
-    ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), s) : sign_word(sign);
+    ulong word = sign == SIGN_MIXED ? word_make(samples_load64(samples, s, y, z, w), &s->test) : sign_word(sign);
     return word & word_valid(s, w);
 }
 

@@ -18,12 +18,12 @@ inline_always void part_visit(const slab *s, uint y, uint z, uint part, global c
     uint signs = 0;
 #pragma unroll 4
     for (uint n = 0; n < count; n++) {
-        const BITS bits = row[n], key = key_of(bits, s);
-        signs |= (uint)bits_inside(bits, s) << n;
+        const BITS bits = row[n], key = key_of(bits, &s->test);
+        signs |= (uint)bits_inside(bits, &s->test) << n;
         low = min(low, key), high = max(high, key);
     }
     ((global ushort *)word)[part % ROW_PARTS] = (ushort)signs;
-    if (s->ranges_known || !count) return;
+    if (s->results.ranges_known || !count) return;
     atomic_min(&range->low, key_upper(low));
     atomic_max(&range->high, key_upper(high));
 }
@@ -45,28 +45,29 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         {
             uint lid = (uint)get_local_id(0), number = first + min(n + lid, count - 1);
             if (lid < BRICKS_AT_ONCE) {
-                found[lid].low = s->ranges_known ? ranges[s->range_offset + number].low : ~0u;
-                found[lid].high = s->ranges_known ? ranges[s->range_offset + number].high : 0;
+                found[lid].low = s->results.ranges_known ? ranges[s->results.range_offset + number].low : ~0u;
+                found[lid].high = s->results.ranges_known ? ranges[s->results.range_offset + number].high : 0;
             }
         }
         group_barrier();
         for (uint step = 0; step < ROW_PARTS; step++) {
             uint item = step * WORK_ITEMS + (uint)get_local_id(0), b = item / (ROW_PARTS * BRICK_WORDS);
-            uint place = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
-            uint y = y0 + number / s->words_x * BRICK_ROWS + place % BRICK_ROWS, zp = z + place / BRICK_ROWS;
+            uint brick_row = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
+            uint y = y0 + number / s->words_x * BRICK_ROWS + brick_row % BRICK_ROWS, zp = z + brick_row / BRICK_ROWS;
             bool wanted = number < count && y < s->ny && zp < s->z1;
-            if (wanted && s->ranges_known) wanted = range_sign(s, found[b]) == SIGN_MIXED;
+            if (wanted && s->results.ranges_known) wanted = range_sign(&s->test, found[b]) == SIGN_MIXED;
             if (wanted)
                 part_visit(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
-                           words + (ulong)BRICK_WORDS * (first + number) + place, &found[b]);
+                           words + (ulong)BRICK_WORDS * (first + number) + brick_row, &found[b]);
         }
         group_barrier();
         {
             uint lid = (uint)get_local_id(0), number = first + n + lid;
             if (lid < BRICKS_AT_ONCE && n + lid < count) {
                 brick_range range = found[lid];
-                brick_sign_store(number, range_sign(s, range), bricks);
-                if (!s->ranges_known) ranges[s->range_offset + number] = range; /* a known one: other groups read it */
+                brick_sign_store(number, range_sign(&s->test, range), bricks);
+                if (!s->results.ranges_known)
+                    ranges[s->results.range_offset + number] = range; /* a known one: other groups read it */
 #if FLOATING && !MISSING
                 *nonfinite |= !range_finite(range);
 #endif

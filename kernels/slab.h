@@ -22,7 +22,7 @@ typedef float slab_f32;
 #endif
 
 /* The unit of order: 64 x 8 x 4 samples. A row of 64 samples is one sign word. A brick has 32 rows, whose words are
- * consecutive: that of row (y, z) of the brick has place 8 z + y. */
+ * consecutive: that of row (y, z) of the brick has index 8 z + y. */
 enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 
 /* On which side a brick's samples are. Words of uniform bricks are not stored: two bricks of constant words at the
@@ -32,7 +32,7 @@ enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 /* What kernel 1 finds out about a brick. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
-    slab_u32 rows;                /* bit n: the row of place n emits something */
+    slab_u32 rows;                /* bit n: row n of the brick emits something */
     slab_u32 sign;
 } brick_state;
 
@@ -48,15 +48,15 @@ enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
  * make their number a power of two. */
-#define NUMBER_TYPES(hybrid) ((hybrid) ? 4 : 8)
+#define NUMBER_TYPES(edge_types) ((edge_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* The index of a sample in that table, in samples. */
-#define NUMBER_PLACE(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
+#define NUMBER_INDEX(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
 
 /* For that kernel the table of cases names lanes. A cube has four rows of samples; from its first sample on,
  * NUMBER_LANES numbers of each row make a vector. A lane is an index into the four vectors, one after another. */
-#define NUMBER_LANE(x, y, z, type, hybrid) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(hybrid) + (type))
+#define NUMBER_LANE(x, y, z, type, edge_types) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(edge_types) + (type))
 
 /* The most local memory that a group takes for every 32 of its work-items: kernel 2's table of a brick's rows. */
 enum { LOCAL_BYTES_PER_BRICK = 2816 };
@@ -80,50 +80,80 @@ enum {
  * the next tile of the same group. */
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
-typedef struct slab {
-    slab_u64 sample_offset;  /* of plane sample_z in the buffer, in samples */
-    slab_u64 sample_count;   /* samples in the buffer from there on */
-    slab_u64 point_offset;   /* in floats: sample n of the buffer has its point at 3 n + point_offset, modulo 2^64 */
-    slab_u64 blanked_offset; /* sample n has its byte of blanked samples at n + blanked_offset */
-    slab_u64 blanked_cell_offset; /* of plane sample_z in the buffer of blanked cells */
-    slab_u64 blanked_cell_count;  /* in that buffer from there on */
-    slab_u64 inside_low;          /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
+/* The side of the isovalue that a sample is on, by its bits. */
+typedef struct isovalue_test {
+    slab_u64 inside_low; /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */
     slab_u64 inside_span;
     slab_u64 key_flip;       /* integers: key = bits ^ key_flip */
-    slab_u32 key_inside;     /* keys from here on are surely inside */
-    slab_u32 key_outside;    /* keys below are surely outside */
     slab_u64 nodata_bits[2]; /* bits of the missing value: two patterns, equal where it has only one */
-    slab_u32 nx, ny, nz;     /* samples of the whole grid */
-    slab_u32 words_x;        /* sign words per row of the grid = bricks per row */
-    slab_u32 bricks_y;
-    slab_u32 parity;   /* of the cube at the grid's first sample */
-    slab_i32 first[3]; /* index of the grid's first sample */
-    slab_u32 z0, z1;
+    slab_u64 isovalue64;     /* bits of the double */
+    slab_f32 isovalue32;
+    slab_u32 key_inside;  /* keys from here on are surely inside */
+    slab_u32 key_outside; /* keys below are surely outside */
+    slab_u32 has_nodata;
+} isovalue_test;
+
+/* Where the slab's samples, and what the caller has for each of them or for each cube, are in their buffers. */
+typedef struct slab_arrays {
+    slab_u64 sample_offset;       /* of plane sample_z, in samples */
+    slab_u64 sample_count;        /* samples in the buffer from there on */
+    slab_u64 point_offset;        /* in floats: sample n has its point at 3 n + point_offset, modulo 2^64 */
+    slab_u64 blanked_offset;      /* sample n has its byte of blanked samples at n + blanked_offset */
+    slab_u64 blanked_cell_offset; /* of plane sample_z */
+    slab_u64 blanked_cell_count;  /* in that buffer from there on */
     slab_u32 sample_z;
-    slab_u32 word_z;
-    slab_u32 cell_z;      /* first plane of the cells buffer (grids with missing samples) */
-    slab_u32 tile_rows;   /* rows of bricks per tile and layer */
-    slab_u32 tile_layers; /* more than 1 only where tile_rows covers a layer */
-    slab_u32 tile_count;
-    slab_u32 spin_limit;
+    slab_u32 has_blanked_samples, has_blanked_cells;
+} slab_arrays;
+
+/* Where the results of kernel 1 are in their buffers. */
+typedef struct slab_results {
+    slab_u32 word_z;        /* first plane of the sign words */
+    slab_u32 cell_z;        /* first plane of the cells (grids with missing samples) */
     slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
     slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset; /* of its list of active bricks */
     slab_u32 range_offset;  /* of brick 0 of the slab's window in the buffer of ranges */
     slab_u32 ranges_known;
-    slab_u32 has_nodata;
-    slab_u32 has_blanked_samples, has_blanked_cells;
+} slab_results;
+
+/* How kernel 1 cuts the slab into tiles. */
+typedef struct slab_tiling {
+    slab_u32 tile_rows;   /* rows of bricks per tile and layer */
+    slab_u32 tile_layers; /* more than 1 only where tile_rows covers a layer */
+    slab_u32 tile_count;
+    slab_u32 spin_limit; /* of the scan */
+} slab_tiling;
+
+/* What a launch of kernel 2 emits, and where that goes. */
+typedef struct slab_mesh {
     slab_u32 vertex_base;             /* number of the slab's first vertex */
     slab_u32 vertex_base_next;        /* of the next slab's first vertex */
-    slab_u32 vertex_window;           /* number of the vertex that the position buffer starts with */
+    slab_u32 vertex_window;           /* number of the vertex that the buffers of channels start with */
     slab_u32 triangle_window;         /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
-    slab_u32 position_offset;         /* floats in the position buffer before that vertex */
+    slab_u32 vertex_offset;           /* floats in the buffers of channels before that vertex */
     slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
-    slab_u32 brick_first, brick_last; /* kernel 2 emits the active bricks among these */
-    slab_f32 isovalue32;
+    slab_u32 brick_first, brick_last; /* the active bricks among these are emitted */
+} slab_mesh;
+
+/* From the indices of a uniform grid to positions, and from gradients to normals: rows of matrices. */
+typedef struct slab_space {
     slab_f32 matrix[12];
     slab_f32 normal_matrix[9];
-    slab_u64 isovalue64; /* bits of the double */
+} slab_space;
+
+typedef struct slab {
+    isovalue_test test;
+    slab_arrays arrays;
+    slab_u32 nx, ny, nz; /* samples of the whole grid */
+    slab_u32 words_x;    /* sign words per row of the grid = bricks per row */
+    slab_u32 bricks_y;
+    slab_u32 parity;   /* of the cube at the grid's first sample */
+    slab_i32 first[3]; /* index of the grid's first sample */
+    slab_u32 z0, z1;
+    slab_results results;
+    slab_tiling tiling;
+    slab_mesh mesh;
+    slab_space space;
 } slab;
 
 #endif

@@ -9,6 +9,7 @@
 #ifndef TETRAHEDRA_CL
 #define TETRAHEDRA_CL
 
+#include "methods.h"
 #include "words.cl"
 
 /* Sign words of LANES rows, and the same shifted to x + 1. */
@@ -60,8 +61,15 @@ inline_always lanes cubes_active(const cube_rows *r) {
     return any & ~all & r->has_x & r->has_y & r->has_z;
 }
 
-/* Types of edges that have vertices. */
-#define EDGE_TYPES (HYBRID ? 3 : 6)
+/* A constant or function of the method that the program is built for. */
+#define OF_METHOD(what) PASTE(METHOD, _##what)
+
+#define METHOD_CONSTANTS(name, types, most, usual)                                                                     \
+    name##_edge_types = (types), name##_triangles_most = (most), name##_triangles_usual = (usual),
+enum { METHODS(METHOD_CONSTANTS) };
+
+#define EDGE_TYPES OF_METHOD(edge_types) /* that have vertices */
+#define DIAGONALS  (EDGE_TYPES > 3)      /* whether those across faces are among them */
 
 /* Edges owned by the samples of rows a whose ends differ, where both ends are in the grid. */
 typedef struct crossings {
@@ -69,20 +77,20 @@ typedef struct crossings {
 } crossings;
 
 inline_always crossings crossings_owned(const cube_rows *r) {
-    crossings k;
-    k.type[0] = (r->a0 ^ r->a1) & r->has_x;
-    k.type[1] = (r->a0 ^ r->b0) & r->has_y;
-    k.type[2] = (r->a0 ^ r->c0) & r->has_z;
-    k.type[3] = k.type[4] = k.type[5] = 0;
-    if (HYBRID) return k;
-    k.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
-    k.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
-    k.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
-    return k;
+    crossings edges;
+    edges.type[0] = (r->a0 ^ r->a1) & r->has_x;
+    edges.type[1] = (r->a0 ^ r->b0) & r->has_y;
+    edges.type[2] = (r->a0 ^ r->c0) & r->has_z;
+    edges.type[3] = edges.type[4] = edges.type[5] = 0;
+    if (!DIAGONALS) return edges;
+    edges.type[3] = choose(r->even, r->a0 ^ r->b1, r->a1 ^ r->b0) & r->has_x & r->has_y;
+    edges.type[4] = choose(r->even, r->a0 ^ r->c1, r->a1 ^ r->c0) & r->has_x & r->has_z;
+    edges.type[5] = choose(r->even, r->a0 ^ r->d0, r->b0 ^ r->c0) & r->has_y & r->has_z;
+    return edges;
 }
 
-inline_always lanes crossings_any(const crossings *k) {
-    return k->type[0] | k->type[1] | k->type[2] | k->type[3] | k->type[4] | k->type[5];
+inline_always lanes crossings_any(const crossings *edges) {
+    return edges->type[0] | edges->type[1] | edges->type[2] | edges->type[3] | edges->type[4] | edges->type[5];
 }
 
 /* Adds a + b + c bit by bit: the sum bits in *sum, the carries returned. */
@@ -98,51 +106,79 @@ inline_always lanes tetrahedron_triangles(lanes a, lanes b, lanes c, lanes d, la
     return odd & cubes;
 }
 
-/* Corner n of an even cube, corner n ^ 1 of an odd one. Ones and twos of the five tetrahedra are added bit by bit, so
- * that four words are counted and not ten.
- *
- * In the hybrid method a loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks
- * with all vertices on their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals.
- * These are the edges of the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where
- * two, four. So hybrid triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0.
- * Below, two[0] adds 2 where the central one emits none, and at the end 2 is subtracted for every cube. */
-inline_always lanes triangles_count(const cube_rows *r, lanes cubes) {
+/* Corners of the cubes of a row. In an odd cube, p[n] is corner n ^ 1: it is the mirror in x of an even one. */
+typedef struct cube_corners {
+    lanes p[8];
+} cube_corners;
+
+inline_always cube_corners corners_of(const cube_rows *r) {
     lanes e = r->even;
-    lanes p0 = choose(e, r->a0, r->a1), p1 = choose(e, r->a1, r->a0);
-    lanes p2 = choose(e, r->b0, r->b1), p3 = choose(e, r->b1, r->b0);
-    lanes p4 = choose(e, r->c0, r->c1), p5 = choose(e, r->c1, r->c0);
-    lanes p6 = choose(e, r->d0, r->d1), p7 = choose(e, r->d1, r->d0);
-    lanes one[5], two[5], ones, twos, fours;
-    one[1] = tetrahedron_triangles(p1, p0, p3, p5, cubes, &two[1]);
-    one[2] = tetrahedron_triangles(p2, p0, p3, p6, cubes, &two[2]);
-    one[3] = tetrahedron_triangles(p4, p0, p5, p6, cubes, &two[3]);
-    one[4] = tetrahedron_triangles(p7, p3, p5, p6, cubes, &two[4]);
-#if HYBRID
-    one[0] = 0;
-    two[0] = (~(p0 | p3 | p5 | p6) | (p0 & p3 & p5 & p6)) & cubes;
-#else
-    one[0] = tetrahedron_triangles(p0, p3, p5, p6, cubes, &two[0]);
-#endif
-    lanes carry0 = add_carry(one[0], one[1], one[2], &ones);
-    lanes carry1 = add_carry(ones, one[3], one[4], &ones);
-    lanes carry2 = add_carry(carry0, carry1, two[0], &twos);
-    lanes carry3 = add_carry(twos, two[1], two[2], &twos);
-    lanes carry4 = add_carry(twos, two[3], two[4], &twos);
-    lanes eights = add_carry(carry2, carry3, carry4, &fours);
-    lanes count = lanes_popcount(ones) +
-                  2 * (lanes_popcount(twos) + 2 * (lanes_popcount(fours | eights) + lanes_popcount(eights)));
-    return HYBRID ? count - 2 * lanes_popcount(cubes) : count;
+    cube_corners c = {{choose(e, r->a0, r->a1), choose(e, r->a1, r->a0), choose(e, r->b0, r->b1),
+                       choose(e, r->b1, r->b0), choose(e, r->c0, r->c1), choose(e, r->c1, r->c0),
+                       choose(e, r->d0, r->d1), choose(e, r->d1, r->d0)}};
+    return c;
 }
+
+/* Cubes in which each of the five tetrahedra emits one triangle, and two; [0] is the central one. */
+typedef struct tetrahedra_counts {
+    lanes one[5], two[5];
+} tetrahedra_counts;
+
+/* The four tetrahedra around the central one. */
+inline_always void outer_count(const lanes p[8], lanes cubes, tetrahedra_counts *t) {
+    t->one[1] = tetrahedron_triangles(p[1], p[0], p[3], p[5], cubes, &t->two[1]);
+    t->one[2] = tetrahedron_triangles(p[2], p[0], p[3], p[6], cubes, &t->two[2]);
+    t->one[3] = tetrahedron_triangles(p[4], p[0], p[5], p[6], cubes, &t->two[3]);
+    t->one[4] = tetrahedron_triangles(p[7], p[3], p[5], p[6], cubes, &t->two[4]);
+}
+
+/* Triangles of the 64 cubes of each row. They are added bit by bit, so that four words are counted and not ten. */
+inline_always lanes tetrahedra_sum(const tetrahedra_counts *t) {
+    lanes ones, twos, fours;
+    lanes carry0 = add_carry(t->one[0], t->one[1], t->one[2], &ones);
+    lanes carry1 = add_carry(ones, t->one[3], t->one[4], &ones);
+    lanes carry2 = add_carry(carry0, carry1, t->two[0], &twos);
+    lanes carry3 = add_carry(twos, t->two[1], t->two[2], &twos);
+    lanes carry4 = add_carry(twos, t->two[3], t->two[4], &twos);
+    lanes eights = add_carry(carry2, carry3, carry4, &fours);
+    return lanes_popcount(ones) +
+           2 * (lanes_popcount(twos) + 2 * (lanes_popcount(fours | eights) + lanes_popcount(eights)));
+}
+
+inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
+    cube_corners c = corners_of(r);
+    tetrahedra_counts t;
+    outer_count(c.p, cubes, &t);
+    t.one[0] = tetrahedron_triangles(c.p[0], c.p[3], c.p[5], c.p[6], cubes, &t.two[0]);
+    return tetrahedra_sum(&t);
+}
+
+/* A loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks with all vertices on
+ * their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals. These are the edges of
+ * the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where two, four. So hybrid
+ * triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0. Below, two is added
+ * where it emits none, and subtracted for every cube. */
+inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
+    cube_corners c = corners_of(r);
+    lanes any = c.p[0] | c.p[3] | c.p[5] | c.p[6], all = c.p[0] & c.p[3] & c.p[5] & c.p[6];
+    tetrahedra_counts t;
+    outer_count(c.p, cubes, &t);
+    t.one[0] = 0;
+    t.two[0] = (~any | all) & cubes;
+    return tetrahedra_sum(&t) - 2 * lanes_popcount(cubes);
+}
+
+inline_always lanes triangles_count(const cube_rows *r, lanes cubes) { return OF_METHOD(triangles)(r, cubes); }
 
 /* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
  * vertex in its brick: 14 bits, here 0, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
-inline_always lanes offsets_pack(const crossings *k, lanes *vertex_count) {
-    lanes y = lanes_popcount(k->type[0]);
-    lanes z = y + lanes_popcount(k->type[1]);
-    lanes xy = z + lanes_popcount(k->type[2]);
-    lanes xz = xy + lanes_popcount(k->type[3]);
-    lanes yz = xz + lanes_popcount(k->type[4]);
-    *vertex_count = yz + lanes_popcount(k->type[5]);
+inline_always lanes offsets_pack(const crossings *edges, lanes *vertex_count) {
+    lanes y = lanes_popcount(edges->type[0]);
+    lanes z = y + lanes_popcount(edges->type[1]);
+    lanes xy = z + lanes_popcount(edges->type[2]);
+    lanes xz = xy + lanes_popcount(edges->type[3]);
+    lanes yz = xz + lanes_popcount(edges->type[4]);
+    *vertex_count = yz + lanes_popcount(edges->type[5]);
     return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46;
 }
 

@@ -23,7 +23,7 @@ typedef struct corner {
 
 /* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, from the brick's first sample. Then two bits
  * for each axis: the step to its other end, -1, 0 or 1, plus 1. */
-#define PLACE(x, y, z, step_x, step_y, step_z)                                                                         \
+#define EDGE_CODE(x, y, z, step_x, step_y, step_z)                                                                     \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
      (uint)((step_z) + 1) << 18)
 
@@ -31,28 +31,28 @@ typedef struct corner {
 
 #if GRID == 0
 /* The position on the edge at t, in world space. */
-inline_always void position_make(const slab *s, corner c, uint place, float t, float out[3]) {
-    int step_x = (int)(place >> 14 & 3) - 1, step_y = (int)(place >> 16 & 3) - 1, step_z = (int)(place >> 18 & 3) - 1;
-    float x = (float)(s->first[0] + (int)(c.x + (place & 0x7f))) + (float)step_x * t;
-    float y = (float)(s->first[1] + (int)(c.y + (place >> 7 & 0xf))) + (float)step_y * t;
-    float z = (float)(s->first[2] + (int)(c.z + (place >> 11 & 7))) + (float)step_z * t;
-    const float *m = s->matrix;
+inline_always void position_make(const slab *s, corner c, uint edge, float t, float out[3]) {
+    int step_x = (int)(edge >> 14 & 3) - 1, step_y = (int)(edge >> 16 & 3) - 1, step_z = (int)(edge >> 18 & 3) - 1;
+    float x = (float)(s->first[0] + (int)(c.x + (edge & 0x7f))) + (float)step_x * t;
+    float y = (float)(s->first[1] + (int)(c.y + (edge >> 7 & 0xf))) + (float)step_y * t;
+    float z = (float)(s->first[2] + (int)(c.z + (edge >> 11 & 7))) + (float)step_z * t;
+    const float *m = s->space.matrix;
     out[0] = ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
     out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
 #else
 /* The same, between points. The edge's samples are at `from` and `from` + `step` in the sample buffer. */
-inline_always void position_between(const slab *s, grid_arrays in, corner c, uint place, ulong from, long step, float t,
+inline_always void position_between(const slab *s, grid_arrays in, corner c, uint edge, ulong from, long step, float t,
                                     float out[3]) {
 #if GRID == 1
-    global const float *x = in.coordinates + c.x + (place & 0x7f);
-    global const float *y = in.coordinates + s->nx + c.y + (place >> 7 & 0xf);
-    global const float *z = in.coordinates + s->nx + s->ny + c.z + (place >> 11 & 7);
+    global const float *x = in.coordinates + c.x + (edge & 0x7f);
+    global const float *y = in.coordinates + s->nx + c.y + (edge >> 7 & 0xf);
+    global const float *z = in.coordinates + s->nx + s->ny + c.z + (edge >> 11 & 7);
     float3 p0 = (float3)(*x, *y, *z);
-    float3 p1 = (float3)(x[(int)(place >> 14 & 3) - 1], y[(int)(place >> 16 & 3) - 1], z[(int)(place >> 18 & 3) - 1]);
+    float3 p1 = (float3)(x[(int)(edge >> 14 & 3) - 1], y[(int)(edge >> 16 & 3) - 1], z[(int)(edge >> 18 & 3) - 1]);
 #else
-    global const float *points = in.coordinates + (3 * from + s->point_offset);
+    global const float *points = in.coordinates + (3 * from + s->arrays.point_offset);
     float3 p0 = vload3(0, points), p1 = vload3(step, points);
 #endif
     vstore3(t == 1 ? p1 : p0 + t * (p1 - p0), 0, out);
@@ -64,7 +64,7 @@ inline_always void position_between(const slab *s, grid_arrays in, corner c, uin
 /* The two samples whose difference along an axis is taken: central; one-sided at borders and beside missing samples;
  * the same sample twice, so 0, where both sides are a border or missing. */
 typedef struct neighbours {
-    ulong before, after; /* places in the sample buffer */
+    ulong before, after; /* in the sample buffer */
     uint first, last;    /* along the axis */
     float weight;        /* 1/16 of the usual weight, so that products of differences do not overflow */
 } neighbours;
@@ -111,7 +111,8 @@ inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbou
     return weight * (REAL)positions[n.last] - weight * (REAL)positions[n.first];
 #else
     global const float *points = in.coordinates + row;
-    return weight * (REAL)points[3 * n.after + s->point_offset] - weight * (REAL)points[3 * n.before + s->point_offset];
+    return weight * (REAL)points[3 * n.after + s->arrays.point_offset] -
+           weight * (REAL)points[3 * n.before + s->arrays.point_offset];
 #endif
 }
 
@@ -150,9 +151,9 @@ inline_always void gradient_map(REAL j[3][3], REAL g[3], REAL n[3]) {
 
 /* Unit length, towards lower values; zero where the gradient vanishes. Gradient and Jacobian are made of the same
  * differences, and interpolated along the edge. */
-inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint place, float t, global float *out) {
-    const uint a[3] = {c.x + (place & 0x7f), c.y + (place >> 7 & 0xf), c.z + (place >> 11 & 7)};
-    const uint b[3] = {a[0] + (place >> 14 & 3) - 1, a[1] + (place >> 16 & 3) - 1, a[2] + (place >> 18 & 3) - 1};
+inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint edge, float t, global float *out) {
+    const uint a[3] = {c.x + (edge & 0x7f), c.y + (edge >> 7 & 0xf), c.z + (edge >> 11 & 7)};
+    const uint b[3] = {a[0] + (edge >> 14 & 3) - 1, a[1] + (edge >> 16 & 3) - 1, a[2] + (edge >> 18 & 3) - 1};
     REAL g[3] = {0, 0, 0}, n[3];
 #if GRID
     REAL j[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -179,7 +180,7 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint pl
 #if GRID
     gradient_map(j, g, n);
 #else
-    const float *m = s->normal_matrix;
+    const float *m = s->space.normal_matrix;
 #pragma unroll
     for (uint row = 0; row < 3; row++)
         n[row] = -(((REAL)m[3 * row] * g[0] + (REAL)m[3 * row + 1] * g[1]) + (REAL)m[3 * row + 2] * g[2]);

@@ -14,7 +14,7 @@
 inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
 
 inline_always ulong row_start(const slab *s, uint y, uint z) {
-    return s->sample_offset + ((ulong)(z - s->sample_z) * s->ny + y) * s->nx;
+    return s->arrays.sample_offset + ((ulong)(z - s->arrays.sample_z) * s->ny + y) * s->nx;
 }
 
 inline_always ulong word_valid(const slab *s, uint w) {
@@ -23,16 +23,16 @@ inline_always ulong word_valid(const slab *s, uint w) {
 }
 
 inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
-    return ((z - s->word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
+    return ((z - s->results.word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }
 
-/* The place of a row in its brick. */
-inline_always uint row_place(const slab *s, uint y, uint z) {
-    return (z - s->word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
+/* The index of a row in its brick. */
+inline_always uint row_in_brick(const slab *s, uint y, uint z) {
+    return (z - s->results.word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
 }
 
 inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
-    return BRICK_WORDS * brick_index(s, y, z, w) + row_place(s, y, z);
+    return BRICK_WORDS * brick_index(s, y, z, w) + row_in_brick(s, y, z);
 }
 
 /* The 32 words of brick `number`. The constant words of a brick that is inside have bits set outside the grid too. */
@@ -41,17 +41,19 @@ inline_always global const ulong *brick_words(uint number, uint sign, global con
 }
 
 /* Whether a sample's bits make it missing; without branches. */
-inline_always bool bits_missing(BITS bits, const slab *s) {
-    bool missing = (s->has_nodata != 0) & ((bits == (BITS)s->nodata_bits[0]) | (bits == (BITS)s->nodata_bits[1]));
+inline_always bool bits_missing(BITS bits, const isovalue_test *test) {
+    bool missing =
+        (test->has_nodata != 0) & ((bits == (BITS)test->nodata_bits[0]) | (bits == (BITS)test->nodata_bits[1]));
 #if FLOATING
     missing |= (bits & EXPONENT) == EXPONENT;
 #endif
     return missing;
 }
 
-/* At place n of the sample buffer. */
+/* At index n of the sample buffer. */
 inline_always bool sample_missing(global const BITS *samples, global const uchar *blanked, const slab *s, ulong n) {
-    return bits_missing(samples[n], s) || (s->has_blanked_samples && blanked[n + s->blanked_offset]);
+    return bits_missing(samples[n], &s->test) ||
+           (s->arrays.has_blanked_samples && blanked[n + s->arrays.blanked_offset]);
 }
 
 #if WORK_ITEMS == 1

@@ -7,17 +7,18 @@
 #include "words.cl"
 
 /* 0xFF or 0 per sample. */
-inline_always char16 inside_mask(BITS16 bits, const slab *s) {
-    return convert_char16((bits - (BITS)s->inside_low) <= (BITS16)(BITS)s->inside_span);
+inline_always char16 inside_mask(BITS16 bits, const isovalue_test *test) {
+    return convert_char16((bits - (BITS)test->inside_low) <= (BITS16)(BITS)test->inside_span);
 }
 
-inline_always char16 missing_mask(BITS16 bits, const slab *s) {
+inline_always char16 missing_mask(BITS16 bits, const isovalue_test *test) {
     char16 missing = 0;
 #if FLOATING
     missing = convert_char16((bits & EXPONENT) == EXPONENT);
 #endif
-    if (s->has_nodata)
-        missing |= convert_char16(bits == (BITS)s->nodata_bits[0]) | convert_char16(bits == (BITS)s->nodata_bits[1]);
+    if (test->has_nodata)
+        missing |=
+            convert_char16(bits == (BITS)test->nodata_bits[0]) | convert_char16(bits == (BITS)test->nodata_bits[1]);
     return missing;
 }
 
@@ -33,7 +34,7 @@ inline_always uint mask_pack(char16 mask) {
 
 /* 16 samples from index n on; past the end of the buffer, 0. */
 inline_always BITS16 samples_load(global const BITS *samples, const slab *s, ulong n) {
-    ulong end = s->sample_offset + s->sample_count;
+    ulong end = s->arrays.sample_offset + s->arrays.sample_count;
     if (n + 16 <= end) return vload16(0, samples + n);
     BITS last[16];
     for (uint m = 0; m < 16; m++) last[m] = n + m < end ? samples[n + m] : (BITS)0;
@@ -45,7 +46,7 @@ inline_always uint word_part(global const BITS *samples, const slab *s, uint y, 
     if (16 * part >= s->nx) return 0;
     BITS16 bits = samples_load(samples, s, row_start(s, y, z) + 16 * part);
     uint left = s->nx - 16 * part;
-    return mask_pack(inside_mask(bits, s)) & (left >= 16 ? 0xffffu : (1u << left) - 1);
+    return mask_pack(inside_mask(bits, &s->test)) & (left >= 16 ? 0xffffu : (1u << left) - 1);
 }
 
 inline_always ulong word_inside(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
@@ -77,11 +78,11 @@ inline_always ulong word_present(global const BITS *samples, global const uchar 
     ulong word = 0, start = row_start(s, y, z);
     for (uint part = 4 * w; part < 4 * w + 4 && 16 * part < s->nx; part++) {
         BITS16 bits = samples_load(samples, s, start + 16 * part);
-        word |= (ulong)(~mask_pack(missing_mask(bits, s)) & 0xffff) << (16 * (part & 3));
+        word |= (ulong)(~mask_pack(missing_mask(bits, &s->test)) & 0xffff) << (16 * (part & 3));
     }
-    if (s->has_blanked_samples)
-        word &= ~bytes_word(blanked, start + 64 * w + s->blanked_offset,
-                            s->sample_offset + s->sample_count + s->blanked_offset);
+    if (s->arrays.has_blanked_samples)
+        word &= ~bytes_word(blanked, start + 64 * w + s->arrays.blanked_offset,
+                            s->arrays.sample_offset + s->arrays.sample_count + s->arrays.blanked_offset);
     return word & word_valid(s, w);
 }
 

@@ -9,15 +9,15 @@
 
 #include "words.cl"
 
-inline_always bool bits_inside(BITS bits, const slab *s) {
-    return (BITS)(bits - (BITS)s->inside_low) <= (BITS)s->inside_span;
+inline_always bool bits_inside(BITS bits, const isovalue_test *test) {
+    return (BITS)(bits - (BITS)test->inside_low) <= (BITS)test->inside_span;
 }
 
 /* Signs of samples, bit n for row[n]. */
 inline_always ulong signs_make(global const BITS *row, uint count, const slab *s) {
     ulong word = 0;
 #pragma unroll 1
-    for (uint n = 0; n < count; n++) word |= (ulong)bits_inside(row[n], s) << n;
+    for (uint n = 0; n < count; n++) word |= (ulong)bits_inside(row[n], &s->test) << n;
     return word;
 }
 
@@ -46,9 +46,9 @@ inline_always ulong word_present(global const BITS *samples, global const uchar 
     const uint count = min(s->nx - 64 * w, 64u);
     ulong word = 0;
 #pragma unroll 1
-    for (uint n = 0; n < count; n++) word |= (ulong)!bits_missing(samples[start + n], s) << n;
-    if (s->has_blanked_samples)
-        word &= ~bytes_word(blanked, start + s->blanked_offset, start + s->blanked_offset + count);
+    for (uint n = 0; n < count; n++) word |= (ulong)!bits_missing(samples[start + n], &s->test) << n;
+    if (s->arrays.has_blanked_samples)
+        word &= ~bytes_word(blanked, start + s->arrays.blanked_offset, start + s->arrays.blanked_offset + count);
     return word;
 }
 

@@ -12,6 +12,7 @@
 #include "random.h"
 #include "split.h"
 #include "grid/tables.h"
+#include "methods.h"
 
 #include <string.h>
 
@@ -253,11 +254,14 @@ static unsigned chords_needed(const split_surface *s, chord_cost *cost, unsigned
     return needed;
 }
 
+#define MOST(name, types, most, usual) most,
+static const unsigned triangles_most[] = {METHODS(MOST)}; /* as kernel 2 copies them */
+
 static const char *case_fault(const cube_case *c, unsigned parity, unsigned pattern, bool mirrored) {
     static split_surface s;
     static patch p;
     unsigned in_faces, in_high, longest;
-    if (c->triangle_count > HYBRID_TRIANGLES_MAX) return "there are more triangles than kernel 2 copies";
+    if (c->triangle_count > triangles_most[method_hybrid]) return "there are more triangles than kernel 2 copies";
     split_surface_of(parity, pattern, &s);
     if (!patch_of(c, pattern, &p)) return "a corner is on no crossed edge of the cube";
     const char *fault = sides_fault(&p, &s, pattern, mirrored);

@@ -163,7 +163,7 @@ static void expect_isovalue(tc_type type, double isovalue) {
 
 static void expect_value(tc_type type, double value) {
     uint64_t equal[2];
-    bool any = sample_patterns(type, value, equal);
+    bool any = value_bits(type, value, equal);
     unsigned wrong = 0, found = 0, kept = patterns_add_isovalue(type, value);
     for (unsigned n = 0; n < pattern_count; n++) {
         bool listed =
@@ -187,7 +187,7 @@ int main(void) {
             expect_isovalue(type, values[n]);
             expect_value(type, values[n]);
         }
-        EXPECT(!sample_patterns(type, NAN, equal) && !sample_patterns(type, INFINITY, equal),
+        EXPECT(!value_bits(type, NAN, equal) && !value_bits(type, INFINITY, equal),
                "%s: a sample that is not finite is missing whether or not it is asked for", tc_type_name(type));
     }
     return EXPECT_DONE();

@@ -286,6 +286,9 @@ typedef enum tc_method {
                              marching cubes are ambiguous the tetrahedra decide, so that the topology is theirs */
 } tc_method;
 
+/* "tetra", "hybrid", valid forever; NULL for a value that is no method. */
+TC_API const char *tc_method_name(tc_method method);
+
 typedef struct tc_extract_options {
     size_t struct_size; /* set by tc_extract_options_init */
     double isovalue;    /* finite; inside means sample >= isovalue, exactly */

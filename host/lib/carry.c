@@ -6,7 +6,8 @@
 #include "failure.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
-#include "surface.h"
+#include "extract.h"
+#include "surface/surface.h"
 
 static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))
@@ -34,7 +35,7 @@ tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options,
     tc_extract_options o;
     tc_field f = {0};
     uint64_t vertex_count = 0;
-    tc_status status = options_take(&f, sizeof f, field, "tc_interpolate_field: field");
+    tc_status status = struct_copy_in(&f, sizeof f, field, "tc_interpolate_field: field");
     if (!status) status = field_check(grid, &f, out, value_count);
     if (status) return status;
     const uint64_t components = (uint64_t)f.components;

@@ -92,8 +92,8 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
     *out = NULL;
     tc_context_options_init(&o);
     tc_expert_options_init(&expert);
-    tc_status status = options_take(&o, sizeof o, options, "context options");
-    if (!status && o.expert) status = options_take(&expert, sizeof expert, o.expert, "expert options");
+    tc_status status = struct_copy_in(&o, sizeof o, options, "context options");
+    if (!status && o.expert) status = struct_copy_in(&expert, sizeof expert, o.expert, "expert options");
     if (status) return status;
     if (o.engine != TC_ENGINE_OPENCL && o.engine != TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
@@ -146,24 +146,24 @@ void tc_context_destroy(tc_context *context) {
 }
 
 tc_status tc_context_device(const tc_context *context, tc_device_info *info) {
-    tc_status status = result_begin(info, sizeof *info, "tc_context_device: info");
+    tc_status status = struct_clear(info, sizeof *info, "tc_context_device: info");
     if (status) return status;
     if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_device needs a context");
     if (context->options.engine == TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device");
-    result_give(info, &context->info);
+    struct_copy_out(info, &context->info);
     return TC_OK;
 }
 
 tc_status tc_context_tuning(const tc_context *context, tc_tuning *tuning) {
-    tc_status status = result_begin(tuning, sizeof *tuning, "tc_context_tuning: tuning");
+    tc_status status = struct_clear(tuning, sizeof *tuning, "tc_context_tuning: tuning");
     if (status) return status;
     if (!context) return (tc_status)fail(TC_ERROR_ARGUMENT, "tuning is that of a context: none given");
     if (context->options.engine == TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine launches nothing");
     const launch_parameters *p = &context->launch;
     const tc_tuning found = {sizeof found, p->work_items, p->work_groups, p->scan.tile_bricks};
-    result_give(tuning, &found);
+    struct_copy_out(tuning, &found);
     return TC_OK;
 }
 

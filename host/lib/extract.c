@@ -1,13 +1,15 @@
 /*
  * The public calls that make surfaces: arguments are checked, drivers vetted and tried, then surface.c takes over.
  */
+#include "extract.h"
+
 #include "opencl/context.h"
 #include "failure.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
 #include "structured/structured.h"
-#include "surface.h"
-#include "trial.h"
+#include "surface/surface.h"
+#include "trial/trial.h"
 #include "opencl/vetting.h"
 
 #include <math.h>
@@ -21,10 +23,10 @@ void tc_extract_options_init(tc_extract_options *options) {
 
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {
     tc_extract_options_init(o);
-    tc_status status = options_take(o, sizeof *o, options, "extract options");
+    tc_status status = struct_copy_in(o, sizeof *o, options, "extract options");
     if (!status && !isfinite(o->isovalue))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
-    if (!status && o->method != TC_METHOD_TETRA && o->method != TC_METHOD_HYBRID)
+    if (!status && !tc_method_name(o->method))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
     return status;
 }
@@ -52,16 +54,15 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_extract_options o;
     tc_counts found = {.struct_size = sizeof found};
-    tc_status status = result_begin(counts, sizeof *counts, "tc_count: counts");
+    tc_status status = struct_clear(counts, sizeof *counts, "tc_count: counts");
     if (!status && !grid) status = (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid");
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
     if (!status) status = surface_count_vetted(grid, &o, 1, &found);
     if (status) return status;
-    if (grid->device) grid->context->counted = grid; /* for tc_emit */
-    found.mesh_bytes = found.vertex_count * MESH_BYTES_PER_VERTEX * (o.normals ? 2 : 1) +
-                       found.triangle_count * MESH_BYTES_PER_TRIANGLE;
-    result_give(counts, &found);
+    if (grid->device) grid->context->counted_grid = grid; /* for tc_emit */
+    found.mesh_bytes = channels_mesh_bytes(channels_asked(&o), found.vertex_count, found.triangle_count);
+    struct_copy_out(counts, &found);
     return TC_OK;
 }
 
@@ -72,7 +73,7 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
     tc_device_mesh m = {0};
     if (done) *done = NULL;
     if (!grid) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit needs a grid");
-    tc_status status = options_take(&m, sizeof m, mesh, "tc_emit: mesh");
+    tc_status status = struct_copy_in(&m, sizeof m, mesh, "tc_emit: mesh");
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
     if (status) return status;

@@ -4,7 +4,7 @@
 #include "opencl/context.h"
 #include "failure.h"
 #include "base/float_environment.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "base/structs.h"
 
 void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options) {
@@ -19,7 +19,7 @@ tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_grid_create needs a context and a place for the grid");
     tc_grid_options_init(&o);
-    tc_status status = options_take(&o, sizeof o, options, "grid options");
+    tc_status status = struct_copy_in(&o, sizeof o, options, "grid options");
     if (!status) status = context_check(context);
     return status ? status : grid_create(context, &o, context->launch.scan, out);
 }
@@ -31,7 +31,7 @@ tc_status tc_tetrahedra_grid_create(tc_context *context, const tc_tetrahedra_gri
     if (!out || !context)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_tetrahedra_grid_create needs a context and a place for the grid");
     tc_tetrahedra_grid_options_init(&o);
-    tc_status status = options_take(&o, sizeof o, options, "options of a grid of tetrahedra");
+    tc_status status = struct_copy_in(&o, sizeof o, options, "options of a grid of tetrahedra");
     if (!status) status = context_check(context);
     return status ? status : complex_create(context, &o, context->launch.scan, out);
 }

@@ -4,7 +4,7 @@
 #include "context_create.h"
 #include "failure.h"
 #include "base/float_environment.h"
-#include "trial.h"
+#include "trial/trial.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -105,7 +105,7 @@ class Faults(SelftestCase):
 
     def test_crash_of_one(self):
         good, hybrid = self.right("noise 37 22 19 u8", "noise 67 13 11 u8 127.5 hybrid")
-        group, _ = self.run_vectors(3, good, hybrid, good, env=self.layer("crash build abort -DHYBRID=1"))
+        group, _ = self.run_vectors(3, good, hybrid, good, env=self.layer("crash build abort -DMETHOD=hybrid"))
         self.assertEqual((group["trials"], group["failed"], group["crashed"]), (3, 1, 1))
 
     def test_crash_at_the_end(self):

@@ -41,11 +41,12 @@ static const mistake mistakes[] = {
     {"overflow", "isinf(b - a) ? (REAL)0.5f : (REAL)1", "(REAL)1"},
     {"contraction", "((m[0] * x + m[1] * y) + m[2] * z) + m[3]", "fma(m[2], z, fma(m[0], x, m[1] * y)) + m[3]"},
     {"look-back", "*sum += word & SCAN_VALUE;", "*sum += word & 0xfff;"},
-    {"fallback", "atomic_add(&shared[2], e.vertices);", "atomic_add(&shared[2], e.vertices + 1);"},
+    {"fallback", "atomic_add(&shared[PREFIX_VERTICES], e.vertices);",
+     "atomic_add(&shared[PREFIX_VERTICES], e.vertices + 1);"},
     {"starved", "uint2 prefix = tile_prefix(",
      "for (uint c = 0; number && c < 2; c++) atomic_xchg(scan_at(tiles, number - 1, c), scan_word(SCAN_EMPTY, 0));\n"
      "uint2 prefix = tile_prefix("},
-    {"comparison", "<= (samples64)(BITS)s->inside_span", "< (samples64)(BITS)s->inside_span"},
+    {"comparison", "<= (samples64)(BITS)test->inside_span", "< (samples64)(BITS)test->inside_span"},
 };
 enum { MISTAKES = sizeof mistakes / sizeof *mistakes };
 static const mistake *made;

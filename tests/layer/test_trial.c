@@ -143,7 +143,7 @@ static tc_verdict bad_with_missing(void *user, const char *job, char *reason, si
     (void)reason, (void)bytes;
     sscanf(job, "tetracubes-trial-1 %d:%d %u %u", &platform, &device, &kind, &items);
     *asked += items != 0;
-    return items == 1 && kind >> 2 & 1 ? TC_VERDICT_CRASHED : TC_VERDICT_GOOD;
+    return items == 1 && kind >> 1 & 1 ? TC_VERDICT_CRASHED : TC_VERDICT_GOOD;
 }
 
 static void test_within_a_call(void) {

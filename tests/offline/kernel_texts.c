@@ -210,18 +210,16 @@ static void status_check(tc_status status) {
 }
 
 static const char *const type_names[] = {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
-static const char *const method_names[] = {[TC_METHOD_TETRA] = "tetra", [TC_METHOD_HYBRID] = "hybrid"};
 static const char *const kind_names[] = {"uniform", "rectilinear", "curvilinear"};
 
 /* Of types whose programs are the same, the first gives its name. */
 static void classify_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++)
-        for (int method = TC_METHOD_TETRA; method <= TC_METHOD_HYBRID; method++)
+        for (int method = 0; tc_method_name((tc_method)method); method++)
             for (int missing = 0; missing < 2; missing++) {
-                const kernel_kind kind = {
-                    .type = (tc_type)type, .hybrid = method == TC_METHOD_HYBRID, .missing = missing};
-                snprintf(name, sizeof name, "classify-%s-%s%s", type_names[type], method_names[method],
+                const kernel_kind kind = {.type = (tc_type)type, .method = (tc_method)method, .missing = missing};
+                snprintf(name, sizeof name, "classify-%s-%s%s", type_names[type], tc_method_name((tc_method)method),
                          missing ? "-missing" : "");
                 status_check(program_get(context, PROGRAM_CLASSIFY, kind, &found));
             }
@@ -230,13 +228,18 @@ static void classify_programs(tc_context *context) {
 static void emit_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++)
-        for (int method = TC_METHOD_TETRA; method <= TC_METHOD_HYBRID; method++)
+        for (int method = 0; tc_method_name((tc_method)method); method++)
             for (int grid = GRID_UNIFORM; grid <= GRID_CURVILINEAR; grid++)
                 for (int more = 0; more < 4; more++) {
-                    const kernel_kind kind = {(unsigned)grid, (tc_type)type, method == TC_METHOD_HYBRID,
-                                              more & 1,       more & 2,      true};
-                    snprintf(name, sizeof name, "emit-%s-%s-%s%s%s", type_names[type], method_names[method],
-                             kind_names[grid], more & 1 ? "-missing" : "", more & 2 ? "-normals" : "");
+                    const kernel_kind kind = {.grid = (unsigned)grid,
+                                              .type = (tc_type)type,
+                                              .method = (tc_method)method,
+                                              .made = POSITIONS_ALONE | (more & 2 ? 1u << CHANNEL_NORMALS : 0),
+                                              .missing = more & 1,
+                                              .emits = true};
+                    snprintf(name, sizeof name, "emit-%s-%s-%s%s%s", type_names[type],
+                             tc_method_name((tc_method)method), kind_names[grid], more & 1 ? "-missing" : "",
+                             more & 2 ? "-normals" : "");
                     status_check(program_get(context, PROGRAM_EMIT, kind, &found));
                 }
 }

@@ -4,7 +4,8 @@
 demo: the first command, by a user with sudo, which installs what is missing.
 whole: that, then the second command by root, then the same bytes from every driver of OpenCL that the release has
 (drivers.py). With TEST_BYTES in the environment, that program, Intel's runtime is tried on this machine: it comes by
-pip. With TETRACUBES_RESULTS in it, a folder, what was seen goes to systems.json there.
+pip. With TETRACUBES_RESULTS in it, a folder, what was seen goes to systems.json there, after each system; what the file
+tells of systems that are not tried this time stays.
 
 SUITE: bookworm (Debian 12), trixie (13), sid; without any all three. Of sid, an outlook, failures are told and are none
 of this run. Needs root, debootstrap and a mirror of Debian: the one that apt uses here, else debootstrap's own. Exit
@@ -24,7 +25,9 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SUITES = {"bookworm": "Debian 12", "trixie": "Debian 13", "sid": "Debian unstable"}
-OUTLOOK = {"sid"}
+OUTLOOK = {SUITES["sid"]}
+HERE = "this machine"
+ORDER = [*SUITES.values(), HERE]
 USER = "tester"
 DRIVERS = ["mesa-opencl-icd"]  # beside what tests/setup installs
 PACKAGES = ["gcc", "cmake", "libexpat1", "pocl-opencl-icd", "mesa-opencl-icd", "oclgrind", "python3"]
@@ -36,6 +39,10 @@ IN_CHROOT = ('mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mou
 
 class Failed(Exception):
     pass
+
+
+def today():
+    return datetime.date.today().isoformat()
 
 
 def skip(reason):
@@ -125,7 +132,7 @@ def suite_try(tier, suite, folder):
     print(f"{SUITES.get(suite, suite)}:", flush=True)
     chroot_make(suite, chroot, log)
     sources_copy(f"{chroot}/home/{USER}/tetracubes")
-    seen = {"system": SUITES.get(suite, suite), "suite": suite, "commands": [], "drivers": []}
+    seen = {"system": SUITES.get(suite, suite), "date": today(), "commands": [], "drivers": []}
 
     def try_it(name, command):
         seen["commands"].append(command_try(name, chroot, command, log))
@@ -151,7 +158,7 @@ def machine_try(program, folder):
     subprocess.run([sys.executable, os.path.join(ROOT, "tests", "systems", "drivers.py"), program, "--out", out,
                     "--folder", os.path.join(folder, "second"), "--only", "Intel"], check=False)
     with open(out, encoding="utf-8") as file:
-        return {"system": "this machine", "suite": "here", "commands": [], "drivers": json.load(file), "versions": {}}
+        return {"system": HERE, "date": today(), "commands": [], "drivers": json.load(file), "versions": {}}
 
 
 def differences(seen):
@@ -161,13 +168,24 @@ def differences(seen):
             if line["hash"] != lines[0][1]["hash"] or line["outcome"] != "same bytes"]
 
 
-def results_write(seen, seconds):
+def told_before(folder, tried):
+    """What systems.json tells of other systems than those tried."""
+    try:
+        with open(os.path.join(folder, "systems.json"), encoding="utf-8") as file:
+            told = json.load(file)
+    except FileNotFoundError:
+        return []
+    return [dict(one, drivers=[line for line in told["drivers"] if line["system"] == one["system"]])
+            for one in told["systems"] if one["system"] not in tried]
+
+
+def results_write(seen):
     folder = os.environ.get("TETRACUBES_RESULTS")
     if not folder:
         return
-    lines = [dict(line, system=one["system"]) for one in seen for line in one["drivers"]]
-    for line in lines:
-        del line["hashes"]
+    seen = sorted(seen + told_before(folder, [one["system"] for one in seen]), key=lambda one: ORDER.index(one["system"]))
+    lines = [{key: value for key, value in dict(line, system=one["system"]).items() if key != "hashes"}
+             for one in seen for line in one["drivers"]]
     bare = [one for one in seen if one["commands"]]
     figures = [("bare systems on which both commands pass",
                 sum(all(line["outcome"] == "passed" for line in one["commands"][:2]) for one in bare)),
@@ -177,9 +195,10 @@ def results_write(seen, seconds):
     versions_of = {f"{one['system']}, {name}": version for one in seen for name, version in one["versions"].items()
                    if name in ("gcc", "libexpat1")}
     with open(os.path.join(folder, "systems.json"), "w", encoding="utf-8") as file:
-        json.dump({"part": "systems", "date": datetime.date.today().isoformat(), "versions": versions_of,
-                   "seconds": round(seconds), "figures": [{"what": what, "value": value} for what, value in figures],
-                   "systems": [{key: one[key] for key in ("system", "commands", "versions")} for one in bare],
+        json.dump({"part": "systems", "date": max(one["date"] for one in seen), "versions": versions_of,
+                   "seconds": sum(line["seconds"] for one in seen for line in one["commands"]),
+                   "figures": [{"what": what, "value": value} for what, value in figures],
+                   "systems": [{key: one[key] for key in ("system", "date", "commands", "versions")} for one in seen],
                    "drivers": lines}, file, indent=1)
         file.write("\n")
 
@@ -187,11 +206,13 @@ def results_write(seen, seconds):
 def main():
     tier, suites = sys.argv[1], sys.argv[2:] or list(SUITES)
     needs_check()
-    start, seen = time.time(), []
+    seen = []
     with tempfile.TemporaryDirectory(dir=os.environ.get("TETRACUBES_CHROOTS"), ignore_cleanup_errors=True) as folder:
         for suite in suites:
             try:
                 seen.append(suite_try(tier, suite, folder))
+                if tier == "whole":
+                    results_write(seen)
             except Failed as failed:
                 print(f"  no chroot of {suite}: {failed}")
                 if tier == "demo" and "debootstrap" in str(failed):
@@ -199,10 +220,9 @@ def main():
                 sys.exit(1)
         if tier == "whole" and os.environ.get("TEST_BYTES"):
             seen.append(machine_try(os.environ["TEST_BYTES"], folder))
-    wrong = [f"{one['system']}: {line['command']}: {line['outcome']}" for one in seen if one["suite"] not in OUTLOOK
+            results_write(seen)
+    wrong = [f"{one['system']}: {line['command']}: {line['outcome']}" for one in seen if one["system"] not in OUTLOOK
              for line in one["commands"] if line["outcome"] != "passed"] + differences(seen)
-    if tier == "whole":
-        results_write(seen, time.time() - start)
     print("\n".join(wrong))
     sys.exit(1 if wrong else 0)
 

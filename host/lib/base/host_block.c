@@ -4,25 +4,22 @@
 
 #include <sys/mman.h>
 
-static const size_t page_bytes = 4096;
-static const size_t huge_page_bytes = 2 << 20;
-
 /* Unused address space behind a block. Where the caller changes samples during an extraction, a brick may emit more
  * vertices and triangles than were counted; the margin keeps these from overwriting other memory. A brick of 2,048
  * cubes has at most ten triangles of 12 bytes per cube. */
 static const size_t margin_bytes = 256 << 10;
 
-static const size_t huge_from_bytes = 256
-                                      << 10; /* faults of small pages cost more than clearing a huge one from here on */
+/* From here on, faults of small pages cost more than clearing a huge one. */
+static const size_t huge_from_bytes = 256 << 10;
 
 tc_status host_block_reserve(host_block *block, uint64_t bytes) {
     if (bytes <= block->bytes) return TC_OK;
     host_block_release(block);
     if (bytes > SIZE_MAX / 2)
         return (tc_status)fail(TC_ERROR_MEMORY, "%llu bytes do not fit the address space", (unsigned long long)bytes);
-    size_t alignment = bytes < huge_from_bytes ? page_bytes : huge_page_bytes;
+    size_t alignment = bytes < huge_from_bytes ? PAGE_BYTES : HUGE_PAGE_BYTES;
     size_t rounded = ((size_t)bytes + alignment - 1) & ~(alignment - 1);
-    size_t mapped = rounded + margin_bytes + alignment - page_bytes;
+    size_t mapped = rounded + margin_bytes + alignment - PAGE_BYTES;
     char *start = mmap(NULL, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (start == MAP_FAILED)
         return (tc_status)fail(TC_ERROR_MEMORY, "the host has no %llu bytes of memory more", (unsigned long long)bytes);
@@ -30,7 +27,7 @@ tc_status host_block_reserve(host_block *block, uint64_t bytes) {
     if (aligned > start) munmap(start, (size_t)(aligned - start));
     char *end = aligned + rounded + margin_bytes;
     if (end < start + mapped) munmap(end, (size_t)(start + mapped - end));
-    if (alignment == huge_page_bytes) madvise(aligned, rounded, MADV_HUGEPAGE);
+    if (alignment == HUGE_PAGE_BYTES) madvise(aligned, rounded, MADV_HUGEPAGE);
     *block = (host_block){aligned, rounded};
     return TC_OK;
 }

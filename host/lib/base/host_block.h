@@ -9,6 +9,9 @@
 
 #include "tetracubes.h"
 
+/* Of x86-64. Devices that share the host's memory use arrays from the start of a page on. */
+enum { PAGE_BYTES = 4096, HUGE_PAGE_BYTES = 2 << 20 };
+
 typedef struct host_block {
     void *memory;
     size_t bytes; /* whole pages */

@@ -16,7 +16,7 @@ static tc_status struct_size_get(const void *at, size_t known_bytes, const char 
                                                   : "never initialised: call its _init function, or set struct_size");
 }
 
-tc_status options_take(void *to, size_t to_bytes, const void *from, const char *what) {
+tc_status struct_copy_in(void *to, size_t to_bytes, const void *from, const char *what) {
     size_t bytes;
     tc_status status = struct_size_get(from, to_bytes, what, &bytes);
     if (status) return status;
@@ -25,14 +25,14 @@ tc_status options_take(void *to, size_t to_bytes, const void *from, const char *
     return TC_OK;
 }
 
-tc_status result_begin(void *out, size_t known_bytes, const char *what) {
+tc_status struct_clear(void *out, size_t known_bytes, const char *what) {
     size_t bytes;
     tc_status status = struct_size_get(out, known_bytes, what, &bytes);
     if (!status) memset((char *)out + sizeof bytes, 0, bytes - sizeof bytes);
     return status;
 }
 
-void result_give(void *out, const void *from) {
+void struct_copy_out(void *out, const void *from) {
     size_t bytes;
     memcpy(&bytes, out, sizeof bytes);
     memcpy((char *)out + sizeof bytes, (const char *)from + sizeof bytes, bytes - sizeof bytes);

@@ -1,6 +1,7 @@
 /*
  * The two passes of tetrahedralize.h, and the memory of a complex.
  */
+#include "base/host_block.h"
 #include "base/structs.h"
 #include "convert/tetrahedralize.h"
 
@@ -56,10 +57,9 @@ static void blocks_write(void *shared) {
 
 /* Allocates memory to be freed by free(), in huge pages where it is large. */
 static void *pages_allocate(uint64_t bytes) {
-    const uint64_t huge_page_bytes = 2 << 20;
-    if (bytes < huge_page_bytes) return malloc(bytes ? (size_t)bytes : 1);
-    uint64_t rounded = (bytes + huge_page_bytes - 1) & ~(huge_page_bytes - 1);
-    void *memory = aligned_alloc((size_t)huge_page_bytes, (size_t)rounded);
+    if (bytes < HUGE_PAGE_BYTES) return malloc(bytes ? (size_t)bytes : 1);
+    uint64_t rounded = (bytes + HUGE_PAGE_BYTES - 1) & ~(uint64_t)(HUGE_PAGE_BYTES - 1);
+    void *memory = aligned_alloc(HUGE_PAGE_BYTES, (size_t)rounded);
     if (memory) madvise(memory, (size_t)rounded, MADV_HUGEPAGE);
     return memory;
 }
@@ -120,11 +120,11 @@ tc_status complex_make(block_function *block, const void *source, uint64_t cell_
 }
 
 void tetrahedra_put(tetrahedron_writer *writer, const uint32_t tetrahedra[][4], int count, uint64_t cell) {
-    uint64_t place = writer->tally->tetrahedra;
+    uint64_t first = writer->tally->tetrahedra;
     writer->tally->tetrahedra += (unsigned)count;
     if (!writer->tetrahedra) return;
-    memcpy(writer->tetrahedra[place], tetrahedra, (size_t)count * sizeof *tetrahedra);
-    for (int n = 0; n < count; n++) writer->cells[place + (unsigned)n] = (uint32_t)cell;
+    memcpy(writer->tetrahedra[first], tetrahedra, (size_t)count * sizeof *tetrahedra);
+    for (int n = 0; n < count; n++) writer->cells[first + (unsigned)n] = (uint32_t)cell;
 }
 
 double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]) {
@@ -138,14 +138,14 @@ double tetrahedron_volume(coordinate_array points, const uint32_t tetrahedron[4]
            (e[0][0] * e[1][1] - e[0][1] * e[1][0]) * e[2][2];
 }
 
-/* Whether a struct of this size is valid (result_begin) and has room for the arrays. */
+/* Whether a struct of this size is valid (struct_clear) and has room for the arrays. */
 static bool size_fits(size_t bytes) {
     return bytes >= offsetof(tc_tetrahedra, flat_cell_count) && bytes <= sizeof(tc_tetrahedra) &&
            bytes % sizeof bytes == 0;
 }
 
 tc_status complex_begin(tc_tetrahedra *complex, const char *what) {
-    tc_status status = result_begin(complex, sizeof *complex, what);
+    tc_status status = struct_clear(complex, sizeof *complex, what);
     if (status || size_fits(complex->struct_size)) return status;
     return (tc_status)fail(TC_ERROR_ARGUMENT, "%s: of %llu bytes, and its arrays need more", what,
                            (unsigned long long)complex->struct_size);
@@ -155,5 +155,5 @@ void tc_tetrahedra_release(tc_tetrahedra *complex) {
     if (!complex || !size_fits(complex->struct_size)) return;
     free((void *)(uintptr_t)complex->tetrahedra);
     free((void *)(uintptr_t)complex->cells);
-    result_give(complex, &(tc_tetrahedra){0});
+    struct_copy_out(complex, &(tc_tetrahedra){0});
 }

@@ -155,15 +155,15 @@ static void cell_orient(const tc_cells *cells, uint32_t tetrahedra[][4], int cou
 
 /* Faces of a polyhedron may be wound either way, so no polyhedron counts as inverted. */
 static bool polyhedron_put(const tc_cells *cells, uint64_t c, tetrahedron_writer *writer) {
-    const uint64_t place = writer->tally->tetrahedra;
-    uint32_t(*out)[4] = writer->tetrahedra ? writer->tetrahedra + place : NULL;
+    const uint64_t first = writer->tally->tetrahedra;
+    uint32_t(*out)[4] = writer->tetrahedra ? writer->tetrahedra + first : NULL;
     int count;
     if (polyhedron_cut(cells, c, out, &count)) return false;
     writer->tally->tetrahedra += (unsigned)count;
     if (!out) return true;
     const signed_volumes v = cell_turn(cells, out, count);
     writer->tally->folded += fmin(v.positive, v.negative) > 1e-5 * (v.positive + v.negative);
-    for (int n = 0; n < count; n++) writer->cells[place + (unsigned)n] = (uint32_t)c;
+    for (int n = 0; n < count; n++) writer->cells[first + (unsigned)n] = (uint32_t)c;
     return true;
 }
 
@@ -295,11 +295,11 @@ tc_status tc_tetrahedralize(const tc_cells *cells, tc_tetrahedra *complex) {
     tc_tetrahedra made = {.struct_size = sizeof made};
     uint64_t bad_cell;
     tc_status status = complex_begin(complex, "tc_tetrahedralize: tetrahedra");
-    if (!status) status = options_take(&c, sizeof c, cells, "tc_tetrahedralize: cells");
+    if (!status) status = struct_copy_in(&c, sizeof c, cells, "tc_tetrahedralize: cells");
     if (!status) status = cells_check(&c);
     if (!status) status = faces_check(&c);
     if (status) return status;
     status = complex_make(cells_cut, &c, c.cell_count, &made, &bad_cell);
-    if (!status) result_give(complex, &made);
+    if (!status) struct_copy_out(complex, &made);
     return status == TC_ERROR_DATA ? bad_cell_refuse(&c, bad_cell) : status;
 }

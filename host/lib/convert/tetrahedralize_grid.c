@@ -80,7 +80,7 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_tetrahedra *
     tc_tetrahedra made = {.struct_size = sizeof made};
     tc_grid_options_init(&o);
     tc_status status = complex_begin(complex, "tc_tetrahedralize_grid: tetrahedra");
-    if (!status) status = options_take(&o, sizeof o, options, "grid options");
+    if (!status) status = struct_copy_in(&o, sizeof o, options, "grid options");
     if (status) return status;
     s.grid = (tc_grid){0};
     status = grid_describe(&o, &s.grid);
@@ -89,6 +89,6 @@ tc_status tc_tetrahedralize_grid(const tc_grid_options *options, tc_tetrahedra *
     const uint64_t cubes = (uint64_t)((s.grid.dims[0] - 1) * (s.grid.dims[1] - 1) * (s.grid.dims[2] - 1));
     if (!status) status = complex_make(cubes_cut, &s, cubes, &made, &bad_cell);
     grid_release(&s.grid);
-    if (!status) result_give(complex, &made);
+    if (!status) struct_copy_out(complex, &made);
     return status;
 }

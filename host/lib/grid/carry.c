@@ -9,9 +9,9 @@
 
 #include "opencl/context.h"
 
-/* Component n, of `stride`, of the values at places. */
+/* Component n, of `stride`, of the values at samples. */
 #define GATHER(TYPE)                                                                                                   \
-    for (uint32_t m = 0; m < count; m++) out[m] = (REAL)((const TYPE *)values)[places[m] * stride + n]
+    for (uint32_t m = 0; m < count; m++) out[m] = (REAL)((const TYPE *)values)[samples[m] * stride + n]
 
 #define GATHER_ANY                                                                                                     \
     switch (type) {                                                                                                    \
@@ -42,13 +42,13 @@
     }
 
 #define REAL float
-static void gather_f32(tc_type type, const void *values, int stride, int n, const int64_t *places, uint32_t count,
+static void gather_f32(tc_type type, const void *values, int stride, int n, const int64_t *samples, uint32_t count,
                        float *out) {
     GATHER_ANY
 }
 #undef REAL
 #define REAL double
-static void gather_f64(tc_type type, const void *values, int stride, int n, const int64_t *places, uint32_t count,
+static void gather_f64(tc_type type, const void *values, int stride, int n, const int64_t *samples, uint32_t count,
                        double *out) {
     GATHER_ANY
 }

@@ -36,7 +36,7 @@ typedef struct complex_grid {
     /* Under an OpenCL engine: */
     complex_part part;
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
-    double classified_isovalue;  /* where context->classified is this grid */
+    double classified_isovalue;  /* where context->classified_grid is this grid */
     surface_size size;           /* of the surface there */
     bool carries;                /* a field was carried to a surface of the complex */
 } complex_grid;

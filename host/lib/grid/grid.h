@@ -44,9 +44,6 @@ struct tc_grid {
     struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
-/* The caller's options, complete and checked. */
-tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options);
-
 /* Checks the options and fills *grid, which is zeroed, except for context, scan and device. Release it in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 void grid_release(tc_grid *grid);

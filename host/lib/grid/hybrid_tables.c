@@ -20,7 +20,7 @@ enum { LOOP_MOST = 12, FACE_CORNERS = 4, CHORD_LOW = 1 << 10, CHORD_HIGH = 1 << 
 
 typedef struct loop {
     unsigned count;
-    uint8_t edges[LOOP_MOST]; /* places in cube_edges */
+    uint8_t edges[LOOP_MOST]; /* indices in cube_edges */
 } loop;
 
 /* Corners of a face, counter-clockwise seen from outside. */
@@ -38,11 +38,11 @@ static int diagonal_at(unsigned parity, unsigned corner) {
 /* Enters the sides of the patch in a face into `next`: for an edge, the edge that follows it in its loop. */
 static void face_sides(unsigned parity, unsigned pattern, const uint8_t corners[FACE_CORNERS],
                        uint8_t next[CUBE_EDGES]) {
-    uint8_t places[FACE_CORNERS];
+    uint8_t around[FACE_CORNERS];
     int steps[FACE_CORNERS], crossed = 0; /* 1: into the inside, -1: out of it */
     for (unsigned n = 0; n < FACE_CORNERS; n++) {
         unsigned a = corners[n], b = corners[(n + 1) % FACE_CORNERS];
-        places[n] = cube_edge_place(a, b);
+        around[n] = cube_edge_index(a, b);
         steps[n] = (int)(pattern >> b & 1) - (int)(pattern >> a & 1);
         crossed += steps[n] != 0;
     }
@@ -51,7 +51,7 @@ static void face_sides(unsigned parity, unsigned pattern, const uint8_t corners[
         unsigned end = (n + 1) % FACE_CORNERS; /* cuts off the corner inside */
         if (crossed == FACE_CORNERS && diagonal_at(parity, corners[end])) end = (n + FACE_CORNERS - 1) % FACE_CORNERS;
         while (steps[end] != -1) end = (end + 1) % FACE_CORNERS;
-        next[places[n]] = places[end];
+        next[around[n]] = around[end];
     }
 }
 

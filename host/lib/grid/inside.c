@@ -63,7 +63,18 @@ static bool integer_pattern(double value, double least, double most, uint64_t pa
     return true;
 }
 
-bool sample_patterns(tc_type type, double value, uint64_t patterns[2]) {
+isovalue_test isovalue_test_of(inside_range inside, double isovalue) {
+    isovalue_test test = {.inside_low = inside.low,
+                          .inside_span = inside.span,
+                          .key_flip = inside.key_flip,
+                          .key_inside = inside.key_inside,
+                          .key_outside = inside.key_outside,
+                          .isovalue32 = (float)isovalue};
+    memcpy(&test.isovalue64, &isovalue, sizeof isovalue);
+    return test;
+}
+
+bool value_bits(tc_type type, double value, uint64_t patterns[2]) {
     patterns[0] = patterns[1] = 0;
     switch (type) {
 #define PATTERN_CASE(type, name, c_type, least, most, ...)                                                             \

@@ -9,6 +9,7 @@
 #ifndef INSIDE_H
 #define INSIDE_H
 
+#include "slab.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>
@@ -22,7 +23,10 @@ typedef struct inside_range {
 
 inside_range inside_range_of(tc_type type, double isovalue);
 
+/* The same for the kernels; has_nodata is 0. */
+isovalue_test isovalue_test_of(inside_range inside, double isovalue);
+
 /* Bit patterns of samples that equal `value`: two for zero in floating types. False where no sample can equal it. */
-bool sample_patterns(tc_type type, double value, uint64_t patterns[2]);
+bool value_bits(tc_type type, double value, uint64_t patterns[2]);
 
 #endif

@@ -7,52 +7,57 @@
 #include <stdlib.h>
 #include <string.h>
 
-tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, bool normals) {
+tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, channel_set made) {
     if (vertex_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
                                "the surface has %llu vertices, and indices of 32 bits reach %lu: extract parts of the "
                                "volume, or reduce it",
                                (unsigned long long)vertex_count, (unsigned long)UINT32_MAX);
-    tc_status status = host_block_reserve(&mesh->positions, vertex_count * MESH_BYTES_PER_VERTEX);
-    if (!status && normals) status = host_block_reserve(&mesh->normals, vertex_count * MESH_BYTES_PER_VERTEX);
-    if (!status) status = host_block_reserve(&mesh->triangles, triangle_count * MESH_BYTES_PER_TRIANGLE);
+    tc_status status = TC_OK;
+    for (int channel = 0; channel < CHANNEL_COUNT && !status; channel++)
+        if (channel_in(made, channel))
+            status = host_block_reserve(&mesh->channels[channel], vertex_count * CHANNEL_BYTES);
+    if (!status) status = host_block_reserve(&mesh->triangles, triangle_count * TRIANGLE_BYTES);
     if (status) return status;
     mesh->vertex_count = vertex_count;
     mesh->triangle_count = triangle_count;
-    mesh->has_normals = normals;
+    mesh->made = made;
     return TC_OK;
 }
 
 void mesh_clear(tc_mesh *mesh) {
     mesh->vertex_count = mesh->triangle_count = mesh->active_cell_count = 0;
-    mesh->has_normals = false;
+    mesh->made = 0;
     memset(mesh->origin, 0, sizeof mesh->origin);
     mesh->slab_count = 1;
     mesh->timings = (tc_timings){0};
 }
 
+static const float *channel_values(const tc_mesh *mesh, int channel) {
+    return mesh->vertex_count && channel_in(mesh->made, channel) ? mesh->channels[channel].memory : NULL;
+}
+
 tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
-    tc_status status = result_begin(data, sizeof *data, "tc_mesh_get: data");
+    tc_status status = struct_clear(data, sizeof *data, "tc_mesh_get: data");
     if (status) return status;
     if (!mesh) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh");
     const tc_mesh_data found = {.struct_size = sizeof found,
                                 .vertex_count = mesh->vertex_count,
                                 .triangle_count = mesh->triangle_count,
                                 .active_cell_count = mesh->active_cell_count,
-                                .positions = mesh->vertex_count ? mesh->positions.memory : NULL,
-                                .normals = mesh->vertex_count && mesh->has_normals ? mesh->normals.memory : NULL,
+                                .positions = channel_values(mesh, CHANNEL_POSITIONS),
+                                .normals = channel_values(mesh, CHANNEL_NORMALS),
                                 .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
                                 .slab_count = mesh->slab_count,
                                 .timings = mesh->timings,
                                 .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
-    result_give(data, &found);
+    struct_copy_out(data, &found);
     return TC_OK;
 }
 
 void tc_mesh_destroy(tc_mesh *mesh) {
     if (!mesh) return;
-    host_block_release(&mesh->positions);
-    host_block_release(&mesh->normals);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) host_block_release(&mesh->channels[channel]);
     host_block_release(&mesh->triangles);
     free(mesh);
 }

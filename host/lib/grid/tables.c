@@ -41,7 +41,7 @@ owned_edge edge_between(unsigned corner_a, unsigned corner_b) {
     return (owned_edge){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), type_of_axes[corner_a ^ corner_b]};
 }
 
-uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b) {
+uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b) {
     const owned_edge e = edge_between(corner_a, corner_b);
     uint8_t n = 0;
     while (cube_edges[n].dx != e.dx || cube_edges[n].dy != e.dy || cube_edges[n].dz != e.dz ||
@@ -61,13 +61,13 @@ static void cube_case_derive(cube_case *out, unsigned parity, unsigned pattern, 
             uint8_t *edges = out->edges[out->triangle_count++];
             for (unsigned m = 0; m < 3; m++) {
                 const uint8_t *ends = tetrahedron_edges[c->triangles[n][mirrored ? (3 - m) % 3 : m]];
-                edges[m] = cube_edge_place(corners[ends[0]], corners[ends[1]]);
+                edges[m] = cube_edge_index(corners[ends[0]], corners[ends[1]]);
             }
         }
     }
 }
 
-void cube_cases_derive(cube_case cases[2][256], int mirrored) {
+void tetra_cases_derive(cube_case cases[2][256], int mirrored) {
     for (unsigned parity = 0; parity < 2; parity++)
         for (unsigned pattern = 0; pattern < 256; pattern++)
             cube_case_derive(&cases[parity][pattern], parity, pattern, mirrored);

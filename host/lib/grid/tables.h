@@ -24,13 +24,7 @@
 
 #include <stdint.h>
 
-enum {
-    TETRAHEDRA_PER_CUBE = 5,
-    EDGES_PER_SAMPLE = 6,
-    CUBE_EDGES = 18,
-    CUBE_TRIANGLES_MAX = 10,
-    HYBRID_TRIANGLES_MAX = 6
-};
+enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
 
 /* Edges that a sample owns, in the order of their vertices in a mesh. */
 enum edge_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ };
@@ -58,7 +52,7 @@ owned_edge edge_between(unsigned corner_a, unsigned corner_b);
 extern const owned_edge cube_edges[CUBE_EDGES];
 
 /* The index in cube_edges of the edge between two corners. */
-uint8_t cube_edge_place(unsigned corner_a, unsigned corner_b);
+uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
 /* What all tetrahedra of a cube emit, derived from the tables above; edges are indices in cube_edges. */
 typedef struct cube_case {
@@ -69,9 +63,8 @@ typedef struct cube_case {
 
 /* Fills cases[parity][pattern], bit c of pattern being corner c. mirrored: the grid's Jacobian is negative, so
  * triangles are turned over. */
-void cube_cases_derive(cube_case cases[2][256], int mirrored);
+typedef void cases_derive(cube_case cases[2][256], int mirrored);
 
-/* The same for the hybrid method, with edges of types x, y and z only (hybrid_tables.c). */
-void hybrid_cases_derive(cube_case cases[2][256], int mirrored);
+cases_derive tetra_cases_derive, hybrid_cases_derive;
 
 #endif

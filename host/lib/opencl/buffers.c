@@ -55,6 +55,11 @@ void buffer_release(tc_context *context, device_buffer *buffer) {
     *buffer = (device_buffer){0};
 }
 
+void mesh_buffers_release(tc_context *context, mesh_buffers *buffers) {
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) buffer_release(context, &buffers->channels[channel]);
+    buffer_release(context, &buffers->triangles);
+}
+
 tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name,
                          size_t *bytes) {
     char what[96];
@@ -92,7 +97,7 @@ tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const v
 
 /* Releases the workspace, with the results of kernel 1 in it. */
 void workspace_release(tc_context *context) {
-    context->counted = context->classified = NULL;
+    context->counted_grid = context->classified_grid = NULL;
     device_buffer *buffers = (device_buffer *)&context->work;
     for (size_t n = 0; n < sizeof context->work / sizeof *buffers; n++) buffer_release(context, &buffers[n]);
 }

@@ -43,6 +43,11 @@ void context_finish(const tc_context *context) {
     if (context->queue && !context_is_inherited(context)) cl->Finish(context->queue);
 }
 
+uint64_t context_budget(const tc_context *context) {
+    if (context->options.max_memory_bytes) return context->options.max_memory_bytes;
+    return context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
+}
+
 bool device_makes_vertices(const tc_context *context, tc_type type) {
     return context->info.has_fp64 || !type_is_wide(type);
 }

@@ -42,7 +42,7 @@ typedef struct word_buffers {
 } word_buffers;
 
 typedef struct mesh_buffers {
-    device_buffer positions, normals, triangles;
+    device_buffer channels[CHANNEL_COUNT], triangles;
 } mesh_buffers;
 
 /* The arrays of a grid, with one or more values per sample or cube. */
@@ -63,7 +63,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
-    device_buffer cases[2][2]; /* cube table of each method; [1] for mirrored grids */
+    device_buffer cases[METHOD_COUNT][2]; /* cube table of each method; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {
@@ -79,14 +79,14 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
-    bool is_trial;                    /* kernels are built without vetting */
-    bool tries;                       /* a trial is running: progress is not reported (trial.c) */
-    bool text_changed;                /* the other text was taken within a call, which starts again */
-    bool vetted[KERNEL_KINDS + 1];    /* kernels that may be built, and the device itself (vetting.c) */
-    const struct tc_grid *served;     /* the grid that the workspace was last used for */
-    bool passed[KERNEL_KINDS];        /* kernels that were tried (trial.c) */
-    const struct tc_grid *counted;    /* whose counts the workspace holds since tc_count; NULL: none */
-    const struct tc_grid *classified; /* whose surface it holds, counted or extracted; NULL: none */
+    bool is_trial;                         /* kernels are built without vetting */
+    bool tries;                            /* a trial is running: progress is not reported (trial.c) */
+    bool text_changed;                     /* the other text was taken within a call, which starts again */
+    bool vetted[KERNEL_KINDS + 1];         /* kernels that may be built, and the device itself (vetting.c) */
+    const struct tc_grid *workspace_grid;  /* the grid that the workspace was last used for */
+    bool trial_passed[KERNEL_KINDS];       /* kernels that were tried (trial.c) */
+    const struct tc_grid *counted_grid;    /* whose counts the workspace holds since tc_count; NULL: none */
+    const struct tc_grid *classified_grid; /* whose surface it holds, counted or extracted; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
 };
 
@@ -106,6 +106,10 @@ void context_finish(const tc_context *context);
 /* Reports progress to the caller; TC_ERROR_CANCELLED where the caller asks to stop. */
 tc_status context_progress(const tc_context *context, const char *stage, double fraction);
 
+/* Bytes of device memory that the library may use: as the caller allows; else all that the device has, or any number
+ * where it works in the host's memory. */
+uint64_t context_budget(const tc_context *context);
+
 /* False where vertices of a wide type have to be made on the host. */
 bool device_makes_vertices(const tc_context *context, tc_type type);
 
@@ -119,6 +123,7 @@ tc_status copies_queue_provide(tc_context *context);
 /* Makes the buffer at least `bytes` large; its content is lost where it has to grow. name is for the error. */
 tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t bytes, const char *name);
 void buffer_release(tc_context *context, device_buffer *buffer);
+void mesh_buffers_release(tc_context *context, mesh_buffers *buffers);
 
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,

@@ -264,7 +264,7 @@ tc_status tc_device_get(int index, tc_device_info *info) {
     FLOAT_ENVIRONMENT_DEFAULT;
     device_list list;
     tc_device_info found;
-    tc_status status = result_begin(info, sizeof *info, "tc_device_get: info");
+    tc_status status = struct_clear(info, sizeof *info, "tc_device_get: info");
     if (!status) status = opencl_lock();
     if (status) return status;
     status = device_list_make(&list);
@@ -276,6 +276,6 @@ tc_status tc_device_get(int index, tc_device_info *info) {
     if (status) return status;
     found.platform_index = list.devices[index].platform_index;
     found.device_index = list.devices[index].device_index;
-    result_give(info, &found);
+    struct_copy_out(info, &found);
     return TC_OK;
 }

@@ -5,15 +5,23 @@
 _Static_assert(SAMPLE_TYPE_COUNT == 8, "kinds are numbered by eight types, here and in KERNEL_KINDS");
 
 unsigned kind_number(kernel_kind k) {
-    return ((((k.grid * 8 + (unsigned)k.type) * 2 + k.hybrid) * 2 + k.missing) * 2 + k.normals) * 2 + k.emits;
+    const unsigned shape = (k.grid * METHOD_COUNT + (unsigned)k.method) * 8 + (unsigned)k.type;
+    return (shape << CHANNEL_COUNT | k.made) * 4 + 2u * k.missing + k.emits;
 }
 
 kernel_kind kind_of_number(unsigned n) {
-    return (kernel_kind){.grid = n >> 7, .type = (tc_type)(n >> 4 & 7), n >> 3 & 1, n >> 2 & 1, n >> 1 & 1, n & 1};
+    const unsigned shape = n >> 2 >> CHANNEL_COUNT;
+    return (kernel_kind){.grid = shape / 8 / METHOD_COUNT,
+                         .method = (tc_method)(shape / 8 % METHOD_COUNT),
+                         .type = (tc_type)(shape % 8),
+                         .made = n >> 2 & ((1u << CHANNEL_COUNT) - 1),
+                         .missing = n >> 1 & 1,
+                         .emits = n & 1};
 }
 
 kernel_kind kind_of_classify(kernel_kind kind) {
-    kind.emits = kind.normals = false;
+    kind.emits = false;
+    kind.made = 0;
     if (kind.grid != KIND_COMPLEX) kind.grid = 0;
     return kind;
 }

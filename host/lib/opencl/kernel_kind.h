@@ -4,6 +4,8 @@
 #ifndef KERNEL_KIND_H
 #define KERNEL_KIND_H
 
+#include "base/channels.h"
+#include "methods.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>
@@ -11,10 +13,12 @@
 typedef struct kernel_kind {
     unsigned grid; /* as grid_kind, or KIND_COMPLEX; kernel 1 of structured grids is the same for all: 0 */
     tc_type type;
-    bool hybrid, missing, normals, emits; /* emits: kernel 2 too */
+    tc_method method;
+    channel_set made;    /* by kernel 2 */
+    bool missing, emits; /* emits: kernel 2 too */
 } kernel_kind;
 
-enum { KIND_COMPLEX = 3, KERNEL_KINDS = 4 * 8 * 2 * 2 * 2 * 2 };
+enum { KIND_COMPLEX = 3, KERNEL_KINDS = (4 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
 
 /* A number below KERNEL_KINDS, and back. */
 unsigned kind_number(kernel_kind kind);

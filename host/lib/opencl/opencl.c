@@ -19,7 +19,7 @@ static pthread_once_t load_once = PTHREAD_ONCE_INIT;
 static void load(void) {
     static const struct {
         const char *name;
-        size_t place;
+        size_t offset;
     } entries[] = {
 #define X(name) {"cl" #name, offsetof(struct opencl_functions, name)},
         OPENCL_FUNCTIONS(X)
@@ -34,7 +34,7 @@ static void load(void) {
     for (size_t n = 0; n < sizeof entries / sizeof entries[0]; n++) {
         void *symbol = dlsym(library, entries[n].name);
         if (!symbol) return;
-        *(void **)((char *)&functions + entries[n].place) = symbol;
+        *(void **)((char *)&functions + entries[n].offset) = symbol;
     }
     cl = &functions;
 }

@@ -28,9 +28,9 @@ static unsigned floating_bits(tc_type type) { return type_is_real(type) ? 8 * (u
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
 static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DHYBRID=%d",
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DMETHOD=%s",
              type_texts[kind.type].bits, floating_bits(kind.type), kind.missing, context->launch.work_items,
-             kind.hybrid);
+             tc_method_name(kind.method));
 }
 
 static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {
@@ -40,8 +40,8 @@ static void emit_options_write(const tc_context *context, kernel_kind kind, unsi
     classify_options_write(context, kind, common, sizeof common);
     snprintf(out, bytes, "%s %s-DWIDE=%d %s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%u%s", common,
              context->launch.division == TC_DIVISION_BUILT_IN ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
-             real, type_texts[kind.type].value, kind.normals, (int)context->launch.division, grid,
-             context->info.has_fp64 ? " -DFP64=1" : "");
+             real, type_texts[kind.type].value, channel_in(kind.made, CHANNEL_NORMALS), (int)context->launch.division,
+             grid, context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
 /* Complexes are always built for missing samples: a tetrahedron that has one is never active. */

@@ -119,11 +119,11 @@ enum { DEVICES_MOST = 64 };
 
 /* The index of the context's device among the program's devices. These are all devices of the OpenCL context, which may
  * be the caller's. */
-typedef struct place {
+typedef struct device_slot {
     cl_uint index, count;
-} place;
+} device_slot;
 
-static bool place_find(const tc_context *context, cl_program built, place *at) {
+static bool device_slot_find(const tc_context *context, cl_program built, device_slot *at) {
     cl_device_id devices[DEVICES_MOST];
     size_t bytes = 0;
     if (cl->GetProgramInfo(built, CL_PROGRAM_DEVICES, sizeof devices, devices, &bytes)) return false;
@@ -134,20 +134,20 @@ static bool place_find(const tc_context *context, cl_program built, place *at) {
 }
 
 /* 0 where the implementation gives no binary. */
-static size_t binary_bytes(cl_program built, place at) {
+static size_t binary_bytes(cl_program built, device_slot at) {
     size_t sizes[DEVICES_MOST] = {0};
     cl_int error = cl->GetProgramInfo(built, CL_PROGRAM_BINARY_SIZES, at.count * sizeof *sizes, sizes, NULL);
     return error ? 0 : sizes[at.index];
 }
 
-static bool binary_get(cl_program built, place at, char *out) {
+static bool binary_get(cl_program built, device_slot at, char *out) {
     unsigned char *binaries[DEVICES_MOST] = {NULL}; /* those of other devices are not asked for */
     binaries[at.index] = (unsigned char *)out;
     return !cl->GetProgramInfo(built, CL_PROGRAM_BINARIES, at.count * sizeof *binaries, binaries, NULL);
 }
 
 /* Head, key and binary in one; bytes NULL where that cannot be had. */
-static cache_text file_make(cl_program built, place at, cache_text key) {
+static cache_text file_make(cl_program built, device_slot at, cache_text key) {
     head h = {.key_bytes = key.count, .binary_bytes = binary_bytes(built, at)};
     cache_text file = {.count = sizeof h + key.count + (size_t)h.binary_bytes};
     if (!h.binary_bytes || !(file.bytes = malloc(file.count))) return (cache_text){0};
@@ -165,8 +165,8 @@ static cache_text file_make(cl_program built, place at, cache_text key) {
 
 void program_cache_store(const tc_context *context, const program_recipe *recipe, cl_program built) {
     char name[32];
-    place at;
-    if (!cache_is_on() || !place_find(context, built, &at)) return;
+    device_slot at;
+    if (!cache_is_on() || !device_slot_find(context, built, &at)) return;
     cache_text key = key_make(context, recipe);
     if (!key.bytes) return;
     cache_text file = file_make(built, at, key);

@@ -15,7 +15,7 @@ static const char file_name[] = "tuning";
 
 static const struct {
     const char *name;
-    size_t place;
+    size_t offset;
 } parameters[] = {
     {"work_items=", offsetof(tc_tuning, work_items)},
     {"work_groups=", offsetof(tc_tuning, work_groups)},
@@ -58,7 +58,7 @@ static const char *parameters_parse(const char *line, tc_tuning *out) {
         errno = 0;
         unsigned long value = strtoul(line + length, &end, 10);
         if (errno || value > kept_most || *end != ' ') return NULL;
-        *(uint32_t *)((char *)out + parameters[n].place) = (uint32_t)value;
+        *(uint32_t *)((char *)out + parameters[n].offset) = (uint32_t)value;
         line = end + 1;
     }
     return line;
@@ -81,7 +81,7 @@ static bool kept_find(const tc_device_info *device, tc_tuning *out) {
 
 static void line_write(FILE *out, const tc_tuning *tuning, const char *device) {
     for (int n = 0; n < PARAMETERS; n++)
-        fprintf(out, "%s%u ", parameters[n].name, *(const uint32_t *)((const char *)tuning + parameters[n].place));
+        fprintf(out, "%s%u ", parameters[n].name, *(const uint32_t *)((const char *)tuning + parameters[n].offset));
     fprintf(out, "%s\n", device);
 }
 

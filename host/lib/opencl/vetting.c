@@ -100,7 +100,7 @@ static void text_exchange(tc_context *context) {
     context->launch.work_items = context->launch.other_items;
     context->launch.other_items = 0;
     memset(context->vetted, 0, sizeof context->vetted);
-    memset(context->passed, 0, sizeof context->passed);
+    memset(context->trial_passed, 0, sizeof context->trial_passed);
 }
 
 static void vetted_note(tc_context *context, kernel_kind kind) {

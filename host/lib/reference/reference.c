@@ -10,7 +10,7 @@
 
 #include "opencl/context.h"
 #include "failure.h"
-#include "grid/tables.h"
+#include "grid/method.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,9 +27,9 @@ typedef struct reference {
     uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
     tc_mesh *mesh;    /* NULL: count only */
     const carry *carried;
-    bool normals, hybrid;
-    int edge_types; /* types of edges with vertices: the first so many */
-    cube_case hybrid_cases[2][256];
+    channel_set made;
+    tc_method method;
+    cube_case cases[2][256]; /* of the method, where it is not made of tetrahedra */
     uint64_t vertex_count, triangle_count, active_cell_count;
 } reference;
 
@@ -164,7 +164,7 @@ static void position_between(const reference *r, const int64_t a[3], const int64
     }
 }
 
-static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+static void position_mapped(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     const float *m = r->grid->matrix;
     float p[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -180,20 +180,32 @@ static float edge_crossing(const reference *r, const int64_t a[3], const int64_t
                                        : crossing_f32(value_a, value_b, r->isovalue);
 }
 
+/* What each channel has at t on an edge. */
+typedef void channel_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]);
+
+static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+    if (r->grid->kind == GRID_UNIFORM)
+        position_mapped(r, a, b, t, out);
+    else
+        position_between(r, a, b, t, out);
+}
+
+static void normal_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+    if (type_is_wide(r->grid->type))
+        normal_f64(r, a, b, t, out);
+    else
+        normal_f32(r, a, b, t, out);
+}
+
+static channel_make *const makes[CHANNEL_COUNT] = {
+    [CHANNEL_POSITIONS] = position_make, [CHANNEL_NORMALS] = normal_make};
+
 /* Not inlined, as few edges have a vertex: the loop over all edges keeps its registers. */
 __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
     const float t = edge_crossing(r, a, b);
-    float *position = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
-    if (r->grid->kind == GRID_UNIFORM)
-        position_make(r, a, b, t, position);
-    else
-        position_between(r, a, b, t, position);
-    if (!r->normals) return;
-    float *normal = (float *)r->mesh->normals.memory + 3 * r->vertex_count;
-    if (type_is_wide(r->grid->type))
-        normal_f64(r, a, b, t, normal);
-    else
-        normal_f32(r, a, b, t, normal);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++)
+        if (channel_in(r->made, channel))
+            makes[channel](r, a, b, t, (float *)r->mesh->channels[channel].memory + 3 * r->vertex_count);
 }
 
 static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
@@ -202,9 +214,9 @@ static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
     return r->ids[layer & 1] + sample * EDGES_PER_SAMPLE + type;
 }
 
-static void row_number(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
-    for (int type = 0; type < r->edge_types; type++)
+    for (int type = 0; type < methods[r->method].edge_types; type++)
         for (int64_t x = x0; x < x1; x++) {
             int64_t owner[3] = {x, y, z}, a[3], b[3];
             if (!edge_exists(r, owner, type)) continue;
@@ -229,6 +241,7 @@ static uint32_t *triangle_next(const reference *r) {
     return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
 }
 
+/* By method tetra, triangles are made here without the table of cubes, by which the kernels make them. */
 static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], unsigned pattern) {
     unsigned index = 0;
     for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
@@ -243,7 +256,13 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
     }
 }
 
-static void cube_emit(reference *r, const int64_t cube[3], const cube_case *c) {
+static void tetrahedra_emit(reference *r, const int64_t cube[3], unsigned pattern) {
+    for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++)
+        tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
+}
+
+static void case_emit(reference *r, const int64_t cube[3], unsigned pattern) {
+    const cube_case *c = &r->cases[cube_parity(r, cube)][pattern];
     for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
         uint32_t *triangle = triangle_next(r);
         for (unsigned m = 0; m < 3 && triangle; m++) {
@@ -263,9 +282,10 @@ static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int
             pattern |= (unsigned)sample_inside(r, (int64_t[3]){x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)}) << c;
         if (pattern == 0 || pattern == 255) continue;
         r->active_cell_count++;
-        if (r->hybrid) cube_emit(r, cube, &r->hybrid_cases[cube_parity(r, cube)][pattern]);
-        for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE && !r->hybrid; t++)
-            tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
+        if (r->method == TC_METHOD_TETRA)
+            tetrahedra_emit(r, cube, pattern);
+        else
+            case_emit(r, cube, pattern);
     }
 }
 
@@ -286,9 +306,9 @@ static void layer_run(reference *r, int64_t layer, row_stage *stage) {
 static tc_status layers_run(reference *r, const char *stage, double before, double share) {
     int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    layer_run(r, 0, row_number);
+    layer_run(r, 0, row_vertices);
     for (int64_t layer = 0; layer < layer_count; layer++) {
-        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_number);
+        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_vertices);
         layer_run(r, layer, row_triangulate);
         tc_status status =
             context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
@@ -298,11 +318,10 @@ static tc_status layers_run(reference *r, const char *stage, double before, doub
 }
 
 static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
-    *r = (reference){.grid = grid, .isovalue = options->isovalue, .normals = options->normals != 0};
+    *r = (reference){.grid = grid, .isovalue = options->isovalue, .made = channels_asked(options)};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
-    r->hybrid = options->method == TC_METHOD_HYBRID;
-    r->edge_types = r->hybrid ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
-    if (r->hybrid) hybrid_cases_derive(r->hybrid_cases, grid->mirrored);
+    r->method = options->method;
+    methods[r->method].derive(r->cases, grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
@@ -351,7 +370,7 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
     if (!status) status = layers_run(&r, "classify", 0, 0.5);
     if (status) goto cleanup;
     const double classified = clock_ms();
-    status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
     if (!status) status = ids_allocate(&r);
     if (status) goto cleanup;
     r.mesh = mesh;
@@ -372,7 +391,7 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
     if (!status) status = ids_allocate(&r);
     if (!status) {
         r.mesh = mesh;
-        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_number);
+        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_vertices);
         status = mesh_complete(&r, false);
     }
     reference_end(&r);
@@ -386,7 +405,7 @@ tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options
     tc_status status = reference_begin(&r, grid, options);
     r.carried = c;
     for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
-        layer_run(&r, layer, row_number);
+        layer_run(&r, layer, row_vertices);
         status = context_progress(grid->context, "carry", (double)(layer + 1) / (double)layer_count);
     }
     *vertex_count = r.vertex_count;

@@ -16,7 +16,7 @@ tc_status reference_count(const tc_grid *grid, const tc_extract_options *options
 /* Fills the mesh. After a failure its content is undefined: clear it. */
 tc_status reference_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
-/* Makes the positions and normals alone of a mesh that is already allocated, for devices that cannot (u32, i32 and f64
+/* Makes the channels alone of a mesh that is already allocated, for devices that cannot (u32, i32 and f64
  * samples without fp64). */
 tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 

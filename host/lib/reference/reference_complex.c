@@ -72,7 +72,7 @@ static float edge_crossing(const reference *r, uint32_t low, uint32_t high) {
 static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
     const float t = edge_crossing(r, low, high);
     const float *p0 = r->grid->complex->points + 3 * (uint64_t)low, *p1 = r->grid->complex->points + 3 * (uint64_t)high;
-    float *out = (float *)r->mesh->positions.memory + 3 * r->vertex_count;
+    float *out = (float *)r->mesh->channels[CHANNEL_POSITIONS].memory + 3 * r->vertex_count;
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
 }
 
@@ -81,7 +81,7 @@ static tc_status change_fail(void) {
 }
 
 /* The number of the vertex on the edge of two points; makes the vertex when the edge is first met. */
-static tc_status edge_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
+static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     tc_status status = table_grow(r);
     if (status) return status;
@@ -123,7 +123,7 @@ static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
     for (int e = 0; e < 6 && !status; e++) {
         const uint8_t *ends = tetrahedron_edges[e];
         if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
-            status = edge_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
+            status = edge_vertex_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
     }
     for (unsigned n = 0; n < c->triangle_count && !status; n++, r->triangle_count++) {
         if (!r->mesh) continue;
@@ -184,7 +184,7 @@ tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mes
     tc_status status = reference_begin(&r, grid, isovalue);
     if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
     const double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, false);
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, POSITIONS_ALONE);
     r.mesh = mesh;
     if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);
     if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))

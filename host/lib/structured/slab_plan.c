@@ -195,8 +195,7 @@ static tc_status plan_refuse(const tc_context *context, const tc_grid *grid) {
 
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
-    uint64_t budget = context->options.max_memory_bytes;
-    if (!budget) budget = context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
+    const uint64_t budget = context_budget(context);
     *plan = plan_begin(grid);
     if (layer_samples > scan_samples)
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",

@@ -11,32 +11,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void base_fill(run *r, inside_range inside, double isovalue) {
-    const tc_grid *grid = r->grid;
-    slab *s = &r->base;
-    s->inside_low = inside.low;
-    s->inside_span = inside.span;
-    s->key_flip = inside.key_flip;
-    s->key_inside = inside.key_inside;
-    s->key_outside = inside.key_outside;
-    s->ranges_known = grid->device->ranges_known;
-    s->has_blanked_samples = grid->blanked_samples != NULL;
-    s->has_blanked_cells = grid->blanked_cells != NULL;
-    s->has_nodata = grid->has_nodata && sample_patterns(grid->type, grid->nodata, s->nodata_bits);
-    s->nx = (uint32_t)grid->dims[0];
-    s->ny = (uint32_t)grid->dims[1];
-    s->nz = (uint32_t)grid->dims[2];
-    s->words_x = r->plan->words_x;
-    s->bricks_y = r->plan->bricks_y;
-    s->parity = grid_parity(grid);
-    for (int axis = 0; axis < 3; axis++) s->first[axis] = (int32_t)grid->first[axis];
-    s->tile_rows = r->plan->tile_rows;
-    s->tile_layers = r->plan->tile_layers;
-    s->spin_limit = r->grid->scan.spin_limit;
-    s->isovalue32 = (float)isovalue;
-    memcpy(&s->isovalue64, &isovalue, sizeof isovalue);
-    memcpy(s->matrix, grid->matrix, sizeof s->matrix);
-    memcpy(s->normal_matrix, grid->normal_matrix, sizeof s->normal_matrix);
+/* The fields that all slabs share. */
+static slab base_of(const tc_grid *grid, inside_range inside, double isovalue) {
+    const slab_plan *plan = &grid->device->plan;
+    slab s = {.test = isovalue_test_of(inside, isovalue),
+              .arrays = {.has_blanked_samples = grid->blanked_samples != NULL,
+                         .has_blanked_cells = grid->blanked_cells != NULL},
+              .nx = (uint32_t)grid->dims[0],
+              .ny = (uint32_t)grid->dims[1],
+              .nz = (uint32_t)grid->dims[2],
+              .words_x = plan->words_x,
+              .bricks_y = plan->bricks_y,
+              .parity = grid_parity(grid),
+              .first = {(int32_t)grid->first[0], (int32_t)grid->first[1], (int32_t)grid->first[2]},
+              .results = {.ranges_known = grid->device->ranges_known},
+              .tiling = {
+                  .tile_rows = plan->tile_rows, .tile_layers = plan->tile_layers, .spin_limit = grid->scan.spin_limit}};
+    s.test.has_nodata = grid->has_nodata && value_bits(grid->type, grid->nodata, s.test.nodata_bits);
+    memcpy(s.space.matrix, grid->matrix, sizeof s.space.matrix);
+    memcpy(s.space.normal_matrix, grid->normal_matrix, sizeof s.space.normal_matrix);
+    return s;
 }
 
 static uint64_t state_bytes(const run *r) {
@@ -100,11 +94,11 @@ static tc_status workspace_reserve(run *r) {
                                    {&w->state, state_bytes(r), "the scan"},
                                    {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
-    if (r->context->served != r->grid && r->context->options.max_memory_bytes) {
+    if (r->context->workspace_grid != r->grid && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
         workspace_release(r->context); /* with buffers of another grid it could exceed the budget */
     }
-    r->context->served = r->grid;
+    r->context->workspace_grid = r->grid;
     windows_trim(r);
     tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
     for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
@@ -116,9 +110,9 @@ void structured_reshape(tc_grid *grid) { slab_plan_reshape(grid->context, grid, 
 kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const kernel_kind kind = {.grid = (unsigned)grid->kind,
                               .type = grid->type,
-                              .hybrid = options->method == TC_METHOD_HYBRID,
+                              .method = options->method,
                               .missing = grid->device && grid->device->missing,
-                              .normals = options->normals != 0,
+                              .made = channels_asked(options),
                               .emits = true};
     return emits ? kind : kind_of_classify(kind);
 }
@@ -128,9 +122,9 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
                .context = grid->context,
                .plan = &grid->device->plan,
                .method = options->method,
-               .normals = options->normals != 0};
+               .made = channels_asked(options),
+               .base = base_of(grid, inside, options->isovalue)};
     r->copies = r->context->queue;
-    base_fill(r, inside, options->isovalue);
     tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
@@ -145,9 +139,7 @@ void run_end(run *r, tc_status status) {
     cl->Finish(r->context->queue);
     if (status) workspace_release(r->context); /* its state is undefined after a failure */
     if (r->context->in_place) {                /* windows in memory of the caller */
-        mesh_buffers *mesh = &w->mesh[0];
-        device_buffer *windows[] = {&mesh->positions, &mesh->normals, &mesh->triangles};
-        for (int n = 0; n < 3; n++) buffer_release(r->context, windows[n]);
+        mesh_buffers_release(r->context, &w->mesh[0]);
         for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(r->context, &w->arrays[0][array]);
     }
     slab_store_release(&r->store);
@@ -156,27 +148,25 @@ void run_end(run *r, tc_status status) {
 
 /* -------------------------------------------------------------------------------------------------- classification */
 
-static slab_place classify_place(const run *r, uint32_t slab_index) {
-    return (slab_place){slab_index, slab_index % plan_window_count(r->plan)};
+static slab_ref classify_ref(const run *r, uint32_t slab_index) {
+    return (slab_ref){slab_index, slab_index % plan_window_count(r->plan)};
 }
 
-static tc_status classify_load(run *r, uint32_t slab_index) {
-    return slab_load(r, classify_place(r, slab_index), false);
-}
+static tc_status classify_load(run *r, uint32_t slab_index) { return slab_load(r, classify_ref(r, slab_index), false); }
 
-static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_place(r, slab_index)); }
+static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r, classify_ref(r, slab_index)); }
 
 static tc_status slab_classify(run *r, uint32_t slab_index) {
-    slab_place place = classify_place(r, slab_index);
+    slab_ref ref = classify_ref(r, slab_index);
     workspace *work = &r->context->work;
-    word_buffers *w = place_words(r, place);
+    word_buffers *w = slab_words(r, ref);
     slab s;
-    slab_describe(r, place, &s);
-    tc_status status = slab_mark_cells(r, place, &s);
+    slab_describe(r, ref, &s);
+    tc_status status = slab_mark_cells(r, ref, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(r->grid->device->ranges.memory),
                                          ARGUMENT(w->words.memory),
@@ -228,7 +218,7 @@ static tc_status slabs_classify(run *r) {
  * missing cells, and remembered as such. */
 static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits,
                           double share) {
-    grid->context->counted = grid->context->classified = NULL; /* the workspace is overwritten from here on */
+    grid->context->counted_grid = grid->context->classified_grid = NULL; /* the workspace is overwritten from here on */
     slab_store_release(&grid->device->store);
     tc_status status = run_begin(r, grid, options, inside, emits);
     if (status) return status;
@@ -252,7 +242,7 @@ static void results_keep(tc_grid *grid, const tc_extract_options *options, run *
     free(device->heads);
     device->heads = r ? r->heads : NULL;
     device->classified_options = *options;
-    grid->context->classified = grid;
+    grid->context->classified_grid = grid;
     if (!r) return;
     r->heads = NULL;
     if (!device->carries) return;
@@ -284,7 +274,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     if (inside.uniform) return TC_OK;
     tc_status status = classify(&r, grid, options, inside, true, 0.5);
     classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.normals);
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
     if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
     if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
     mesh->active_cell_count = r.active_cell_count;

@@ -10,7 +10,7 @@
 
 #include "failure.h"
 #include "grid/carry.h"
-#include "grid/tables.h"
+#include "grid/method.h"
 #include "parallel.h"
 #include "structured/structured_run.h"
 
@@ -167,7 +167,7 @@ static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t fi
 /* ------------------------------------------------------------------------------------------------------------ batches
  */
 
-/* Stores the first edge of bits at place `at`, without a branch: where bits is 0 the next edge overwrites it. Most rows
+/* Stores the first edge of bits at index `at`, without a branch: where bits is 0 the next edge overwrites it. Most rows
  * have at most two edges of a type, so row_add stores two before it branches. */
 static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t owner, unsigned odd, uint32_t at,
                             edge_batch *batch) {
@@ -236,9 +236,9 @@ static void brick_carry(carry_job *j, uint64_t brick, edge_batch *batch) {
     }
     brick_words_load(j, brick, at, &words);
     for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
-        const int place = __builtin_ctz(rows), row = place % BRICK_ROWS, plane = place / BRICK_ROWS;
+        const int brick_row = __builtin_ctz(rows), row = brick_row % BRICK_ROWS, plane = brick_row / BRICK_ROWS;
         const int64_t p[3] = {first[0], first[1] + (uint32_t)row, first[2] + (uint32_t)plane};
-        const uint64_t packed = j->k1.offsets[BRICK_WORDS * brick + (uint64_t)place];
+        const uint64_t packed = j->k1.offsets[BRICK_WORDS * brick + (uint64_t)brick_row];
         uint64_t crossed[EDGES_PER_SAMPLE];
         if (p[1] >= dims[1] || p[2] >= dims[2] || batch->vertex + batch->count != vertex + (packed & 0x3fff)) {
             j->wrong = true;
@@ -354,7 +354,7 @@ void structured_carries(tc_grid *grid) { grid->device->carries = true; }
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
     if (inside_range_of(grid->type, options->isovalue).uniform) return true;
-    return grid->context->classified == grid && device->classified_options.isovalue == options->isovalue &&
+    return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
            device->classified_options.method == options->method &&
            (device->plan.words_whole || device->store.words != NULL);
 }
@@ -368,7 +368,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
-    j.edge_types = options->method == TC_METHOD_HYBRID ? EDGE_Z + 1 : EDGES_PER_SAMPLE;
+    j.edge_types = methods[options->method].edge_types;
     ends_fill(&j);
     if (!j.plan->words_whole) {
         const slab_store *s = &device->store;

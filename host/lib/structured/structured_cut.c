@@ -8,19 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint64_t page_bytes = 4096;
-
-static uint64_t window_bytes(const run *r, uint64_t vertices, uint64_t triangles) {
-    return vertices * MESH_BYTES_PER_VERTEX * (r->normals ? 2 : 1) + triangles * MESH_BYTES_PER_TRIANGLE;
-}
-
 bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows) {
-    uint64_t most = r->context->info.max_buffer_bytes - page_bytes;
-    return vertices * MESH_BYTES_PER_VERTEX <= most && triangles * MESH_BYTES_PER_TRIANGLE <= most &&
-           triangles <= UINT32_MAX && window_bytes(r, vertices, triangles) <= r->plan->mesh_bytes / windows;
+    uint64_t most = r->context->info.max_buffer_bytes - PAGE_BYTES;
+    return vertices * CHANNEL_BYTES <= most && triangles * TRIANGLE_BYTES <= most && triangles <= UINT32_MAX &&
+           channels_mesh_bytes(r->made, vertices, triangles) <= r->plan->mesh_bytes / windows;
 }
 
-void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles) {
+void steps_largest(const emit_plan *e, uint64_t *vertices, uint64_t *triangles) {
     *vertices = *triangles = 0;
     for (uint32_t n = 0; n < e->step_count; n++) {
         const mesh_window *part = &e->steps[n].part;
@@ -84,8 +78,8 @@ static void row_begin(const run *r, const row_sums *sums, uint32_t slab_index, u
 /* The part of the mesh that rows [step->row0, row1) of the slab make. */
 static void step_end(const run *r, const row_sums *sums, emit_step *step, uint32_t row1) {
     uint64_t from[2], to[2];
-    row_begin(r, sums, step->place.slab_index, step->row0, from);
-    row_begin(r, sums, step->place.slab_index, row1, to);
+    row_begin(r, sums, step->ref.slab_index, step->row0, from);
+    row_begin(r, sums, step->ref.slab_index, row1, to);
     step->row1 = row1;
     step->part.vertex0 = step->slab_vertex + from[0];
     step->part.vertex1 = step->slab_vertex + to[0];
@@ -94,7 +88,7 @@ static void step_end(const run *r, const row_sums *sums, emit_step *step, uint32
 }
 
 /* Whether the step fits a window that is halved `shrink` times. */
-static bool step_fits(const run *r, const emission *e, const emit_step *step, unsigned shrink) {
+static bool step_fits(const run *r, const emit_plan *e, const emit_step *step, unsigned shrink) {
     const mesh_window *part = &step->part;
     return e->window_count == 0 ||
            window_fits(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0, e->window_count << shrink);
@@ -102,7 +96,7 @@ static bool step_fits(const run *r, const emission *e, const emit_step *step, un
 
 /* Windows of a device with memory of its own are as large as any step needs: one may have the most vertices, another
  * the most triangles. */
-static bool windows_fit(const run *r, const emission *e) {
+static bool windows_fit(const run *r, const emit_plan *e) {
     uint64_t vertices, triangles;
     if (e->window_count == 0 || r->context->in_place) return true;
     steps_largest(e, &vertices, &triangles);
@@ -115,12 +109,13 @@ static tc_status row_refuse(const run *r, const mesh_window *part) {
         "a row of bricks of this surface has %llu bytes, more than the memory budget leaves (%llu) or a buffer may "
         "have "
         "(%llu): allow %llu or more",
-        (unsigned long long)window_bytes(r, part->vertex1 - part->vertex0, part->triangle1 - part->triangle0),
+        (unsigned long long)channels_mesh_bytes(r->made, part->vertex1 - part->vertex0,
+                                                part->triangle1 - part->triangle0),
         (unsigned long long)r->plan->mesh_bytes, (unsigned long long)r->context->info.max_buffer_bytes,
         (unsigned long long)plan_budget(r->context, r->grid));
 }
 
-static tc_status step_add(emission *e, const emit_step *step) {
+static tc_status step_add(emit_plan *e, const emit_step *step) {
     if (e->step_count == e->step_room) {
         const uint32_t room = 2 * e->step_room + 16;
         emit_step *grown = realloc(e->steps, room * sizeof *grown);
@@ -134,7 +129,7 @@ static tc_status step_add(emission *e, const emit_step *step) {
 
 /* Makes the step as long as fits, in steps of `stride` rows and up to row `most`; false where not even the first stride
  * fits, with which the step then ends. */
-static bool step_stretch(const run *r, const emission *e, const row_sums *sums, emit_step *step, uint32_t stride,
+static bool step_stretch(const run *r, const emit_plan *e, const row_sums *sums, emit_step *step, uint32_t stride,
                          uint32_t most) {
     emit_step longer = *step;
     step_end(r, sums, step, e->window_count ? step->row0 + stride : most);
@@ -149,22 +144,22 @@ static bool step_stretch(const run *r, const emission *e, const row_sums *sums, 
 
 /* Cuts a slab into few steps: whole layers, or rows in a layer that is too large. *fits is false where a row is too
  * large; the last step is then that row. */
-static tc_status slab_cut(const run *r, emission *e, row_sums *sums, emit_step first, bool *fits) {
-    const uint32_t rows = r->plan->bricks_y, slab_rows = slab_layer_count(r, first.place.slab_index) * rows;
+static tc_status slab_cut(const run *r, emit_plan *e, row_sums *sums, emit_step first, bool *fits) {
+    const uint32_t rows = r->plan->bricks_y, slab_rows = slab_layer_count(r, first.ref.slab_index) * rows;
     tc_status status = TC_OK;
     for (emit_step step = first; step.row0 < slab_rows && *fits && !status; step.row0 = step.row1) {
         const uint32_t layer = step.row0 / rows;
         step.opens_slab = step.row0 == 0;
         bool whole = step.row0 % rows == 0 && step_stretch(r, e, sums, &step, rows, slab_rows);
         if (!whole && step.row0 % rows == 0)
-            status = bricks_read(r, sums, first.place.slab_index * r->plan->slab_layers + layer);
+            status = bricks_read(r, sums, first.ref.slab_index * r->plan->slab_layers + layer);
         if (!whole && !status) *fits = step_stretch(r, e, sums, &step, 1, (layer + 1) * rows);
         if (!status) status = step_add(e, &step);
     }
     return status;
 }
 
-static tc_status slabs_cut(const run *r, emission *e, row_sums *sums, bool *fits) {
+static tc_status slabs_cut(const run *r, emit_plan *e, row_sums *sums, bool *fits) {
     uint32_t active = 0;
     emit_step first = {0};
     tc_status status = TC_OK;
@@ -172,7 +167,7 @@ static tc_status slabs_cut(const run *r, emission *e, row_sums *sums, bool *fits
     e->step_count = 0;
     for (uint32_t n = 0; n < r->plan->slab_count && *fits && !status; n++) {
         const uint32_t *head = r->heads + n * STATE_WORDS;
-        first.place = (slab_place){n, active % plan_window_count(r->plan)};
+        first.ref = (slab_ref){n, active % plan_window_count(r->plan)};
         if (head[STATE_ACTIVE_BRICKS]) {
             status = slab_cut(r, e, sums, first, fits);
             active++;
@@ -185,7 +180,7 @@ static tc_status slabs_cut(const run *r, emission *e, row_sums *sums, bool *fits
 
 /* Makes steps smaller, down to one row each, while the windows for the largest step do not fit together. *fits as for
  * slab_cut. */
-static tc_status windows_cut(const run *r, emission *e, row_sums *sums, bool *fits) {
+static tc_status windows_cut(const run *r, emit_plan *e, row_sums *sums, bool *fits) {
     enum { SHRINK_MOST = 20 };
     e->shrink = 0;
     tc_status status = slabs_cut(r, e, sums, fits);
@@ -197,7 +192,7 @@ static tc_status windows_cut(const run *r, emission *e, row_sums *sums, bool *fi
     return status;
 }
 
-tc_status steps_plan(run *r, emission *e, bool whole) {
+tc_status steps_plan(run *r, emit_plan *e, bool whole) {
     row_sums sums = {.layers = calloc(r->plan->layer_count, sizeof *sums.layers)};
     tc_status status = TC_OK;
     bool fits = false;

@@ -13,8 +13,8 @@
 static tc_status counted_check(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
     const tc_extract_options *counted = &device->classified_options;
-    if (grid->context->counted != grid || counted->isovalue != options->isovalue ||
-        counted->method != options->method || !counted->normals != !options->normals)
+    if (grid->context->counted_grid != grid || counted->isovalue != options->isovalue ||
+        counted->method != options->method || channels_asked(counted) != channels_asked(options))
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "tc_emit emits what tc_count has counted just before: count this grid "
                                "with these options, and make no other call in between");
@@ -42,28 +42,30 @@ static tc_status buffer_check(const run *r, cl_mem memory, uint64_t bytes, const
                            (unsigned long long)held, (unsigned long long)bytes);
 }
 
-static tc_status mesh_check(const run *r, const tc_device_mesh *mesh) {
-    const uint64_t vertex_bytes = r->vertex_count * MESH_BYTES_PER_VERTEX;
+static tc_status mesh_check(const run *r, const mesh_buffers *buffers) {
+    const uint64_t vertex_bytes = r->vertex_count * CHANNEL_BYTES;
     if (r->vertex_count > UINT32_MAX || r->triangle_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
                                "%llu vertices and %llu triangles: numbers of 32 bits do not reach so far",
                                (unsigned long long)r->vertex_count, (unsigned long long)r->triangle_count);
-    tc_status status = buffer_check(r, mesh->positions, vertex_bytes, "positions");
-    if (!status && r->normals) status = buffer_check(r, mesh->normals, vertex_bytes, "normals");
-    if (!status) status = buffer_check(r, mesh->triangles, r->triangle_count * MESH_BYTES_PER_TRIANGLE, "triangles");
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && !status; n++)
+        if (channel_in(r->made, n))
+            status = buffer_check(r, buffers->channels[n].memory, vertex_bytes, channel_names[n]);
+    if (!status) status = buffer_check(r, buffers->triangles.memory, r->triangle_count * TRIANGLE_BYTES, "triangles");
     return status;
 }
 
 static tc_status surface_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh) {
     run r;
-    mesh_buffers buffers = {.positions = {.memory = mesh->positions},
-                            .normals = {.memory = options->normals ? mesh->normals : NULL},
+    mesh_buffers buffers = {.channels = {[CHANNEL_POSITIONS] = {.memory = mesh->positions},
+                                         [CHANNEL_NORMALS] = {.memory = options->normals ? mesh->normals : NULL}},
                             .triangles = {.memory = mesh->triangles}};
     tc_status status = run_begin(&r, grid, options, inside_range_of(grid->type, options->isovalue), true);
     if (!status) {
         memcpy(r.heads, grid->device->heads, r.plan->slab_count * STATE_WORDS * sizeof *r.heads);
         totals_add(&r);
-        status = mesh_check(&r, mesh);
+        status = mesh_check(&r, &buffers);
     }
     if (!status && r.vertex_count) status = slabs_emit_whole(&r, &buffers);
     free(r.heads);

@@ -9,20 +9,20 @@
 /* Vertices [vertex0, vertex1) and triangles [triangle0, triangle1) of the mesh. */
 typedef struct mesh_window {
     uint64_t vertex0, vertex1, triangle0, triangle1;
-    uint32_t position_offset, triangle_offset; /* 32-bit items before them in the buffers */
+    uint32_t vertex_offset, triangle_offset; /* 32-bit items before them in the buffers */
     mesh_buffers *buffers;
 } mesh_window;
 
 /* Rows of bricks of a slab, layer after layer, that are emitted by one launch. */
 typedef struct emit_step {
-    slab_place place;
+    slab_ref ref;
     bool opens_slab; /* the first of its slab */
     uint32_t row0, row1;
     uint64_t slab_vertex, slab_triangle; /* before the slab */
     mesh_window part;                    /* of the mesh: what the step makes */
 } emit_step;
 
-typedef struct emission {
+typedef struct emit_plan {
     tc_mesh *mesh;
     mesh_window whole;     /* where one window holds the mesh */
     uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
@@ -30,16 +30,16 @@ typedef struct emission {
     uint32_t step_count, step_room;
     unsigned shrink; /* steps of several rows use a window halved so many times */
     double kernels_end_ms;
-} emission;
+} emit_plan;
 
 /* True where each of `windows` windows can hold this many vertices and triangles. */
 bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t windows);
 
 /* The largest numbers of vertices and triangles of a step. */
-void steps_largest(const emission *e, uint64_t *vertices, uint64_t *triangles);
+void steps_largest(const emit_plan *e, uint64_t *vertices, uint64_t *triangles);
 
 /* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one (structured_cut.c).
  * TC_ERROR_MEMORY, with the memory needed, where a row of bricks is too large for one. */
-tc_status steps_plan(run *r, emission *e, bool whole);
+tc_status steps_plan(run *r, emit_plan *e, bool whole);
 
 #endif

@@ -7,12 +7,10 @@
 #include "structured/structured_emission.h"
 
 #include "failure.h"
-#include "grid/tables.h"
+#include "grid/method.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const uint64_t page_bytes = 4096;
 
 /* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
 static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
@@ -20,18 +18,19 @@ static tc_status part_open(run *r, device_buffer *buffer, const host_block *bloc
     *offset = 0;
     if (first == end) return buffer_reserve(r->context, buffer, 4, name);
     if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
-    uint64_t start = first & ~(page_bytes - 1);
+    uint64_t start = first & ~(uint64_t)(PAGE_BYTES - 1);
     *offset = (uint32_t)((first - start) / 4);
     return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
 }
 
 static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     mesh_buffers *b = w->buffers;
-    uint64_t v0 = w->vertex0 * MESH_BYTES_PER_VERTEX, v1 = w->vertex1 * MESH_BYTES_PER_VERTEX;
-    uint64_t t0 = w->triangle0 * MESH_BYTES_PER_TRIANGLE, t1 = w->triangle1 * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = part_open(r, &b->positions, &mesh->positions, v0, v1, &w->position_offset, "vertices");
-    if (!status && r->normals)
-        status = part_open(r, &b->normals, &mesh->normals, v0, v1, &w->position_offset, "normals");
+    uint64_t v0 = w->vertex0 * CHANNEL_BYTES, v1 = w->vertex1 * CHANNEL_BYTES;
+    uint64_t t0 = w->triangle0 * TRIANGLE_BYTES, t1 = w->triangle1 * TRIANGLE_BYTES;
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && !status; n++)
+        if (channel_in(r->made, n))
+            status = part_open(r, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset, channel_names[n]);
     if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
@@ -49,8 +48,9 @@ static tc_status part_sync(run *r, device_buffer *buffer) {
 
 static tc_status window_sync(run *r, const mesh_window *w) {
     mesh_buffers *b = w->buffers;
-    tc_status status = w->vertex0 < w->vertex1 ? part_sync(r, &b->positions) : TC_OK;
-    if (!status && r->normals && w->vertex0 < w->vertex1) status = part_sync(r, &b->normals);
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && w->vertex0 < w->vertex1 && !status; n++)
+        if (channel_in(r->made, n)) status = part_sync(r, &b->channels[n]);
     if (!status && w->triangle0 < w->triangle1) status = part_sync(r, &b->triangles);
     return status;
 }
@@ -66,13 +66,14 @@ static tc_status part_read(run *r, const device_buffer *buffer, const host_block
 
 /* Copies a part of the mesh from the window that it is in. */
 static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, const mesh_window *part) {
-    const uint64_t bytes = MESH_BYTES_PER_VERTEX, start = w->vertex0 * bytes;
+    const uint64_t bytes = CHANNEL_BYTES, start = w->vertex0 * bytes;
     const uint64_t v0 = part->vertex0 * bytes, v1 = part->vertex1 * bytes;
-    tc_status status = part_read(r, &w->buffers->positions, &mesh->positions, start, v0, v1);
-    if (!status && r->normals) status = part_read(r, &w->buffers->normals, &mesh->normals, start, v0, v1);
+    tc_status status = TC_OK;
+    for (int n = 0; n < CHANNEL_COUNT && !status; n++)
+        if (channel_in(r->made, n)) status = part_read(r, &w->buffers->channels[n], &mesh->channels[n], start, v0, v1);
     if (!status)
-        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * MESH_BYTES_PER_TRIANGLE,
-                           part->triangle0 * MESH_BYTES_PER_TRIANGLE, part->triangle1 * MESH_BYTES_PER_TRIANGLE);
+        status = part_read(r, &w->buffers->triangles, &mesh->triangles, w->triangle0 * TRIANGLE_BYTES,
+                           part->triangle0 * TRIANGLE_BYTES, part->triangle1 * TRIANGLE_BYTES);
     return status;
 }
 
@@ -81,16 +82,13 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
 static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
-    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, r->method == TC_METHOD_HYBRID);
+    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, methods[r->method].edge_types);
 }
 
 /* Writes the cube table of the run's method, with edges as kernel 2 names them (edge_item). */
 static void cases_write(const run *r, cube_case cases[2][256]) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
-    if (r->method == TC_METHOD_HYBRID)
-        hybrid_cases_derive(cases, r->grid->mirrored);
-    else
-        cube_cases_derive(cases, r->grid->mirrored);
+    methods[r->method].derive(cases, r->grid->mirrored);
     for (int n = 0; n < 2 * 256; n++)
         for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
             for (int corner = 0; corner < 3; corner++) {
@@ -115,24 +113,25 @@ static tc_status cases_provide(run *r, device_buffer **out) {
 }
 
 /* Emits the active bricks of s among [brick_first, brick_last). */
-static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window *w, uint64_t slab_triangle) {
+static tc_status bricks_emit(run *r, slab_ref ref, slab s, const mesh_window *w, uint64_t slab_triangle) {
     workspace *work = &r->context->work;
-    const word_buffers *words = place_words(r, place);
+    const word_buffers *words = slab_words(r, ref);
     const device_buffer *coordinates =
-        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : place_array(r, place, ARRAY_POINTS);
+        r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : slab_array(r, ref, ARRAY_POINTS);
     device_buffer *cases;
     tc_status status = cases_provide(r, &cases);
     if (status) return status;
     const cl_uint zero = 0;
-    cl_int error = cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
-                                         (s.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
+    cl_int error =
+        cl->EnqueueFillBuffer(r->context->queue, work->state.memory, &zero, sizeof zero,
+                              (s.results.head_offset + STATE_EMIT_TICKET) * sizeof zero, sizeof zero, 0, NULL, NULL);
     if (error) return context_fail(r->context, "clearing the ticket of kernel 2", error);
-    s.vertex_window = (uint32_t)w->vertex0;
-    s.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
-    s.position_offset = w->position_offset;
-    s.triangle_offset = w->triangle_offset;
+    s.mesh.vertex_window = (uint32_t)w->vertex0;
+    s.mesh.triangle_window = (uint32_t)(w->triangle0 - slab_triangle);
+    s.mesh.vertex_offset = w->vertex_offset;
+    s.mesh.triangle_offset = w->triangle_offset;
     const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(words->words.memory),
                                          ARGUMENT(words->offsets.memory),
@@ -141,24 +140,18 @@ static tc_status bricks_emit(run *r, slab_place place, slab s, const mesh_window
                                          ARGUMENT(words->active.memory),
                                          ARGUMENT(work->state.memory),
                                          ARGUMENT(cases->memory),
-                                         ARGUMENT(w->buffers->positions.memory),
-                                         ARGUMENT(w->buffers->normals.memory),
+                                         ARGUMENT(w->buffers->channels[CHANNEL_POSITIONS].memory),
+                                         ARGUMENT(w->buffers->channels[CHANNEL_NORMALS].memory),
                                          ARGUMENT(w->buffers->triangles.memory),
                                          ARGUMENT(coordinates->memory),
-                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory)};
+                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory)};
     return kernel_launch(r->context, r->kernels.emit, "kernel emit", arguments, sizeof arguments / sizeof *arguments);
 }
 
-/* -------------------------------------------------------------------------------------------------------- emission */
-
-static void mesh_buffers_release(tc_context *context, mesh_buffers *b) {
-    buffer_release(context, &b->positions);
-    buffer_release(context, &b->normals);
-    buffer_release(context, &b->triangles);
-}
+/* -------------------------------------------------------------------------------------------------------- emit_plan */
 
 /* Reserves windows for the largest step at once, as a window must not grow while copies from it run. */
-static tc_status windows_reserve(run *r, emission *e) {
+static tc_status windows_reserve(run *r, emit_plan *e) {
     mesh_window largest = {0};
     tc_status status = TC_OK;
     steps_largest(e, &largest.vertex1, &largest.triangle1);
@@ -170,7 +163,7 @@ static tc_status windows_reserve(run *r, emission *e) {
 }
 
 /* Releases buffers of an extraction with other windows, which would exceed the budget together with the new ones. */
-static tc_status windows_begin(run *r, emission *e) {
+static tc_status windows_begin(run *r, emit_plan *e) {
     mesh_buffers *buffers = r->context->work.mesh;
     mesh_buffers_release(r->context, &buffers[1]);
     if (e->window_count) mesh_buffers_release(r->context, &buffers[0]);
@@ -182,36 +175,36 @@ static tc_status windows_begin(run *r, emission *e) {
 }
 
 static tc_status emit_load(run *r, uint32_t n) {
-    const emit_step *step = &r->emission->steps[n];
+    const emit_step *step = &r->emit_plan->steps[n];
     if (!step->opens_slab) return TC_OK;
-    tc_status status = slab_load(r, step->place, true);
-    return status ? status : slab_restore(r, step->place);
+    tc_status status = slab_load(r, step->ref, true);
+    return status ? status : slab_restore(r, step->ref);
 }
 
 static void step_describe(const run *r, const emit_step *step, slab *s) {
     const uint32_t bricks = (uint32_t)plan_bricks_per_layer(r->plan);
-    slab_describe(r, step->place, s);
-    s->vertex_base = (uint32_t)step->slab_vertex;
-    s->vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->head_offset + STATE_VERTICES]);
-    s->brick_first = (s->z0 - s->word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
-    s->brick_last = s->brick_first + (step->row1 - step->row0) * r->plan->words_x;
+    slab_describe(r, step->ref, s);
+    s->mesh.vertex_base = (uint32_t)step->slab_vertex;
+    s->mesh.vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->results.head_offset + STATE_VERTICES]);
+    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
+    s->mesh.brick_last = s->mesh.brick_first + (step->row1 - step->row0) * r->plan->words_x;
 }
 
 static tc_status step_emit(run *r, uint32_t n) {
-    emission *e = r->emission;
+    emit_plan *e = r->emit_plan;
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
     const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has overwritten that */
-    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->place, &s) : TC_OK;
+    tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->ref, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;
-    return bricks_emit(r, step->place, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
+    return bricks_emit(r, step->ref, s, e->window_count ? &step->part : &e->whole, step->slab_triangle);
 }
 
 /* The last copy is timed: it begins when all kernels have ended. */
 static tc_status emit_unload(run *r, uint32_t n) {
-    emission *e = r->emission;
+    emit_plan *e = r->emit_plan;
     const emit_step *step = &e->steps[n];
     if (n + 1 == e->step_count) {
         cl_int error = cl->Finish(r->context->queue);
@@ -223,7 +216,7 @@ static tc_status emit_unload(run *r, uint32_t n) {
 }
 
 /* Steps may only overlap where what they have loaded does not share a window. */
-static tc_status steps_emit(run *r, emission *e) {
+static tc_status steps_emit(run *r, emit_plan *e) {
     const step_stages stages = {"emit", 0.5, 0.5, emit_load, step_emit, emit_unload};
     tc_status status = windows_begin(r, e);
     if (!status) status = steps_run(r, &stages, e->step_count, r->plan->overlaps && e->window_count != 1);
@@ -235,21 +228,21 @@ static tc_status steps_emit(run *r, emission *e) {
 }
 
 tc_status slabs_emit_whole(run *r, mesh_buffers *buffers) {
-    emission e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
-    r->emission = &e;
+    emit_plan e = {.whole = {0, r->vertex_count, 0, r->triangle_count, 0, 0, buffers}};
+    r->emit_plan = &e;
     tc_status status = steps_plan(r, &e, true);
     for (uint32_t n = 0; n < e.step_count && !status; n++) status = step_emit(r, n);
     free(e.steps);
-    r->emission = NULL;
+    r->emit_plan = NULL;
     return status;
 }
 
 tc_status slabs_emit(run *r, tc_mesh *mesh) {
-    emission e = {.mesh = mesh};
-    r->emission = &e;
+    emit_plan e = {.mesh = mesh};
+    r->emit_plan = &e;
     tc_status status = steps_plan(r, &e, window_fits(r, r->vertex_count, r->triangle_count, 1));
     if (!status) status = steps_emit(r, &e);
     free(e.steps);
-    r->emission = NULL;
+    r->emit_plan = NULL;
     return status;
 }

@@ -24,7 +24,7 @@ struct device_grid {
     device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
     device_buffer ranges;              /* of all bricks, made at the first visit */
     bool ranges_known;
-    tc_extract_options classified_options; /* of what kernel 1 left, where context->classified is this grid: */
+    tc_extract_options classified_options; /* of what kernel 1 left, where context->classified_grid is this grid: */
     uint32_t *heads;                       /* of all slabs; NULL: there is no surface */
     slab_store store;                      /* where the workspace holds a window, and fields are carried */
     bool carries;                          /* a field was carried to a surface of the grid */
@@ -37,38 +37,38 @@ typedef struct run {
     const slab_plan *plan;
     kernels kernels;
     tc_method method;
-    bool normals;
+    channel_set made;
     slab base;       /* the fields that all slabs share */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
     slab_store store;
     cl_command_queue copies; /* takes copies to and from the device; may be the queue of kernels */
-    struct emission *emission;
+    struct emit_plan *emit_plan;
     uint64_t vertex_count, triangle_count, active_cell_count;
     double classify_share; /* of the whole call, for progress */
     double start_ms;       /* kernels are built by then */
 } run;
 
 /* A slab and the window that it is in: below plan_window_count. */
-typedef struct slab_place {
+typedef struct slab_ref {
     uint32_t slab_index, window;
-} slab_place;
+} slab_ref;
 
-/* The buffers of a place, which are those of all slabs where they are whole. */
-device_buffer *place_array(const run *r, slab_place place, int array);
-word_buffers *place_words(const run *r, slab_place place);
+/* The buffers of a slab, which are those of all slabs where they are whole. */
+device_buffer *slab_array(const run *r, slab_ref ref, int array);
+word_buffers *slab_words(const run *r, slab_ref ref);
 
 /* Brings the slab's samples and the arrays of blanked items to the device; for kernel 2 its points too. */
-tc_status slab_load(run *r, slab_place place, bool emits);
+tc_status slab_load(run *r, slab_ref ref, bool emits);
 
 /* The slab's parameters; its samples are loaded. */
-void slab_describe(const run *r, slab_place place, slab *out);
+void slab_describe(const run *r, slab_ref ref, slab *out);
 
 /* Marks the slab's present cells, where samples may be missing. */
-tc_status slab_mark_cells(run *r, slab_place place, const slab *s);
+tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s);
 
 /* Moves kernel 1's results of a slab from or to the store, where windows are in use. */
-tc_status slab_save(run *r, slab_place place);
-tc_status slab_restore(run *r, slab_place place);
+tc_status slab_save(run *r, slab_ref ref);
+tc_status slab_restore(run *r, slab_ref ref);
 tc_status slab_store_allocate(run *r);
 void slab_store_release(slab_store *store);
 

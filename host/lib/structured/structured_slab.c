@@ -10,8 +10,6 @@
 
 #include <stdlib.h>
 
-static const uintptr_t page_bytes = 4096;
-
 /* --------------------------------------------------------------------------------------------------------- arrays */
 
 static const char *const array_names[ARRAY_COUNT] = {"samples", "points", "blanked samples", "blanked cells"};
@@ -29,7 +27,7 @@ static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
     const uint64_t item_bytes = grid_array_item_bytes(grid, array);
     if (array == ARRAY_SAMPLES && grid->cl_samples)
         return grid->cl_samples_offset + z * (grid_array_plane_bytes(grid, array) / item_bytes);
-    uintptr_t before = (uintptr_t)array_start(grid, array, z) & (page_bytes - 1);
+    uintptr_t before = (uintptr_t)array_start(grid, array, z) & (PAGE_BYTES - 1);
     return grid->context->in_place ? before / item_bytes : 0;
 }
 
@@ -42,7 +40,7 @@ static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buf
     uint64_t bytes = (z1 - z0) * grid_array_plane_bytes(grid, array);
     char *start = array_start(grid, array, z0);
     if (context->in_place) {
-        uintptr_t before = (uintptr_t)start & (page_bytes - 1);
+        uintptr_t before = (uintptr_t)start & (PAGE_BYTES - 1);
         return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
     }
     uint64_t room = plan_array_bytes(&grid->device->plan, grid, array);
@@ -105,7 +103,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     if (!device) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
     grid->device = device;
     device->missing = grid->blanked_samples || grid->blanked_cells ||
-                      (grid->has_nodata && sample_patterns(grid->type, grid->nodata, ignored));
+                      (grid->has_nodata && value_bits(grid->type, grid->nodata, ignored));
     tc_status status = slab_plan_make(grid->context, grid, &device->plan);
     uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
     if (!status)
@@ -120,10 +118,10 @@ tc_status structured_grid_create(tc_grid *grid) {
 void structured_grid_destroy(tc_grid *grid) {
     if (!grid->device) return;
     context_finish(grid->context); /* an emission that is under way reads arrays of the grid and of the caller's */
-    if (grid->context->counted == grid) grid->context->counted = NULL;
-    if (grid->context->classified == grid) grid->context->classified = NULL;
+    if (grid->context->counted_grid == grid) grid->context->counted_grid = NULL;
+    if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
     slab_store_release(&grid->device->store);
-    if (grid->context->served == grid) grid->context->served = NULL;
+    if (grid->context->workspace_grid == grid) grid->context->workspace_grid = NULL;
     free(grid->device->heads);
     for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &grid->device->arrays[array]);
     buffer_release(grid->context, &grid->device->axes);
@@ -132,68 +130,69 @@ void structured_grid_destroy(tc_grid *grid) {
     grid->device = NULL;
 }
 
-device_buffer *place_array(const run *r, slab_place place, int array) {
-    return r->plan->samples_whole ? &r->grid->device->arrays[array] : &r->context->work.arrays[place.window][array];
+device_buffer *slab_array(const run *r, slab_ref ref, int array) {
+    return r->plan->samples_whole ? &r->grid->device->arrays[array] : &r->context->work.arrays[ref.window][array];
 }
 
-word_buffers *place_words(const run *r, slab_place place) {
-    return &r->context->work.words[r->plan->words_whole ? 0 : place.window];
+word_buffers *slab_words(const run *r, slab_ref ref) {
+    return &r->context->work.words[r->plan->words_whole ? 0 : ref.window];
 }
 
 /* One bit per cube whose corners are present, for the planes that kernels 1 and 2 look at. */
-tc_status slab_mark_cells(run *r, slab_place place, const slab *s) {
+tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
-    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->cell_z;
+    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->results.cell_z;
     const kernel_argument arguments[] = {ARGUMENT(*s),
-                                         ARGUMENT(place_array(r, place, ARRAY_SAMPLES)->memory),
-                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_SAMPLES)->memory),
-                                         ARGUMENT(place_array(r, place, ARRAY_BLANKED_CELLS)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory),
+                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_CELLS)->memory),
                                          ARGUMENT(work->cells.memory),
                                          ARGUMENT(planes)};
     return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
                          sizeof arguments / sizeof *arguments);
 }
 
-tc_status slab_load(run *r, slab_place place, bool emits) {
+tc_status slab_load(run *r, slab_ref ref, bool emits) {
     tc_status status = TC_OK;
     if (r->plan->samples_whole) return TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
         if (emits || array != ARRAY_POINTS)
-            status = array_provide(r->grid, r->copies, place_array(r, place, array), array,
-                                   slab_samples_begin(r->plan, place.slab_index),
-                                   slab_samples_end(r->plan, r->grid, place.slab_index));
+            status = array_provide(r->grid, r->copies, slab_array(r, ref, array), array,
+                                   slab_samples_begin(r->plan, ref.slab_index),
+                                   slab_samples_end(r->plan, r->grid, ref.slab_index));
     return status;
 }
 
 /* Where the slab's first planes are in their buffers. */
 static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
     const tc_grid *grid = r->grid;
-    uint64_t begin = s->sample_z, end = slab_samples_end(r->plan, grid, slab_index);
+    uint64_t begin = s->arrays.sample_z, end = slab_samples_end(r->plan, grid, slab_index);
     uint64_t cell_end = end < s->nz ? end : s->nz - 1;
-    s->sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
-    s->sample_count = (end - begin) * s->nx * s->ny;
-    s->point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->sample_offset;
-    s->blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->sample_offset;
-    s->blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
-    s->blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
+    s->arrays.sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
+    s->arrays.sample_count = (end - begin) * s->nx * s->ny;
+    s->arrays.point_offset = array_offset(grid, ARRAY_POINTS, begin) - 3 * s->arrays.sample_offset;
+    s->arrays.blanked_offset = array_offset(grid, ARRAY_BLANKED_SAMPLES, begin) - s->arrays.sample_offset;
+    s->arrays.blanked_cell_offset = array_offset(grid, ARRAY_BLANKED_CELLS, begin);
+    s->arrays.blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
 }
 
-void slab_describe(const run *r, slab_place place, slab *out) {
-    const uint32_t slab_index = place.slab_index;
+void slab_describe(const run *r, slab_ref ref, slab *out) {
+    const uint32_t slab_index = ref.slab_index;
     slab *s = out;
     *s = r->base;
     s->z0 = slab_begin(r->plan, slab_index);
     s->z1 = slab_end(r->plan, r->grid, slab_index);
-    s->word_z = r->plan->words_whole ? 0 : s->z0;
-    s->range_offset = (uint32_t)(s->word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    s->cell_z = s->z0 ? s->z0 - 1 : 0;
-    s->sample_z = slab_samples_begin(r->plan, slab_index);
-    s->head_offset = slab_index * STATE_WORDS;
-    s->tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
-    s->active_offset = (uint32_t)((s->z0 - s->word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->results.word_z = r->plan->words_whole ? 0 : s->z0;
+    s->results.range_offset = (uint32_t)(s->results.word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
+    s->results.cell_z = s->z0 ? s->z0 - 1 : 0;
+    s->arrays.sample_z = slab_samples_begin(r->plan, slab_index);
+    s->results.head_offset = slab_index * STATE_WORDS;
+    s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
+    s->results.active_offset = (uint32_t)((s->z0 - s->results.word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
-    s->tile_count = (s->bricks_y + s->tile_rows - 1) / s->tile_rows * ((layers + s->tile_layers - 1) / s->tile_layers);
+    s->tiling.tile_count = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows *
+                           ((layers + s->tiling.tile_layers - 1) / s->tiling.tile_layers);
     slab_offsets(r, slab_index, s);
 }
 
@@ -222,29 +221,29 @@ void slab_store_release(slab_store *store) {
     *store = (slab_store){0};
 }
 
-/* Moves count bytes between byte `place` of a window's buffer and byte `first` of an array of the store. */
-static tc_status window_copy(run *r, device_buffer *buffer, uint64_t place, uint8_t *host, uint64_t first,
+/* Moves count bytes between byte `offset` of a window's buffer and byte `first` of an array of the store. */
+static tc_status window_copy(run *r, device_buffer *buffer, uint64_t offset, uint8_t *host, uint64_t first,
                              uint64_t count, bool save) {
     if (count == 0) return TC_OK;
     cl_command_queue queue = r->copies;
     cl_mem memory = buffer->memory;
-    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL)
-                        : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, place, count, host + first, 0, NULL, NULL);
+    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_FALSE, offset, count, host + first, 0, NULL, NULL)
+                        : cl->EnqueueWriteBuffer(queue, memory, CL_FALSE, offset, count, host + first, 0, NULL, NULL);
     return error ? context_fail(r->context, save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
 }
 
 /* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */
-static tc_status slab_move(run *r, slab_place place, bool save) {
+static tc_status slab_move(run *r, slab_ref ref, bool save) {
     if (r->plan->words_whole) return TC_OK;
-    word_buffers *work = place_words(r, place);
-    const uint32_t slab_index = place.slab_index;
+    word_buffers *work = slab_words(r, ref);
+    const uint32_t slab_index = ref.slab_index;
     uint64_t layer0 = slab_begin(r->plan, slab_index) / BRICK_PLANES;
     uint64_t layer1 = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
     uint64_t layer_end = !save && layer1 < r->plan->layer_count ? layer1 + 1 : layer1;
     uint64_t bricks = plan_bricks_per_layer(r->plan), constant = 8 * UNIFORM_BRICKS * BRICK_WORDS;
     const struct {
         device_buffer *buffer;
-        uint64_t place;
+        uint64_t offset;
         uint8_t *host;
         uint64_t end, brick_bytes;
     } arrays[] = {{&work->words, constant, r->store.words, layer_end, 8 * BRICK_WORDS},
@@ -255,11 +254,11 @@ static tc_status slab_move(run *r, slab_place place, bool save) {
     tc_status status = TC_OK;
     for (size_t n = 0; n < sizeof arrays / sizeof *arrays && !status; n++)
         status =
-            window_copy(r, arrays[n].buffer, arrays[n].place, arrays[n].host, layer0 * bricks * arrays[n].brick_bytes,
+            window_copy(r, arrays[n].buffer, arrays[n].offset, arrays[n].host, layer0 * bricks * arrays[n].brick_bytes,
                         (arrays[n].end - layer0) * bricks * arrays[n].brick_bytes, save);
     return status;
 }
 
-tc_status slab_save(run *r, slab_place place) { return slab_move(r, place, true); }
+tc_status slab_save(run *r, slab_ref ref) { return slab_move(r, ref, true); }
 
-tc_status slab_restore(run *r, slab_place place) { return slab_move(r, place, false); }
+tc_status slab_restore(run *r, slab_ref ref) { return slab_move(r, ref, false); }

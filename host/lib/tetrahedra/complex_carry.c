@@ -107,7 +107,7 @@ static tc_status workspace_carry(carry_job *j) {
 
 bool complex_is_classified(const tc_grid *grid, double isovalue) {
     const complex_grid *c = grid->complex;
-    return grid->context->classified == grid && c->classified_isovalue == isovalue &&
+    return grid->context->classified_grid == grid && c->classified_isovalue == isovalue &&
            (!c->slabs || c->slabs->edges.edges || !c->size.vertex_count);
 }
 

@@ -23,10 +23,10 @@ tc_status complex_device_create(tc_grid *grid) {
 
 void complex_device_destroy(tc_grid *grid) {
     struct complex_slabs *slabs = grid->complex->slabs;
-    if (grid->context->served == grid) grid->context->served = NULL;
+    if (grid->context->workspace_grid == grid) grid->context->workspace_grid = NULL;
     part_tetrahedra_release(grid);
     part_points_release(grid);
-    if (grid->context->classified == grid) grid->context->classified = NULL;
+    if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
     if (slabs) free(slabs->ranges);
     if (slabs) edge_numbers_release(&slabs->edges);
     free(slabs);
@@ -39,7 +39,7 @@ static tc_status cut_later(complex_run *r) {
     if (status) return status;
     part_tetrahedra_release(r->grid);
     part_points_release(r->grid);
-    r->context->served = NULL; /* the workspace is too large */
+    r->context->workspace_grid = NULL; /* the workspace is too large */
     return TC_OK;
 }
 
@@ -102,13 +102,15 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
 
 static tc_status emit(complex_run *r, tc_mesh *mesh) {
     mesh_buffers *m = &r->context->work.mesh[0];
-    const uint64_t vertex_bytes = mesh->vertex_count * MESH_BYTES_PER_VERTEX;
-    const uint64_t triangle_bytes = mesh->triangle_count * MESH_BYTES_PER_TRIANGLE;
-    tc_status status = mesh_open(r, &m->positions, &mesh->positions, vertex_bytes, "vertices");
+    const uint64_t vertex_bytes = mesh->vertex_count * CHANNEL_BYTES;
+    const uint64_t triangle_bytes = mesh->triangle_count * TRIANGLE_BYTES;
+    tc_status status =
+        mesh_open(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
-    if (!status) status = surface_emit(r, &m->positions, &m->triangles);
+    if (!status) status = surface_emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
-    if (!status) status = mesh_close(r, &m->positions, &mesh->positions, vertex_bytes);
+    if (!status)
+        status = mesh_close(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes);
     if (!status) status = mesh_close(r, &m->triangles, &mesh->triangles, triangle_bytes);
     if (!r->context->in_place) mesh->timings.readback_ms = clock_ms() - emitted;
     return status;
@@ -119,7 +121,7 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, 0, mesh);
     tc_status status = whole_count(&r, grid, isovalue, 0.8);
     double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], false);
+    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
     if (!status && r.head[HEAD_TRIANGLES]) status = emit(&r, mesh);
     if (r.too_large) {
         status = cut_later(&r);

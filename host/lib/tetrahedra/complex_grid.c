@@ -7,7 +7,7 @@
 
 /* TC_ERROR_ARGUMENT for what complexes cannot do. */
 static tc_status complex_request_check(const tc_extract_options *options) {
-    if (options->normals)
+    if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
     if (options->method != TC_METHOD_TETRA)

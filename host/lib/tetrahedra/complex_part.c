@@ -8,12 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uintptr_t page_bytes = 4096;
-
 /* Uses the array in place, from its page boundary on, or copies it. *offset in items. */
 static tc_status array_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
                                size_t item_bytes, uint64_t *offset, const char *name) {
-    uintptr_t before = context->in_place ? (uintptr_t)array & (page_bytes - 1) : 0;
+    uintptr_t before = context->in_place ? (uintptr_t)array & (PAGE_BYTES - 1) : 0;
     *offset = before / item_bytes;
     if (context->in_place)
         return buffer_wrap(context, buffer, (char *)(uintptr_t)array - before, before + bytes, CL_MEM_READ_ONLY, name);
@@ -82,11 +80,11 @@ void local_points_release(local_points *local) {
     *local = (local_points){0};
 }
 
-static void point_gather(const tc_grid *grid, uint32_t point, uint32_t place, local_points *local) {
+static void point_gather(const tc_grid *grid, uint32_t point, uint32_t local_point, local_points *local) {
     const size_t bytes = tc_type_bytes(grid->type);
-    local->numbers[place] = point;
-    memcpy(local->points + 3 * (size_t)place, grid->complex->points + 3 * (size_t)point, 3 * sizeof(float));
-    memcpy((char *)local->samples + bytes * place, (const char *)grid->samples + bytes * point, bytes);
+    local->numbers[local_point] = point;
+    memcpy(local->points + 3 * (size_t)local_point, grid->complex->points + 3 * (size_t)point, 3 * sizeof(float));
+    memcpy((char *)local->samples + bytes * local_point, (const char *)grid->samples + bytes * point, bytes);
 }
 
 tc_status local_points_gather(const tc_grid *grid, const uint32_t *tetrahedra, uint32_t tetrahedron_count,

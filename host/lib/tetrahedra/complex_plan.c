@@ -11,9 +11,7 @@
 
 #include <stdlib.h>
 
-enum { PAGE_BYTES = 4096 };
-
-/* Sums of the scan, four places per tetrahedron among them, take 30 bits. */
+/* Sums of the scan, four slots per tetrahedron among them, take 30 bits. */
 static const uint64_t slab_tetrahedra_most = UINT64_C(1) << 27, whole_tetrahedra_most = UINT64_C(1) << 28;
 
 typedef struct device_need {
@@ -37,11 +35,6 @@ uint32_t complex_tile_clusters(const tc_grid *grid) {
 
 uint32_t complex_tile_actives(const tc_grid *grid) {
     return grid->context->launch.work_items == 1 && !grid->scan.tile_bricks ? 1024 : complex_tile_clusters(grid);
-}
-
-uint64_t complex_budget(const tc_context *context) {
-    if (context->options.max_memory_bytes) return context->options.max_memory_bytes;
-    return context->in_place ? UINT64_MAX : context->info.global_memory_bytes;
 }
 
 /* Arrays, and what kernel 1 works on beside them. */
@@ -69,12 +62,12 @@ static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *n
     need_add(need, 16 * tetrahedra); /* entries of its edges */
     need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
     need_add(need, 4 * entries);
-    need_add(need, 4 * MESH_BYTES_PER_VERTEX * tetrahedra);
-    need_add(need, 2 * MESH_BYTES_PER_TRIANGLE * tetrahedra);
+    need_add(need, 4 * CHANNEL_BYTES * tetrahedra);
+    need_add(need, 2 * TRIANGLE_BYTES * tetrahedra);
 }
 
 static bool need_fits(const tc_context *context, device_need need) {
-    return need.bytes <= complex_budget(context) && need.largest <= context->info.max_buffer_bytes;
+    return need.bytes <= context_budget(context) && need.largest <= context->info.max_buffer_bytes;
 }
 
 bool complex_fits(const tc_grid *grid) {
@@ -112,7 +105,7 @@ static tc_status cut_refuse(const tc_grid *grid) {
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "the smallest slab of these tetrahedra needs %llu bytes of device memory, and the budget is "
                            "%llu: allow %llu or, to be faster, much more",
-                           (unsigned long long)need.bytes, (unsigned long long)complex_budget(grid->context),
+                           (unsigned long long)need.bytes, (unsigned long long)context_budget(grid->context),
                            (unsigned long long)need.bytes);
 }
 

@@ -32,9 +32,6 @@ uint32_t complex_cluster_count(uint64_t tetrahedron_count);
 uint32_t complex_tile_clusters(const tc_grid *grid);
 uint32_t complex_tile_actives(const tc_grid *grid);
 
-/* What device buffers may have together, in bytes. */
-uint64_t complex_budget(const tc_context *context);
-
 /* Whether kernel 1 can run over the complex whole. */
 bool complex_fits(const tc_grid *grid);
 
@@ -78,7 +75,7 @@ typedef struct complex_run {
     tc_context *context;
     complex_buffers *work;
     sized_kernel kernels[COMPLEX_KERNELS];
-    slab s; /* the isovalue's part */
+    isovalue_test test;
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool too_large;  /* the surface of a complex that is not cut does not fit */

@@ -111,10 +111,10 @@ static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known
 
 /* Whether the slab may have a surface, by the ranges of its clusters. */
 static bool slab_possible(const slabs_run *t, uint32_t slab_index) {
-    const slab *s = &t->r.s;
+    const isovalue_test *test = &t->r.test;
     const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
     for (uint32_t n = 0; n < slab_cluster_count(t, slab_index); n++)
-        if (ranges[n].low < s->key_inside && ranges[n].high >= s->key_outside) return true;
+        if (ranges[n].low < test->key_inside && ranges[n].high >= test->key_outside) return true;
     return !t->slabs->ranges_known;
 }
 
@@ -145,7 +145,7 @@ static tc_status vertices_join(slabs_run *t, const active_tetrahedron *a) {
         const uint8_t *ends = t->cases[a->pattern] + CASE_ENDS + 2 * __builtin_ctz(rest);
         const uint32_t p = names ? names[a->points[ends[0]]] : a->points[ends[0]];
         const uint32_t q = names ? names[a->points[ends[1]]] : a->points[ends[1]];
-        tc_status status = edge_number(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
+        tc_status status = edge_numbers_find(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
         if (status) return status;
         t->number_count++;
     }
@@ -209,71 +209,70 @@ tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, dou
 /* -------------------------------------------------------------------------------------------------------- emission */
 
 /* What has been emitted of the mesh, and the positions of a slab. */
-typedef struct emission {
+typedef struct joined_mesh {
     tc_mesh *mesh;
     const uint32_t *numbers; /* of the slab's vertices */
     uint64_t vertex_count, triangle_count;
     float *positions;
     double readback_ms;
-} emission;
+} joined_mesh;
 
-static tc_status positions_allocate(const slabs_run *t, emission *e) {
+static tc_status positions_allocate(const slabs_run *t, joined_mesh *e) {
     uint32_t most = 0;
     for (uint32_t n = 0; n < t->slabs->slab_count; n++)
         if (t->totals[n].vertices > most) most = t->totals[n].vertices;
-    e->positions = malloc(MESH_BYTES_PER_VERTEX * (size_t)most + 1);
+    e->positions = malloc(CHANNEL_BYTES * (size_t)most + 1);
     return e->positions ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the vertices of a slab");
 }
 
 /* Reads what the slab has emitted, triangles to where they belong. */
-static tc_status slab_read(const slabs_run *t, slab_totals totals, emission *e) {
+static tc_status slab_read(const slabs_run *t, slab_totals totals, joined_mesh *e) {
     const mesh_buffers *m = &t->r.context->work.mesh[0];
     cl_command_queue queue = t->r.context->queue;
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
-    cl_int error = cl->EnqueueReadBuffer(queue, m->positions.memory, CL_TRUE, 0,
-                                         MESH_BYTES_PER_VERTEX * (size_t)totals.vertices, e->positions, 0, NULL, NULL);
+    cl_int error = cl->EnqueueReadBuffer(queue, m->channels[CHANNEL_POSITIONS].memory, CL_TRUE, 0,
+                                         CHANNEL_BYTES * (size_t)totals.vertices, e->positions, 0, NULL, NULL);
     if (!error)
-        error = cl->EnqueueReadBuffer(queue, m->triangles.memory, CL_TRUE, 0,
-                                      MESH_BYTES_PER_TRIANGLE * (size_t)totals.triangles, triangles, 0, NULL, NULL);
+        error = cl->EnqueueReadBuffer(queue, m->triangles.memory, CL_TRUE, 0, TRIANGLE_BYTES * (size_t)totals.triangles,
+                                      triangles, 0, NULL, NULL);
     return error ? context_fail(t->r.context, "reading the mesh back", error) : TC_OK;
 }
 
 /* Puts the slab's new vertices behind the others, and gives its triangles the numbers in the mesh. */
-static void slab_place(slab_totals totals, emission *e) {
+static void slab_append(slab_totals totals, joined_mesh *e) {
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
-    float *positions = e->mesh->positions.memory;
+    float *positions = e->mesh->channels[CHANNEL_POSITIONS].memory;
     for (uint32_t n = 0; n < totals.vertices; n++)
         if (e->numbers[n] == e->vertex_count)
-            memcpy(positions + 3 * e->vertex_count++, e->positions + 3 * (size_t)n, MESH_BYTES_PER_VERTEX);
+            memcpy(positions + 3 * e->vertex_count++, e->positions + 3 * (size_t)n, CHANNEL_BYTES);
     for (uint64_t n = 0; n < 3ull * totals.triangles; n++) triangles[n] = e->numbers[triangles[n]];
     e->numbers += totals.vertices;
     e->triangle_count += totals.triangles;
 }
 
-static tc_status slab_emit(slabs_run *t, uint32_t slab_index, emission *e) {
+static tc_status slab_emit(slabs_run *t, uint32_t slab_index, joined_mesh *e) {
     const slab_totals totals = t->totals[slab_index];
     mesh_buffers *m = &t->r.context->work.mesh[0];
-    const uint64_t vertex_bytes = MESH_BYTES_PER_VERTEX * (uint64_t)totals.vertices;
+    const uint64_t vertex_bytes = CHANNEL_BYTES * (uint64_t)totals.vertices;
     if (!totals.triangles) return TC_OK;
     tc_status status = slab_count(t, slab_index, true);
     if (!status && (t->r.head[HEAD_VERTICES] != totals.vertices || t->r.head[HEAD_TRIANGLES] != totals.triangles))
         status = (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
-    if (!status) status = surface_reserve(&t->r, &m->positions, vertex_bytes, "vertices");
+    if (!status) status = surface_reserve(&t->r, &m->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status)
-        status =
-            surface_reserve(&t->r, &m->triangles, MESH_BYTES_PER_TRIANGLE * (uint64_t)totals.triangles, "triangles");
-    if (!status) status = surface_emit(&t->r, &m->positions, &m->triangles);
+        status = surface_reserve(&t->r, &m->triangles, TRIANGLE_BYTES * (uint64_t)totals.triangles, "triangles");
+    if (!status) status = surface_emit(&t->r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
     if (!status) status = slab_read(t, totals, e);
-    if (!status) slab_place(totals, e);
+    if (!status) slab_append(totals, e);
     e->readback_ms += clock_ms() - emitted;
     return status;
 }
 
 static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
     const uint32_t count = t->slabs->slab_count;
-    emission e = {.mesh = mesh, .numbers = t->numbers};
-    tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, false);
+    joined_mesh e = {.mesh = mesh, .numbers = t->numbers};
+    tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, POSITIONS_ALONE);
     if (!t->r.complex->carries) edge_numbers_release(&t->edges);
     if (!status) status = positions_allocate(t, &e);
     for (uint32_t n = 0; n < count && !status; n++) {

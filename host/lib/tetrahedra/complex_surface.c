@@ -15,7 +15,7 @@
 
 bool surface_fits(complex_run *r, uint64_t bytes) {
     const tc_context *context = r->context;
-    const uint64_t budget = complex_budget(context);
+    const uint64_t budget = context_budget(context);
     if (r->complex->slabs) return true; /* slabs are cut to fit */
     if (bytes > context->info.max_buffer_bytes || context->device_bytes > budget ||
         bytes > budget - context->device_bytes)
@@ -36,16 +36,15 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]) {
     memset(cases, 0, 16 * CASE_BYTES);
     for (unsigned pattern = 0; pattern < 16; pattern++) {
         const tetrahedron_case *c = &tetrahedron_cases[pattern];
-        uint8_t *row = cases[pattern], places[6] = {0};
+        uint8_t *row = cases[pattern], slots[6] = {0};
         for (unsigned e = 0; e < 6; e++) {
             const uint8_t *ends = tetrahedron_edges[e];
             if ((pattern >> ends[0] & 1) == (pattern >> ends[1] & 1)) continue;
-            places[e] = row[CASE_EDGES]++;
-            memcpy(row + CASE_ENDS + 2 * places[e], ends, 2);
+            slots[e] = row[CASE_EDGES]++;
+            memcpy(row + CASE_ENDS + 2 * slots[e], ends, 2);
         }
         row[CASE_TRIANGLES] = c->triangle_count;
-        for (unsigned n = 0; n < 3u * c->triangle_count; n++)
-            row[CASE_CORNERS + n] = places[c->triangles[n / 3][n % 3]];
+        for (unsigned n = 0; n < 3u * c->triangle_count; n++) row[CASE_CORNERS + n] = slots[c->triangles[n / 3][n % 3]];
     }
 }
 
@@ -79,22 +78,12 @@ static tc_status head_read(complex_run *r) {
 
 /* --------------------------------------------------------------------------------------------------- classification */
 
-static void isovalue_describe(complex_run *r, double isovalue) {
-    const inside_range inside = inside_range_of(r->grid->type, isovalue);
-    r->s.inside_low = inside.low;
-    r->s.inside_span = inside.span;
-    r->s.key_flip = inside.key_flip;
-    r->s.key_inside = inside.key_inside;
-    r->s.key_outside = inside.key_outside;
-    r->s.spin_limit = r->grid->scan.spin_limit;
-    r->s.isovalue32 = (float)isovalue;
-    memcpy(&r->s.isovalue64, &isovalue, sizeof isovalue);
-}
-
 static void part_describe(complex_run *r) {
     const complex_part *part = r->part;
-    r->s.ranges_known = part->ranges_known;
-    r->job = (complex_job){.sample_offset = part->sample_offset,
+    r->job = (complex_job){.test = r->test,
+                           .ranges_known = part->ranges_known,
+                           .spin_limit = r->grid->scan.spin_limit,
+                           .sample_offset = part->sample_offset,
                            .point_offset = part->point_offset,
                            .tetrahedron_offset = part->tetrahedron_offset,
                            .point_count = part->point_count,
@@ -109,22 +98,22 @@ tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
     tc_context *context = grid->context;
     *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
     r->work = &context->work.complex;
-    isovalue_describe(r, isovalue);
-    context->counted = context->classified = NULL;
+    r->test = isovalue_test_of(inside_range_of(grid->type, isovalue), isovalue);
+    context->counted_grid = context->classified_grid = NULL;
     if (grid->complex->slabs) edge_numbers_release(&grid->complex->slabs->edges);
     tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
-    if (context->served != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
+    if (context->workspace_grid != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
         cl->Finish(context->queue);
         workspace_release(context);
     }
-    context->served = grid;
+    context->workspace_grid = grid;
     return cases_provide(context, &r->work->cases);
 }
 
 void complex_classified_note(tc_grid *grid, double isovalue, surface_size size) {
-    grid->context->classified = grid;
+    grid->context->classified_grid = grid;
     grid->complex->classified_isovalue = isovalue;
     grid->complex->size = size;
 }
@@ -143,15 +132,15 @@ tc_status surface_classify(complex_run *r) {
     part_describe(r);
     tc_status status = clusters_reserve(r);
     if (status) return status;
-    const kernel_argument arguments[] = {ARGUMENT(r->s),
-                                         ARGUMENT(r->job),
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->part->samples.memory),
                                          ARGUMENT(r->part->tetrahedra.memory),
                                          ARGUMENT(r->part->ranges.memory),
                                          ARGUMENT(w->clusters.memory),
                                          ARGUMENT(w->active_clusters.memory),
                                          ARGUMENT(w->state.memory)};
-    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments, 8);
+    status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments,
+                           sizeof arguments / sizeof *arguments);
     if (!status) status = head_read(r);
     if (!status && r->head[HEAD_INVALID]) status = complex_point_fail(r->complex);
     if (status) return status;
@@ -177,7 +166,9 @@ static tc_status active_list(complex_run *r) {
                                          ARGUMENT(w->active.memory),
                                          ARGUMENT(w->table.memory),
                                          ARGUMENT(w->tiles.memory)};
-    return status ? status : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments, 9);
+    return status ? status
+                  : kernel_launch(r->context, r->kernels[KERNEL_LIST], "kernel complex_list", arguments,
+                                  sizeof arguments / sizeof *arguments);
 }
 
 static tc_status table_reserve(complex_run *r, uint64_t entries) {
@@ -200,16 +191,14 @@ static tc_status edges_join(complex_run *r) {
     complex_buffers *w = r->work;
     const kernel_argument join[] = {ARGUMENT(r->job),          ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
                                     ARGUMENT(w->state.memory), ARGUMENT(w->table.memory),  ARGUMENT(w->entries.memory)};
-    const kernel_argument number[] = {ARGUMENT(r->s),
-                                      ARGUMENT(r->job),
-                                      ARGUMENT(w->active.memory),
-                                      ARGUMENT(w->cases.memory),
-                                      ARGUMENT(w->state.memory),
-                                      ARGUMENT(w->tiles.memory),
-                                      ARGUMENT(w->table.memory),
+    const kernel_argument number[] = {ARGUMENT(r->job),           ARGUMENT(w->active.memory), ARGUMENT(w->cases.memory),
+                                      ARGUMENT(w->state.memory),  ARGUMENT(w->tiles.memory),  ARGUMENT(w->table.memory),
                                       ARGUMENT(w->entries.memory)};
-    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, 6);
-    if (!status) status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number, 8);
+    tc_status status =
+        kernel_launch(r->context, r->kernels[KERNEL_JOIN], "kernel complex_join", join, sizeof join / sizeof *join);
+    if (!status)
+        status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number,
+                               sizeof number / sizeof *number);
     return status ? status : head_read(r);
 }
 
@@ -235,8 +224,7 @@ tc_status surface_number(complex_run *r) {
 
 tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles) {
     const complex_buffers *w = r->work;
-    const kernel_argument arguments[] = {ARGUMENT(r->s),
-                                         ARGUMENT(r->job),
+    const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->part->samples.memory),
                                          ARGUMENT(r->part->points.memory),
                                          ARGUMENT(w->active.memory),
@@ -247,7 +235,8 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
                                          ARGUMENT(w->entries.memory),
                                          ARGUMENT(positions->memory),
                                          ARGUMENT(triangles->memory)};
-    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments, 12);
+    tc_status status = kernel_launch(r->context, r->kernels[KERNEL_EMIT], "kernel complex_emit", arguments,
+                                     sizeof arguments / sizeof *arguments);
     cl_int error = cl->Finish(r->context->queue);
     return !status && error ? context_fail(r->context, "kernel complex_emit", error) : status;
 }

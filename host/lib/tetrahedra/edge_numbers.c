@@ -29,7 +29,7 @@ static tc_status numbers_grow(edge_numbers *n) {
     return TC_OK;
 }
 
-tc_status edge_number(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number) {
+tc_status edge_numbers_find(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number) {
     const uint64_t edge = (uint64_t)low << 32 | high;
     tc_status status = 2 * n->count == n->slot_count ? numbers_grow(n) : TC_OK;
     if (status) return status;

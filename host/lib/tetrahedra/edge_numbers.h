@@ -18,7 +18,7 @@ typedef struct edge_numbers {
 
 /* The number of the edge of two points, low < high; a new edge gets the next number. TC_ERROR_MEMORY, or TC_ERROR_LIMIT
  * where 32 bits do not suffice. */
-tc_status edge_number(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number);
+tc_status edge_numbers_find(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number);
 
 void edge_numbers_release(edge_numbers *n);
 

@@ -1,4 +1,4 @@
-#include "surface.h"
+#include "surface/surface.h"
 
 #include "grid/complex.h"
 #include "grid/inside.h"

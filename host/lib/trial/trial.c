@@ -1,14 +1,14 @@
 /*
  * The trial and its verdicts; the volume is made by trial_volume.c.
  */
-#include "trial.h"
+#include "trial/trial.h"
 
 #include "opencl/context.h"
 #include "failure.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
-#include "surface.h"
+#include "surface/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const tc_context *context = grid->context;
     return context->options.check_device && surface_needs_kernels(grid, options) &&
-           !context->passed[kind_number(surface_kind(grid, options, emits))];
+           !context->trial_passed[kind_number(surface_kind(grid, options, emits))];
 }
 
 /* ------------------------------------------------------------------------------------------------------- comparison */
@@ -59,11 +59,12 @@ static tc_status meshes_compare(const tc_context *context, const trial_volume *v
     if (status) return status;
     uint64_t n = difference(found->triangles.memory, expected->triangles.memory, expected->triangle_count);
     if (n < expected->triangle_count) return wrong(context, v, "triangle", n);
-    n = difference(found->positions.memory, expected->positions.memory, expected->vertex_count);
-    if (n < expected->vertex_count) return wrong(context, v, "vertex", n);
-    if (!expected->has_normals) return TC_OK;
-    n = difference(found->normals.memory, expected->normals.memory, expected->vertex_count);
-    return n < expected->vertex_count ? wrong(context, v, "normal", n) : TC_OK;
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) {
+        if (!channel_in(expected->made, channel)) continue;
+        n = difference(found->channels[channel].memory, expected->channels[channel].memory, expected->vertex_count);
+        if (n < expected->vertex_count) return wrong(context, v, channel_items[channel], n);
+    }
+    return TC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ trial */
@@ -140,8 +141,8 @@ static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind ki
     for (int n = 0; n < SURFACES; n++) {
         how[n] = (tc_extract_options){.struct_size = sizeof how[n],
                                       .isovalue = v->isovalue + (n ? 0.3 : 0),
-                                      .method = kind.hybrid ? TC_METHOD_HYBRID : TC_METHOD_TETRA,
-                                      .normals = kind.normals};
+                                      .method = kind.method,
+                                      .normals = channel_in(kind.made, CHANNEL_NORMALS)};
     }
     if (!status) status = reference_make(v, how, meshes);
     if (!status) status = device_try(context, v, how, kind.emits, meshes);
@@ -154,7 +155,7 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
                       .kind = kind.grid == KIND_COMPLEX ? GRID_CURVILINEAR : (grid_kind)kind.grid,
                       .unstructured = kind.grid == KIND_COMPLEX,
                       .missing = kind.missing,
-                      .plain = kind.normals};
+                      .plain = channel_in(kind.made, CHANNEL_NORMALS)};
     tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;
     context->tries = true;
     if (!status) status = volume_try(context, &v, kind);
@@ -168,6 +169,6 @@ tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool
     const kernel_kind kind = surface_kind(grid, options, emits);
     tc_status status = trial_of_kind(grid->context, kind);
     if (status) return status;
-    grid->context->passed[kind_number(kind)] = true;
+    grid->context->trial_passed[kind_number(kind)] = true;
     return context_progress(grid->context, "trial", 0);
 }

@@ -1,4 +1,4 @@
-#include "grids.h"
+#include "surface/grids.h"
 
 #include "grid/complex.h"
 #include "opencl/context.h"

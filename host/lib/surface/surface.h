@@ -27,7 +27,4 @@ void surface_carries(tc_grid *grid);
 /* Carries a field to the vertices; *vertex_count: how many there are. */
 tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
 
-/* As surface_count, by kernels that are vetted and tried first (extract.c). */
-tc_status surface_count_vetted(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
-
 #endif

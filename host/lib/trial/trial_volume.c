@@ -1,10 +1,10 @@
 /*
  * The volume of a trial: noise of full mantissas around the isovalue, some samples equal to it.
  */
-#include "trial.h"
+#include "trial/trial.h"
 
 #include "failure.h"
-#include "grids.h"
+#include "surface/grids.h"
 #include "sample_types.h"
 
 #include <math.h>
@@ -86,9 +86,9 @@ static void coordinates_make(trial_volume *v) {
     for (int axis = 0; axis < 3 && v->kind == GRID_RECTILINEAR; at += dims[axis++]) v->options.axes[axis] = at;
     for (uint64_t n = 0; n < SAMPLES; n++) {
         const uint64_t z = n / NX / NY;
-        const float place[3] = {-(float)(n % NX), (float)(n / NX % NY), (float)z};
+        const float index[3] = {-(float)(n % NX), (float)(n / NX % NY), (float)z};
         for (uint64_t axis = 0; axis < 3; axis++)
-            v->points[3 * n + axis] = place[axis] + 0.2f * (float)real_noise(3 * n + axis);
+            v->points[3 * n + axis] = index[axis] + 0.2f * (float)real_noise(3 * n + axis);
     }
     if (v->kind == GRID_CURVILINEAR || v->unstructured) v->options.points = v->points;
 }
