@@ -105,7 +105,7 @@ static int open_temporary(output *o) {
         o->fd = -1;
         errno = EEXIST;
     }
-    if (o->fd >= 0) return 0;
+    if (o->fd >= 0) return o->lock >= 0 ? 0 : errno;
     int error = errno;
     free(o->temporary); /* not ours to unlink */
     o->temporary = NULL;

@@ -325,7 +325,7 @@ MUTANTS = [
            ("host/write/output_group.c", "test_cli_blocks, separate", "files.rlim_cur = files.rlim_max;", "",
             "only so many blocks as files may be open by default"),
            ("host/tool/extract/carried_fields.c", "test_cli_blocks, separate", "int status = engine_carry(e, blocks, how,",
-            "int status = engine_carry(e, (block_range){0, 1}, how,", "carried fields are those of the first block")),
+            "int status = engine_carry(e, (block_range){0 * blocks.first, 1}, how,", "carried fields are those of the first block")),
     *point("places of outputs",
            ("host/tool/extract/surface_files.c", "test_endings, folders",
             "if (!status) status = output_check(path);", "",
