@@ -93,8 +93,11 @@ static int take_second(const char *text, bench_options *o) {
 }
 
 static int take_method(const char *text, bench_options *o) {
-    o->method = strcmp(text, "hybrid") == 0 ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
-    if (o->method || strcmp(text, "tetra") == 0) return 0;
+    for (int method = 0; tc_method_name((tc_method)method); method++)
+        if (strcmp(text, tc_method_name((tc_method)method)) == 0) {
+            o->method = (tc_method)method;
+            return 0;
+        }
     return fail(STATUS_USAGE, "--method: '%s' is neither tetra nor hybrid", text);
 }
 

@@ -15,10 +15,7 @@
 
 #define LEAST_REPEATS 3
 
-
 /* ------------------------------------------------------------------------------------------------------ extraction */
-
-const char *method_name(tc_method method) { return method == TC_METHOD_HYBRID ? "hybrid" : "tetra"; }
 
 void measure_begin(tc_context *context, const samples *s, tc_method method, double iso, double second_iso,
                    measurement *m, case_result *result) {

@@ -75,7 +75,4 @@ int measure_cold_times(const measurement *m, int repeat, double patience_ms, cas
 /* result->repeat warm extractions of each kind to the other times of the device, and the ratio to the limits. */
 int measure_warm_times(const measurement *m, const device_limits *limits, case_result *result);
 
-const char *method_name(tc_method method);
-
-
 #endif

@@ -37,7 +37,7 @@ static json_t *case_json(const case_result *c) {
     json_t *object = name_json(c);
     json_object_set_new(object, "iso", json_real(c->first.iso));
     json_object_set_new(object, "grid", json_string(c->grid));
-    json_object_set_new(object, "method", json_string(method_name(c->method)));
+    json_object_set_new(object, "method", json_string(tc_method_name(c->method)));
     json_object_set_new(object, "vertices", json_integer((json_int_t)c->first.vertex_count));
     json_object_set_new(object, "triangles", json_integer((json_int_t)c->first.triangle_count));
     set_hash(object, "hash", c->first.hash);

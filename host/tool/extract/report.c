@@ -80,7 +80,7 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
-    json_object_set_new(object, "method", json_string(r->o->method == TC_METHOD_HYBRID ? "hybrid" : "tetra"));
+    json_object_set_new(object, "method", json_string(tc_method_name((tc_method)r->o->method)));
     json_object_set_new(object, "dims", r->dims ? integers_json(r->dims) : json_null());
     json_object_set_new(object, "cells", count_json(r->cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));

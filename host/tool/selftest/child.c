@@ -208,7 +208,7 @@ static int run_vectors(const selftest_job *job) {
         if (number++ < job->first) continue;
         child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s, %s, %s", number - 1, v->field,
                      v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), shortest_number(v->isovalue).text,
-                     v->method == TC_METHOD_HYBRID ? "hybrid" : "tetra", v->options);
+                     tc_method_name(v->method), v->options);
         status = vector_try(v, device, text, sizeof text);
         if (!status) report_trial(text);
     }

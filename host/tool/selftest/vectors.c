@@ -39,6 +39,15 @@ static int parse_options(vector *v) {
     return 1;
 }
 
+static int parse_method(const char *text, tc_method *method) {
+    for (int n = 0; tc_method_name((tc_method)n); n++) {
+        if (strcmp(text, tc_method_name((tc_method)n)) != 0) continue;
+        *method = (tc_method)n;
+        return 1;
+    }
+    return 0;
+}
+
 static int parse_type(const char *text, tc_type *type) {
     for (int n = TC_U8; n <= TC_F64; n++)
         if (strcmp(text, tc_type_name((tc_type)n)) == 0) {
@@ -60,8 +69,7 @@ static int parse_line(const char *line, vector *v) {
         return 0;
     for (int axis = 0; axis < 3; axis++)
         if (v->dims[axis] < 2 || v->dims[axis] > most) return 0;
-    v->method = strcmp(method, "hybrid") == 0 ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
-    return (v->method == TC_METHOD_HYBRID || strcmp(method, "tetra") == 0) && parse_options(v);
+    return parse_method(method, &v->method) && parse_options(v);
 }
 
 static int append(vector_list *list, const vector *v) {
