@@ -9,21 +9,12 @@
 #include "failure.h"
 #include "mesh_check.h"
 #include "mesh_collapse.h"
+#include "random.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { RING = 8, RINGS = 20, VERTICES = RING * RINGS, TRIANGLES = 2 * VERTICES, ROUNDS = 400 };
-
-static uint64_t random_state = 1;
-
-/* splitmix64 (Steele, Lea, Flood 2014) */
-static uint32_t random_below(uint32_t limit) {
-    uint64_t z = (random_state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (uint32_t)((z ^ (z >> 31)) % limit);
-}
 
 typedef struct torus {
     float positions[VERTICES][3];
@@ -209,6 +200,7 @@ static void test_nonmanifold(void) {
 }
 
 int main(void) {
+    random_state = 1;
     test_known();
     test_random();
     test_few_positions();
