@@ -23,8 +23,9 @@
 /* Words of local memory in which the leader tells its group how far it has come; at the end, the two sums. */
 enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_WORDS };
 
-/* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory. With
- * spin_limit 1 the tile before is always recounted: a test reaches the fallback so. */
+/* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory. The
+ * sums in prefix go back to tile back; tile `unposted`, before that, has posted none in time, and is recounted. With
+ * spin_limit 1, which is for tests, the tile before is recounted every time. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
@@ -49,10 +50,10 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
         }
         group_barrier();
         if (leader && !complete) {
-            for (uint channel = 0; channel < 2; channel++) {
-                scan_post_sum(tiles, unposted, channel, shared[PREFIX_VERTICES + channel]);
-                if (back[channel] == unposted + 1)
-                    prefix[channel] += shared[PREFIX_VERTICES + channel], back[channel] = unposted;
+            for (uint sum_index = 0; sum_index < 2; sum_index++) {
+                scan_post_sum(tiles, unposted, sum_index, shared[PREFIX_VERTICES + sum_index]);
+                if (back[sum_index] == unposted + 1)
+                    prefix[sum_index] += shared[PREFIX_VERTICES + sum_index], back[sum_index] = unposted;
             }
         }
     }

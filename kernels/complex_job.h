@@ -16,8 +16,8 @@ typedef struct cluster_state {
     slab_u32 triangles_before;
 } cluster_state;
 
-/* A tetrahedron that the surface passes through. Its crossed edges, three or four, have slots 0 to 3 in the order of
- * edges; slot n of active tetrahedron a is slot 4 a + n of all. */
+/* A tetrahedron that the surface passes through. It has three or four crossed edges, in the order of its edges.
+ * Crossed edge n of active tetrahedron a has slot 4 a + n. */
 typedef struct active_tetrahedron {
     slab_u32 points[4];
     slab_u32 pattern;  /* bit n: point n is inside */

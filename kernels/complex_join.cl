@@ -31,8 +31,8 @@ inline_always uint edges_of(uint a, global const active_tetrahedron *active, glo
     return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
 }
 
-/* Enters an edge; `entry` is where the search begins. Returns the edge's entry, or 0 with *full set where none was free
- * within probe_limit. */
+/* Enters an edge; `entry` is where the search begins. Returns the edge's entry. Where none was free within probe_limit,
+ * *full is set, and the result means nothing. */
 inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
     uint2 edge = edge_points(active, slot, cases);

@@ -24,8 +24,9 @@ typedef struct edge_work {
 /* This bit marks an edge that has been met before; the other bits are the slot where. */
 #define EDGE_MET 0x80000000u
 
-/* Stores for each edge of tetrahedron a where the search in the table begins, and prefetches that entry; or, for an
- * edge met lately, the slot where it was met. Without branches: which edges are new is unpredictable. */
+/* For each edge of tetrahedron a: stores where the search in the table begins, and prefetches that entry. For an edge
+ * met lately it stores the slot where that was. Without branches, as which edges are new is hard to predict. The upper
+ * 11 bits of the hash choose among the RECENT_EDGES edges met lately. */
 inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, global uint *entries,
                               edge_work *work) {

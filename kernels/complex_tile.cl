@@ -55,8 +55,8 @@ inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums)
 }
 
 /* The sum over all tiles before tile `number`; valid once the last of them has posted its prefix. */
-inline_always uint tile_before(global const uint *tiles, uint number, uint channel) {
-    return number ? tiles[TILE_WORDS * (number - 1) + channel] & SCAN_VALUE : 0;
+inline_always uint tile_before(global const uint *tiles, uint number, uint sum_index) {
+    return number ? tiles[TILE_WORDS * (number - 1) + sum_index] & SCAN_VALUE : 0;
 }
 
 inline_always void tile_post(tile_tools tools, uint number, uint2 sums) {
@@ -67,16 +67,16 @@ inline_always void tile_post(tile_tools tools, uint number, uint2 sums) {
 
 /* Looks back from a tile for the sum over all tiles before it. Where that is not complete, shared[1] - 1 is the tile
  * whose sum is not posted. */
-inline_always bool tile_look_back(tile_tools tools, uint number, uint channel, uint *prefix) {
+inline_always bool tile_look_back(tile_tools tools, uint number, uint sum_index, uint *prefix) {
     uint back = number;
-    bool done = scan_look_back(tools.tiles, channel, &back, prefix, tools.c->spin_limit);
+    bool done = scan_look_back(tools.tiles, sum_index, &back, prefix, tools.c->spin_limit);
     tools.shared[1] = back;
     return done;
 }
 
 /* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else tile
- * *unposted has to be recounted first. With spin_limit 1 the tile before is always recounted: a test reaches the
- * fallback so. */
+ * *unposted has to be recounted first. With spin_limit 1, which is for tests, the tile before is recounted every time.
+ */
 inline_always bool tile_settle(tile_tools tools, uint number, bool look, uint *unposted) {
     bool done = false;
     group_barrier();

@@ -31,8 +31,8 @@ typedef struct tile_words {
     global brick_state *bricks;
 } tile_words;
 
-/* Scratch holds the words of the halo: plane z1, brick by brick, eight rows each (of the bricks that begin at y1, one
- * row); then row y1 of every plane of the tile. */
+/* Scratch holds the words of the halo. First plane z1, eight words per brick, also for the bricks that begin at y1, of
+ * which only the first row is filled. Then row y1, plane after plane. */
 inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
     return BRICK_ROWS * ((ulong)(y - t.y0) / BRICK_ROWS * s->words_x + w) + y % BRICK_ROWS;
 }
@@ -110,11 +110,12 @@ inline_always emit_counts tile_recount(const slab *s, uint number, global const 
         uint n = first + (uint)get_local_id(0);
         if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows * LANES, z = t.z0 + n / s->words_x / rows;
-        lanes words[8] = {0}; /* the cubes' four rows, at w and w + 1; shifted in, as a variable index needs memory */
+        lanes words[8] = {0}; /* the cubes' four rows, at w and w + 1. They enter at [7] and move down: a variable index
+                                 needs memory. */
 #pragma unroll 1
         for (uint m = 0; m < 8; m++) {
 #pragma unroll
-            for (uint m = 0; m < 7; m++) words[m] = words[m + 1];
+            for (uint lower = 0; lower < 7; lower++) words[lower] = words[lower + 1];
             words[7] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
         }
         cube_rows r = cube_rows_of(s, y, z, w, rows_shifted(words[0], words[1]), rows_shifted(words[2], words[3]),

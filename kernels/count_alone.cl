@@ -74,7 +74,7 @@ inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, ti
 
 /* Columns of the brick, of the brick at higher x, and of the bricks at higher y of both. */
 typedef struct brick_columns {
-    column at, next, last, last_next;
+    column at, next, up, up_next;
 } brick_columns;
 
 inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
@@ -91,10 +91,10 @@ inline_always global const ulong *column_row(column c, uint plane, bool after) {
 inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
     lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
     lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
-    ulong last = *column_row(c.last, plane, after) & c.last.valid.s0;
-    ulong last_next = *column_row(c.last_next, plane, after) & c.last_next.valid.s0;
+    ulong up = *column_row(c.up, plane, after) & c.up.valid.s0;
+    ulong up_next = *column_row(c.up_next, plane, after) & c.up_next.valid.s0;
     *a = rows_shifted(at, next);
-    *b = rows_shifted(lanes_next_row(at, last), lanes_next_row(next, last_next));
+    *b = rows_shifted(lanes_next_row(at, up), lanes_next_row(next, up_next));
 }
 
 /* Exclusive prefix sum over lanes. */

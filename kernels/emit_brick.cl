@@ -4,7 +4,7 @@
  *
  * Steps 1 and 2 are in emit_numbers.cl.
  * 3. Vector code makes the vertices of the listed edges.
- * 4. Active cubes are listed with their cases. A case names entries of the table of numbers (NUMBER_LANE), which become
+ * 4. Active cubes are listed with their cases. A case names entries of the table of numbers (CASE_INDEX), which become
  *    the indices of the cube's triangles.
  *
  * Cases have different numbers of indices, which are unpredictable. So a fixed number is copied for each cube, and the
@@ -109,8 +109,8 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
 /* Lists the active cubes of the rows in mask: a cube's index in the table of numbers from bit CASE_BITS on, below that
- * its case. With mask registers, patterns of all rows are made first: a part of a vector that was just stored could not
- * be loaded by store forwarding. */
+ * its case. With mask registers, patterns of all rows are made first: loading a part of a vector that
+ * was just stored would stall. */
 #ifdef MASK_REGISTERS
 inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
     bytes64 patterns = 0;
@@ -166,7 +166,7 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
 }
 #endif
 
-/* Stores the vertex numbers of a cube's triangles, which its case names as lanes of the cube's four rows (NUMBER_LANE).
+/* Stores the vertex numbers of a cube's triangles, by the indices in its case (CASE_INDEX).
  * Surplus numbers follow them. `number` points to the entry of the cube's first sample. */
 #ifdef MASK_REGISTERS /* compilers know no such shuffle by name */
 inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {

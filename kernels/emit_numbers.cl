@@ -6,8 +6,8 @@
  * brick has: those that the brick owns and, numbered from kernel 1's results, those that its neighbours own. The table
  * is never cleared: only crossed edges are looked up.
  *
- * A row has about one crossed edge of each type. Each row appends at least one item to a list, even where it has none,
- * as an unpredictable branch costs more. The next append overwrites the surplus item.
+ * A row has about one crossed edge of each type. A row without any also stores an item in a list, which the next row
+ * overwrites: that is cheaper than a branch that is hard to predict.
  */
 #ifndef EMIT_NUMBERS_CL
 #define EMIT_NUMBERS_CL

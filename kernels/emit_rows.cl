@@ -66,8 +66,8 @@ inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool up
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-/* Enters row n of a brick's table, where it is in the grid. For rows after the brick only those types of edges are
- * right that the brick's cubes name. */
+/* Enters row n of a brick's table, where it is in the grid. In rows beyond the brick, only edges that its cubes have
+ * are correct. */
 inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1, local row_table *table) {
     const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
     if (y >= s->ny || z >= s->nz) return;

@@ -60,7 +60,8 @@ inline_always samples64 signs64(samples64 bits) {
 }
 #endif
 
-/* Bit n: sample n is at most element n of `most`. */
+/* Bit n: sample n is at most element n of `most`. Without mask registers, each byte keeps one bit, and the product sums
+ * eight bytes into its highest one. */
 inline_always ulong at_most64(samples64 samples, samples64 most) {
     bytes64 is = __builtin_convertvector(samples <= most, bytes64);
 #ifdef MASK_REGISTERS

@@ -1,5 +1,6 @@
 /*
- * lanes.cl - bit-sliced code: how many rows of 64 cubes it processes at once, one word per row
+ * lanes.cl - the type `lanes` of bit-sliced code: one 64-bit word for each of LANES rows of 64 cubes, eight rows in the
+ * text for a work-item alone, one in that for groups
  */
 #ifndef LANES_CL
 #define LANES_CL

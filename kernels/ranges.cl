@@ -12,7 +12,7 @@
 
 #if FLOATING
 #define KEY_SIGN ((BITS)1 << (FLOATING - 1))
-/* Keys from here on, and keys up to its complement, are of infinities and NaNs. */
+/* Keys from here on are of +infinity and NaN; keys up to its complement are of -infinity and NaN. */
 #define KEY_INFINITY (FLOATING == 32 ? 0xff800000u : 0xfff00000u)
 #endif
 

@@ -22,29 +22,29 @@
 
 inline_always uint scan_word(uint state, uint value) { return state << 30 | value; }
 
-inline_always volatile global uint *scan_at(global uint *tiles, uint tile, uint channel) {
-    return tiles + TILE_WORDS * tile + channel;
+inline_always volatile global uint *scan_at(global uint *tiles, uint tile, uint sum_index) {
+    return tiles + TILE_WORDS * tile + sum_index;
 }
 
-inline_always void scan_post_sum(global uint *tiles, uint tile, uint channel, uint sum) {
-    atomic_cmpxchg(scan_at(tiles, tile, channel), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
+inline_always void scan_post_sum(global uint *tiles, uint tile, uint sum_index, uint sum) {
+    atomic_cmpxchg(scan_at(tiles, tile, sum_index), scan_word(SCAN_EMPTY, 0), scan_word(SCAN_SUM, sum));
 }
 
 /* The sum that a group has posted for one of its own tiles. */
-inline_always uint scan_own_sum(global uint *tiles, uint tile, uint channel) {
-    return atomic_or(scan_at(tiles, tile, channel), 0u) & SCAN_VALUE;
+inline_always uint scan_own_sum(global uint *tiles, uint tile, uint sum_index) {
+    return atomic_or(scan_at(tiles, tile, sum_index), 0u) & SCAN_VALUE;
 }
 
-inline_always void scan_post_prefix(global uint *tiles, uint tile, uint channel, uint prefix) {
-    atomic_xchg(scan_at(tiles, tile, channel), scan_word(SCAN_PREFIX, prefix));
+inline_always void scan_post_prefix(global uint *tiles, uint tile, uint sum_index, uint prefix) {
+    atomic_xchg(scan_at(tiles, tile, sum_index), scan_word(SCAN_PREFIX, prefix));
 }
 
 /* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted
  * nothing within the limit of polls. */
-inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, uint *sum, uint spin_limit) {
+inline_always bool scan_look_back(global uint *tiles, uint sum_index, uint *tile, uint *sum, uint spin_limit) {
     uint polls = 0;
     while (*tile > 0 && polls <= spin_limit) {
-        uint word = atomic_or(scan_at(tiles, *tile - 1, channel), 0u);
+        uint word = atomic_or(scan_at(tiles, *tile - 1, sum_index), 0u);
         if (word >> 30 == SCAN_EMPTY) {
             polls++;
             continue;
@@ -56,7 +56,8 @@ inline_always bool scan_look_back(global uint *tiles, uint channel, uint *tile, 
     return *tile == 0;
 }
 
-/* A list of the tiles of a group that posts all sums before it looks back, in the order in which it took them. */
+/* To settle a tile is to look back for its prefix, to post it, and to complete what the tile has stored by it. A group
+ * that posts the sums of all its tiles before it settles any lists them, in the order in which it took them. */
 #define SETTLES_LATER (WORK_ITEMS == 1)
 #define NO_TILE       0xffffffffu
 

@@ -19,7 +19,7 @@ inline_always ulong word_make(samples64 bits, const isovalue_test *test) {
     return at_most64(bits - (BITS)test->inside_low, (samples64)(BITS)test->inside_span);
 }
 
-/* 64 samples of a row; those past its end repeat the first. */
+/* 64 samples of a row. Those past its end repeat the first, so that they do not change the range. */
 inline_always samples64 samples_load64(global const BITS *samples, const slab *s, uint y, uint z, uint w) {
     uint left = s->nx - 64 * w;
     ulong start = row_start(s, y, z) + 64ul * w;
@@ -93,17 +93,17 @@ typedef struct strip {
  * the next plane or the next strip, as hardware prefetch stops at page ends. */
 inline_always void strip_visit(const slab *s, strip p, global const BITS *samples, global ulong *words,
                                global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
-    const uint rows = p.rows * BRICK_ROWS, later = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
+    const uint rows = p.rows * BRICK_ROWS, rows_ahead = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
     ulong word[STRIP_BRICKS][BRICK_WORDS];
     line_keys low[STRIP_BRICKS], high[STRIP_BRICKS];
     for (uint n = 0; n < p.rows * p.count; n++) low[n] = (BITS) ~(BITS)0, high[n] = 0;
     for (uint plane = 0; plane < BRICK_PLANES; plane++) {
         const uint z = p.z + plane, have = z < s->z1 ? min(rows, s->ny - p.y) : 0;
         const bool last = plane + 1 == BRICK_PLANES;
-        global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + later * (ulong)s->nx;
+        global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + rows_ahead * (ulong)s->nx;
         for (uint row = 0; row < rows; row++, ahead += s->nx) {
             const uint first = row / BRICK_ROWS * p.count, brick_row = BRICK_ROWS * plane + row % BRICK_ROWS;
-            if (row + later == rows)
+            if (row + rows_ahead == rows) /* from here on in the next plane or strip */
                 ahead = samples + row_start(s, last ? p.y + rows : p.y, last ? p.z : z + 1) + 64ul * p.w;
             for (uint n = 0; n < p.count && row < have; n++) {
                 loop_unrolled for (uint m = 0; m < 64; m += 64 / sizeof(BITS)) line_prefetch(ahead + 64 * n + m);

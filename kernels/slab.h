@@ -54,17 +54,18 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 /* The index of a sample in that table, in samples. */
 #define NUMBER_INDEX(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
 
-/* For that kernel the table of cases names lanes. A cube has four rows of samples; from its first sample on,
- * NUMBER_LANES numbers of each row make a vector. A lane is an index into the four vectors, one after another. */
-#define NUMBER_LANE(x, y, z, type, edge_types) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(edge_types) + (type))
+/* For that kernel the table of cases has for every corner of a triangle an index into 4 x NUMBER_LANES numbers: those
+ * that begin at the cube's first sample in its four rows of the table of vertex numbers. */
+#define CASE_INDEX(x, y, z, type, edge_types) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(edge_types) + (type))
 
-/* The most local memory that a group takes for every 32 of its work-items: kernel 2's table of a brick's rows. */
+/* Local memory that a group takes for every 32 of its work-items: at most kernel 2's table of a brick's rows
+ * (emit_rows.cl). */
 enum { LOCAL_BYTES_PER_BRICK = 2816 };
 
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
 #define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))
 
-/* Places in a slab's head, STATE_WORDS words of the state buffer, cleared before kernel 1. */
+/* Indices in a slab's head: STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
     STATE_TICKET,      /* next tile of kernel 1 */
     STATE_EMIT_TICKET, /* next run of active bricks of kernel 2 */
@@ -88,12 +89,12 @@ typedef struct isovalue_test {
     slab_u64 nodata_bits[2]; /* bits of the missing value: two patterns, equal where it has only one */
     slab_u64 isovalue64;     /* bits of the double */
     slab_f32 isovalue32;
-    slab_u32 key_inside;  /* keys from here on are surely inside */
-    slab_u32 key_outside; /* keys below are surely outside */
+    slab_u32 key_inside;  /* all keys from here on are inside */
+    slab_u32 key_outside; /* all keys below are outside; between the two, half a 64-bit key decides nothing */
     slab_u32 has_nodata;
 } isovalue_test;
 
-/* Where the slab's samples, and what the caller has for each of them or for each cube, are in their buffers. */
+/* Where the slab's part of each of the grid's arrays begins in its buffer. */
 typedef struct slab_arrays {
     slab_u64 sample_offset;       /* of plane sample_z, in samples */
     slab_u64 sample_count;        /* samples in the buffer from there on */
@@ -126,10 +127,11 @@ typedef struct slab_tiling {
 
 /* What a launch of kernel 2 emits, and where that goes. */
 typedef struct slab_mesh {
-    slab_u32 vertex_base;             /* number of the slab's first vertex */
-    slab_u32 vertex_base_next;        /* of the next slab's first vertex */
-    slab_u32 vertex_window;           /* number of the vertex that the buffers of channels start with */
-    slab_u32 triangle_window;         /* likewise, the triangle; counted from the slab's first, modulo 2^32 */
+    slab_u32 vertex_base;      /* number of the slab's first vertex */
+    slab_u32 vertex_base_next; /* of the next slab's first vertex */
+    slab_u32 vertex_window;    /* number of the vertex that the buffers of channels start with */
+    slab_u32
+        triangle_window; /* number of the triangle that the buffer starts with, from the slab's first on; modulo 2^32 */
     slab_u32 vertex_offset;           /* floats in the buffers of channels before that vertex */
     slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
     slab_u32 brick_first, brick_last; /* the active bricks among these are emitted */

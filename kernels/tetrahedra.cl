@@ -132,7 +132,9 @@ inline_always void outer_count(const lanes p[8], lanes cubes, tetrahedra_counts 
     t->one[4] = tetrahedron_triangles(p[7], p[3], p[5], p[6], cubes, &t->two[4]);
 }
 
-/* Triangles of the 64 cubes of each row. They are added bit by bit, so that four words are counted and not ten. */
+/* Triangles of the 64 cubes of each row: ones + 2 twos + 4 fours + 8 eights, added bit by bit, so that four words are
+ * counted and not ten. A cube has at most ten triangles, so it is never in fours and eights both: one population count
+ * serves them. */
 inline_always lanes tetrahedra_sum(const tetrahedra_counts *t) {
     lanes ones, twos, fours;
     lanes carry0 = add_carry(t->one[0], t->one[1], t->one[2], &ones);
@@ -153,10 +155,9 @@ inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
     return tetrahedra_sum(&t);
 }
 
-/* A loop of n vertices has n - 2 triangles. The tetrahedra's surface in a cube consists of disks with all vertices on
- * their borders, so it has n - 2 triangles as well, but n includes vertices on face diagonals. These are the edges of
- * the central tetrahedron. Where that emits one triangle, three diagonals are crossed; where two, four. So hybrid
- * triangles = triangles of the four other tetrahedra - 2, if the central one emits any, else - 0. Below, two is added
+/* Both methods fill loops, and a loop of n vertices takes n - 2 triangles. The tetrahedra's loops have vertices on face
+ * diagonals besides: three where the central tetrahedron emits one triangle, four where it emits two. So hybrid
+ * triangles = those of the four outer tetrahedra, + 1 - 3 or + 2 - 4 where the central one emits any. Below, 2 is added
  * where it emits none, and subtracted for every cube. */
 inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
     cube_corners c = corners_of(r);
@@ -170,8 +171,11 @@ inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
 
 inline_always lanes triangles_count(const cube_rows *r, lanes cubes) { return OF_METHOD(triangles)(r, cubes); }
 
-/* Where the vertices of a row's six edge types start, from the row's first vertex on; packed with the number of that
- * vertex in its brick: 14 bits, here 0, then 7, 8, 8, 9, 9 bits for types y, z, xy, xz, yz. */
+/* Where the vertices of a row's edge types start, from the row's first vertex on, packed into a word:
+ *
+ *     from bit   0: 14 bits  the row's first vertex in its brick, added later
+ *               14:  7       type y        29: 8  xy
+ *               21:  8       type z        37: 9  xz        46: 9  yz */
 inline_always lanes offsets_pack(const crossings *edges, lanes *vertex_count) {
     lanes y = lanes_popcount(edges->type[0]);
     lanes z = y + lanes_popcount(edges->type[1]);

@@ -66,7 +66,7 @@ inline_always void position_between(const slab *s, grid_arrays in, corner c, uin
 typedef struct neighbours {
     ulong before, after; /* in the sample buffer */
     uint first, last;    /* along the axis */
-    float weight;        /* 1/16 of the usual weight, so that products of differences do not overflow */
+    float weight;        /* 1/32 or 1/16 in place of 1/2 or 1, so that products of differences do not overflow */
 } neighbours;
 
 inline_always bool neighbour_missing(grid_arrays in, const slab *s, ulong n) {
@@ -116,7 +116,7 @@ inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbou
 #endif
 }
 
-/* The gradient g in index space, turned over, becomes a direction n in world space; j[axis] is how positions change
+/* The gradient g in index space, negated, becomes a direction n in world space; j[axis] is how positions change
  * along an axis. The inverse transposed Jacobian is its cofactors over its determinant, of which only the sign matters.
  * Columns are scaled to a largest element of 1, and g against that, so that cells may be flat. Zero where the
  * determinant is. */
@@ -159,7 +159,7 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint ed
     REAL j[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 #endif
 #pragma unroll AXES_AT_ONCE
-    for (uint axis = 0; axis < 3; axis++) { /* results are shifted in, so that no index varies */
+    for (uint axis = 0; axis < 3; axis++) { /* results enter at [2] and move down, so that no index varies */
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
         REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
         g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);

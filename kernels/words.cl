@@ -35,7 +35,8 @@ inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
     return BRICK_WORDS * brick_index(s, y, z, w) + row_in_brick(s, y, z);
 }
 
-/* The 32 words of brick `number`. The constant words of a brick that is inside have bits set outside the grid too. */
+/* The 32 words of brick `number`. `words` points behind the two bricks of constant words, which have the numbers -2
+ * (outside) and -1 (inside). Those of an inside brick have bits set outside the grid too. */
 inline_always global const ulong *brick_words(uint number, uint sign, global const ulong *words) {
     return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)number : (long)sign - UNIFORM_BRICKS);
 }

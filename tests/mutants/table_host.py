@@ -345,7 +345,7 @@ MUTANTS = [
            ("s->results.tiles_offset = r->plan->slab_count * STATE_WORDS +", "s->results.tiles_offset = STATE_WORDS +",
             "slabs: tiles of the scan overlap heads")),
     *group("host/lib/structured/structured_emit.c",
-           ("NUMBER_LANE(e.dx, e.dy, e.dz,", "NUMBER_LANE(e.dx, e.dz, e.dy,",
+           ("CASE_INDEX(e.dx, e.dy, e.dz,", "CASE_INDEX(e.dx, e.dz, e.dy,",
             "kernel 2: a cube's edges, y and z exchanged"),
            ("e.dz, e.type,", "e.dz, (e.type + 1) % 6,", "kernel 2: a cube's edges, types"),
            ("derive(cases, r->grid->mirrored);", "derive(cases, 0);",

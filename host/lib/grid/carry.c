@@ -13,33 +13,12 @@
 #define GATHER(TYPE)                                                                                                   \
     for (uint32_t m = 0; m < count; m++) out[m] = (REAL)((const TYPE *)values)[samples[m] * stride + n]
 
+#define GATHER_CASE(type, name, c_type, ...)                                                                           \
+    case type:                                                                                                         \
+        GATHER(c_type);                                                                                                \
+        break;
 #define GATHER_ANY                                                                                                     \
-    switch (type) {                                                                                                    \
-    case TC_U8:                                                                                                        \
-        GATHER(uint8_t);                                                                                               \
-        break;                                                                                                         \
-    case TC_I8:                                                                                                        \
-        GATHER(int8_t);                                                                                                \
-        break;                                                                                                         \
-    case TC_U16:                                                                                                       \
-        GATHER(uint16_t);                                                                                              \
-        break;                                                                                                         \
-    case TC_I16:                                                                                                       \
-        GATHER(int16_t);                                                                                               \
-        break;                                                                                                         \
-    case TC_U32:                                                                                                       \
-        GATHER(uint32_t);                                                                                              \
-        break;                                                                                                         \
-    case TC_I32:                                                                                                       \
-        GATHER(int32_t);                                                                                               \
-        break;                                                                                                         \
-    case TC_F32:                                                                                                       \
-        GATHER(float);                                                                                                 \
-        break;                                                                                                         \
-    default:                                                                                                           \
-        GATHER(double);                                                                                                \
-        break;                                                                                                         \
-    }
+    switch (type) { SAMPLE_TYPES(GATHER_CASE) }
 
 #define REAL float
 static void gather_f32(tc_type type, const void *values, int stride, int n, const int64_t *samples, uint32_t count,

@@ -52,9 +52,10 @@ inside_range inside_range_of(tc_type type, double isovalue) {
 #undef RANGE_CASE
     case TC_F32:
         return f32_range(isovalue);
-    default:
+    case TC_F64:
         return f64_range(isovalue);
     }
+    return (inside_range){.uniform = true}; /* no type */
 }
 
 static bool integer_pattern(double value, double least, double most, uint64_t patterns[2]) {
@@ -87,10 +88,11 @@ bool value_bits(tc_type type, double value, uint64_t patterns[2]) {
         patterns[0] = patterns[1] = bits_of_f32((float)value);
         if (value == 0) patterns[0] = 0, patterns[1] = UINT64_C(1) << 31;
         return true;
-    default:
+    case TC_F64:
         if (!isfinite(value)) return false;
         patterns[0] = patterns[1] = bits_of_f64(value);
         if (value == 0) patterns[0] = 0, patterns[1] = UINT64_C(1) << 63;
         return true;
     }
+    return false;
 }

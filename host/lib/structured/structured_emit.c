@@ -78,11 +78,11 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
 }
 
 /* How kernel 2 finds the vertex on an edge of a cube: by the edge's owner and type, or, where a work-item has a brick
- * to itself, by lane. */
+ * to itself, by its index among their numbers. */
 static uint8_t edge_item(const run *r, uint8_t edge) {
     const owned_edge e = cube_edges[edge];
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
-    return (uint8_t)NUMBER_LANE(e.dx, e.dy, e.dz, e.type, methods[r->method].edge_types);
+    return (uint8_t)CASE_INDEX(e.dx, e.dy, e.dz, e.type, methods[r->method].edge_types);
 }
 
 /* Writes the cube table of the run's method, with edges as kernel 2 names them (edge_item). */
