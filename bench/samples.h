@@ -3,7 +3,7 @@
 #define SAMPLES_H
 
 #include "bench_options.h"
-#include "dataset.h"
+#include "dataset/dataset.h"
 
 typedef struct samples {
     const field *made_from; /* NULL: a file */

@@ -5,7 +5,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
-#include "mapping.h"
+#include "file/mapping.h"
 #include "read_formats.h"
 
 #include <stdio.h>

@@ -2,8 +2,8 @@
 #ifndef READ_H
 #define READ_H
 
-#include "dataset.h"
-#include "request.h"
+#include "dataset/dataset.h"
+#include "dataset/request.h"
 
 /* Reads the file, or the two files, of the request in the format that its content, else its ending, tells; raw where
  * request->dims are given. Returns 0 and a dataset to be released, or an exit status (exit_status.h) with its message

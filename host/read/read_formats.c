@@ -1,6 +1,9 @@
 #include "read_formats.h"
 
-#include "readers.h"
+#include "image/image.h"
+#include "plot3d/plot3d.h"
+#include "vtk_legacy/vtk_legacy.h"
+#include "vtk_xml/vtk_xml.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,10 +4,10 @@
 #ifndef READ_FORMATS_H
 #define READ_FORMATS_H
 
-#include "dataset.h"
-#include "libraries.h"
-#include "mapping.h"
-#include "request.h"
+#include "dataset/dataset.h"
+#include "dataset/request.h"
+#include "file/libraries.h"
+#include "file/mapping.h"
 
 enum { FORMAT_NOTES = 5, FORMATS_TEXT = 512 };
 

@@ -84,7 +84,7 @@ typedef struct complex_file {
     const double *points_f64; /* instead of points */
     uint64_t tetrahedron_count;
     const uint32_t *tetrahedra;         /* 4 points each */
-    const struct dataset_field *fields; /* of the points: host/read/dataset.h */
+    const struct dataset_field *fields; /* of the points: host/read/dataset/dataset.h */
     int field_count;
 } complex_file;
 

@@ -6,7 +6,7 @@
  */
 #include "mesh_write.h"
 
-#include "dataset.h"
+#include "dataset/dataset.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "vtk_appended.h"

@@ -7,7 +7,7 @@
 
 #include "read_files.h"
 
-#include "readers.h"
+#include "plot3d/plot3d.h"
 
 enum { TEXT, RECORDS_4, RECORDS_8, BINARY };
 enum { GRID_ONLY, SOLUTION, OVERFLOW_5, OVERFLOW_8, FUNCTION };

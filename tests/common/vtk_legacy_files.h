@@ -11,7 +11,7 @@
 #include "read_files.h"
 
 #include "random.h"
-#include "readers.h"
+#include "vtk_legacy/vtk_legacy.h"
 
 #define HEAD    "# vtk DataFile Version 3.0\nt\nASCII\n"
 #define BINARY  "# vtk DataFile Version 4.2\nt\nBINARY\n"

@@ -7,7 +7,7 @@
 #define VTK_XML_FILES_H
 
 #include "read_files.h"
-#include "readers.h"
+#include "vtk_xml/vtk_xml.h"
 
 #ifdef HAVE_LZ4
 #include <lz4.h>

@@ -8,7 +8,7 @@
 #include "limit_cases.h"
 #include "read_files.h"
 
-#include "dataset.h"
+#include "dataset/dataset.h"
 
 #include <sys/resource.h>
 

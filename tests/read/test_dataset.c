@@ -5,15 +5,15 @@
  * values of cells averaged as a sum over all cells at every point says, written out here the other way round (by point,
  * not by cell); missing values marked; images as datasets; unknown formats refused with what is read.
  */
-#include "average.h"
 #include "exit_status.h"
 #include "expect.h"
 #include "failure.h"
-#include "sample_types.h"
+#include "field/average.h"
+#include "field/select.h"
 #include "folder.h"
 #include "random.h"
 #include "read.h"
-#include "select.h"
+#include "sample_types.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,11 +9,11 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "file/unpack_block.h"
 #include "folder.h"
 #include "mesh_write.h"
 #include "read.h"
 #include "read_formats.h"
-#include "unpack_block.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /*
  * test_write_vtk.c - fields on vertices in PLY and VTP files, and complexes as VTU files
  */
-#include "dataset.h"
+#include "dataset/dataset.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "folder.h"

@@ -8,7 +8,7 @@
 #ifndef OPTION_EFFECTS_H
 #define OPTION_EFFECTS_H
 
-#include "dataset.h"
+#include "dataset/dataset.h"
 #include "options.h"
 
 /* By the command line alone, before any work: 0, or STATUS_USAGE with its text. */

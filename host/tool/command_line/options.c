@@ -5,11 +5,11 @@
  */
 #include "options.h"
 
+#include "dataset/request.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "option_table.h"
 #include "parse_value.h"
-#include "request.h"
 #include "similar_name.h"
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
 #include "parse_value.h"
 
+#include "dataset/request.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "request.h"
 #include "similar_name.h"
 
 #include <ctype.h>

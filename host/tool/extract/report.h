@@ -31,7 +31,7 @@ typedef struct surface_report {
     double origin[3];           /* that positions in memory, and so the hash, are relative to */
     uint64_t soup_vertex_count; /* of the file: three of its own for every triangle; 0 where it shares them */
     int has_dropped;
-    uint64_t dropped_count; /* triangles of zero area: the other figures are of what is left */
+    uint64_t dropped_count;     /* triangles of zero area: the other figures are of what is left */
     uint64_t nonmanifold_edges; /* that dropping has left: of more than two triangles */
     int has_topology;
     mesh_topology topology;

@@ -6,9 +6,9 @@
 #ifndef SURFACE_NOTICES_H
 #define SURFACE_NOTICES_H
 
-#include "dataset.h"
+#include "dataset/dataset.h"
+#include "field/select.h"
 #include "report.h"
-#include "select.h"
 
 /* An isovalue that was typed as a whole number and is rounded as a double: samples next to it may be on the wrong side.
  */

@@ -1,6 +1,6 @@
 #include "describe_blocks.h"
 
-#include "cell_types.h"
+#include "dataset/cell_types.h"
 #include "input/statistics.h"
 #include "input/used_points.h"
 #include "shortest.h"

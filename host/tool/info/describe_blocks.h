@@ -3,7 +3,7 @@
 #ifndef DESCRIBE_BLOCKS_H
 #define DESCRIBE_BLOCKS_H
 
-#include "dataset.h"
+#include "dataset/dataset.h"
 
 #include <jansson.h>
 

@@ -3,9 +3,9 @@
 #ifndef NO_SURFACE_H
 #define NO_SURFACE_H
 
-#include "dataset.h"
 #include "command_line/options.h"
-#include "select.h"
+#include "dataset/dataset.h"
+#include "field/select.h"
 
 enum { NO_SURFACE_BYTES = 1024 };
 

@@ -2,7 +2,7 @@
 #include "open_choices.h"
 
 #include "exit_status.h"
-#include "select.h"
+#include "field/select.h"
 #include "terminal/json_report.h"
 
 #include <inttypes.h>

@@ -2,8 +2,8 @@
 #ifndef OPEN_CHOICES_H
 #define OPEN_CHOICES_H
 
-#include "dataset.h"
-#include "request.h"
+#include "dataset/dataset.h"
+#include "dataset/request.h"
 
 #include <jansson.h>
 

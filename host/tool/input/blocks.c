@@ -1,6 +1,6 @@
 #include "blocks.h"
 
-#include "cell_types.h"
+#include "dataset/cell_types.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"

@@ -7,7 +7,7 @@
 #define BLOCKS_H
 
 #include "command_line/options.h"
-#include "select.h"
+#include "field/select.h"
 
 typedef struct prepared_block {
     const dataset_block *source;

@@ -2,10 +2,10 @@
 #ifndef INPUT_H
 #define INPUT_H
 
-#include "dataset.h"
 #include "command_line/options.h"
-#include "request.h"
-#include "select.h"
+#include "dataset/dataset.h"
+#include "dataset/request.h"
+#include "field/select.h"
 
 /* All that the options say about the inputs; refuses none or too many, and --dims without --type. */
 int input_request(const options *o, read_request *request);

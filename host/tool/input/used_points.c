@@ -1,6 +1,6 @@
 #include "used_points.h"
 
-#include "cell_types.h"
+#include "dataset/cell_types.h"
 
 uint64_t count_set(const uint8_t *mask, int64_t count) {
     uint64_t set = 0;

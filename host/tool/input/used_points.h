@@ -2,7 +2,7 @@
 #ifndef USED_POINTS_H
 #define USED_POINTS_H
 
-#include "dataset.h"
+#include "dataset/dataset.h"
 
 enum point_use { POINTS_NONE_USED, POINTS_SOME_USED, POINTS_ALL_USED };
 

@@ -4,7 +4,7 @@
 #include "check.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "mapping.h"
+#include "file/mapping.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -11,12 +11,15 @@
 #include "files.h"
 #include "hang.h"
 
+#include "dataset/layout.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "layout.h"
+#include "field/select.h"
+#include "image/image.h"
+#include "plot3d/plot3d.h"
 #include "read.h"
-#include "readers.h"
-#include "select.h"
+#include "vtk_legacy/vtk_legacy.h"
+#include "vtk_xml/vtk_xml.h"
 
 #include <math.h>
 #include <stdlib.h>
