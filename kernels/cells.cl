@@ -31,7 +31,7 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
                        global const uchar *blanked_cells, global ulong *cells, uint plane_count) {
     uint row_count = s.ny * plane_count;
     for (uint row = (uint)get_group_id(0); row < row_count; row += (uint)get_num_groups(0)) {
-        uint y = row % s.ny, z = s.results.cell_z + row / s.ny;
+        uint y = row % s.ny, z = s.arrays.cell_z + row / s.ny;
         bool last = y + 1 == s.ny || z + 1 == s.nz;
         for (uint first = 0; first < s.words_x; first += WORK_ITEMS) {
             uint w = first + (uint)get_local_id(0);
@@ -48,8 +48,8 @@ kernel void cells_mark(slab s, global const BITS *samples, global const uchar *b
 
 /* Present cubes of the row (y, z); none where that is outside the grid. */
 inline_always ulong cells_at(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
-    if (y >= s->ny || z >= s->nz || z < s->results.cell_z) return 0; /* y and z wrap below 0 */
-    return cells[((z - s->results.cell_z) * s->ny + y) * s->words_x + w];
+    if (y >= s->ny || z >= s->nz || z < s->arrays.cell_z) return 0; /* y and z wrap below 0 */
+    return cells[((z - s->arrays.cell_z) * s->ny + y) * s->words_x + w];
 }
 
 /* Present cubes of LANES rows from y on. */

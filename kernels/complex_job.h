@@ -61,4 +61,8 @@ typedef struct complex_job {
     slab_u32 probe_limit;  /* entries looked at before the table counts as full */
 } complex_job;
 
+#ifndef __OPENCL_VERSION__
+_Static_assert(sizeof(complex_job) == 9 * 8 + 16 * 4, "no padding, as for slab");
+#endif
+
 #endif

@@ -103,13 +103,13 @@ typedef struct slab_arrays {
     slab_u64 blanked_cell_offset; /* of plane sample_z */
     slab_u64 blanked_cell_count;  /* in that buffer from there on */
     slab_u32 sample_z;
+    slab_u32 cell_z; /* first plane of the cells (grids with missing samples) */
     slab_u32 has_blanked_samples, has_blanked_cells;
 } slab_arrays;
 
 /* Where the results of kernel 1 are in their buffers. */
 typedef struct slab_results {
     slab_u32 word_z;        /* first plane of the sign words */
-    slab_u32 cell_z;        /* first plane of the cells (grids with missing samples) */
     slab_u32 head_offset;   /* of the slab's head in the state buffer, in words */
     slab_u32 tiles_offset;  /* of its tiles, TILE_WORDS words each */
     slab_u32 active_offset; /* of its list of active bricks */
@@ -127,11 +127,10 @@ typedef struct slab_tiling {
 
 /* What a launch of kernel 2 emits, and where that goes. */
 typedef struct slab_mesh {
-    slab_u32 vertex_base;      /* number of the slab's first vertex */
-    slab_u32 vertex_base_next; /* of the next slab's first vertex */
-    slab_u32 vertex_window;    /* number of the vertex that the buffers of channels start with */
-    slab_u32
-        triangle_window; /* number of the triangle that the buffer starts with, from the slab's first on; modulo 2^32 */
+    slab_u32 vertex_base;             /* number of the slab's first vertex */
+    slab_u32 vertex_base_next;        /* of the next slab's first vertex */
+    slab_u32 vertex_window;           /* number of the vertex that the buffers of channels start with */
+    slab_u32 triangle_window;         /* the same of triangles, from the slab's first on; modulo 2^32 */
     slab_u32 vertex_offset;           /* floats in the buffers of channels before that vertex */
     slab_u32 triangle_offset;         /* indices in the triangle buffer before that triangle */
     slab_u32 brick_first, brick_last; /* the active bricks among these are emitted */
@@ -157,5 +156,9 @@ typedef struct slab {
     slab_mesh mesh;
     slab_space space;
 } slab;
+
+#ifndef __OPENCL_VERSION__
+_Static_assert(sizeof(slab) == 12 * 8 + 58 * 4, "no padding: Mesa's rusticl 22.3 leaves it out of an argument's size");
+#endif
 
 #endif

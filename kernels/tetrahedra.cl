@@ -161,9 +161,9 @@ inline_always lanes tetra_triangles(const cube_rows *r, lanes cubes) {
  * where it emits none, and subtracted for every cube. */
 inline_always lanes hybrid_triangles(const cube_rows *r, lanes cubes) {
     cube_corners c = corners_of(r);
-    lanes any = c.p[0] | c.p[3] | c.p[5] | c.p[6], all = c.p[0] & c.p[3] & c.p[5] & c.p[6];
     tetrahedra_counts t;
     outer_count(c.p, cubes, &t);
+    lanes any = c.p[0] | c.p[3] | c.p[5] | c.p[6], all = c.p[0] & c.p[3] & c.p[5] & c.p[6];
     t.one[0] = 0;
     t.two[0] = (~any | all) & cubes;
     return tetrahedra_sum(&t) - 2 * lanes_popcount(cubes);

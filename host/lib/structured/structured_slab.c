@@ -142,7 +142,7 @@ word_buffers *slab_words(const run *r, slab_ref ref) {
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
-    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->results.cell_z;
+    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z;
     const kernel_argument arguments[] = {ARGUMENT(*s),
                                          ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory),
@@ -185,7 +185,7 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     s->z1 = slab_end(r->plan, r->grid, slab_index);
     s->results.word_z = r->plan->words_whole ? 0 : s->z0;
     s->results.range_offset = (uint32_t)(s->results.word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    s->results.cell_z = s->z0 ? s->z0 - 1 : 0;
+    s->arrays.cell_z = s->z0 ? s->z0 - 1 : 0;
     s->arrays.sample_z = slab_samples_begin(r->plan, slab_index);
     s->results.head_offset = slab_index * STATE_WORDS;
     s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
