@@ -25,7 +25,7 @@ static tc_status field_check(const tc_grid *grid, const tc_field *field, const f
 /* Counts the surface, unless the results that carrying needs are still there. */
 static tc_status surface_find(tc_grid *grid, const tc_extract_options *options) {
     tc_counts counts;
-    surface_carries(grid);
+    surface_keep_results(grid);
     return surface_is_classified(grid, options) ? TC_OK : surface_count_vetted(grid, options, 0.5, &counts);
 }
 

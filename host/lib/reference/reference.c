@@ -272,7 +272,7 @@ static void case_emit(reference *r, const int64_t cube[3], unsigned pattern) {
     }
 }
 
-static void row_triangulate(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
     for (int64_t x = x0; x < x1; x++) {
         int64_t cube[3] = {x, y, z};
@@ -309,7 +309,7 @@ static tc_status layers_run(reference *r, const char *stage, double before, doub
     layer_run(r, 0, row_vertices);
     for (int64_t layer = 0; layer < layer_count; layer++) {
         if (layer + 1 < layer_count) layer_run(r, layer + 1, row_vertices);
-        layer_run(r, layer, row_triangulate);
+        layer_run(r, layer, row_triangles);
         tc_status status =
             context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
         if (status) return status;

@@ -26,7 +26,7 @@ tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, cons
 tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
 /* Results of kernel 1 are kept from now on. */
-void structured_carries(tc_grid *grid);
+void structured_keep_results(tc_grid *grid);
 
 /* True where the results of kernel 1 for this surface still exist, which structured_carry needs. */
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options);

@@ -349,7 +349,7 @@ static tc_status mapping_open(tc_context *context, const slab_plan *plan, mappin
     return status ? mapping_close(context, m, status) : TC_OK;
 }
 
-void structured_carries(tc_grid *grid) { grid->device->carries = true; }
+void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;

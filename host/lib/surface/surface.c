@@ -30,9 +30,9 @@ bool surface_is_classified(const tc_grid *grid, const tc_extract_options *option
     return grid->complex ? complex_is_classified(grid, options->isovalue) : structured_is_classified(grid, options);
 }
 
-void surface_carries(tc_grid *grid) {
+void surface_keep_results(tc_grid *grid) {
     if (grid->complex) grid->complex->carries = true;
-    if (grid->device) structured_carries(grid);
+    if (grid->device) structured_keep_results(grid);
 }
 
 tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {

@@ -20,9 +20,9 @@ tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double
 tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
 /* Whether the results that surface_carry needs exist: for the surface counted or extracted last; on grids in slabs,
- * only after surface_carries. The reference engine needs none. */
+ * only after surface_keep_results. The reference engine needs none. */
 bool surface_is_classified(const tc_grid *grid, const tc_extract_options *options);
-void surface_carries(tc_grid *grid);
+void surface_keep_results(tc_grid *grid);
 
 /* Carries a field to the vertices; *vertex_count: how many there are. */
 tc_status surface_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count);
