@@ -38,7 +38,7 @@ void generate_help(FILE *out) {
 }
 
 static int unknown_field(const char *name) {
-    const char *names[32];
+    const char *names[32] = {NULL};
     char all[256] = "";
     size_t count = 0;
     for (const field *f = fields; f->name; f++) {

@@ -9,6 +9,7 @@ library only.
 """
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -119,13 +120,13 @@ class Planted(TrialCase):
     def test_crashes(self):
         for command, where in CRASHES.items():
             with self.subTest(command=command):
-                self.found_out("crash " + command, f"driver 9.1.* crashes: .*{where}.*update the driver.*remove /")
+                self.found_out("crash " + command, rf"driver 9\.\d.* crashes: .*{where}.*update the driver.*remove /")
 
     def test_hangs(self):
         for command, where in HANGS.items():
             with self.subTest(command=command):
                 begin = time.monotonic()
-                self.found_out("crash " + command, f"driver 9.1.* hangs: time ran out {where}.*update the driver",
+                self.found_out("crash " + command, rf"driver 9\.\d.* hangs: time ran out {where}.*update the driver",
                                TETRACUBES_TRIAL_SECONDS="12")
                 if command == "open hang":  # nothing is built: it takes the time that is set, not ten times as much
                     self.assertLess(time.monotonic() - begin, 100)
@@ -177,7 +178,7 @@ class Texts(TrialCase):
         self.arguments[1] = volume
         expected = self.mesh("--engine", "reference")
         env = self.layer("crash build abort -DMISSING=1")
-        self.fails(env, "driver 9.1.* crashes")
+        self.fails(env, r"driver 9\.\d.* crashes")
         self.falls_back(env)
         self.assertEqual(self.mesh(env=self.layer("lacks fame", cache="")), expected)
 
@@ -195,6 +196,9 @@ class Sound(TrialCase):
                          programs)
 
     def test_known_driver_has_no_trial(self):
+        [driver, *_] = [device["driver"] for device in self.report("devices")["devices"]]
+        if not driver.startswith("3.1"):
+            self.skipTest(f"{driver} is not known: of PoCL, 3.1 is")
         env = {"TETRACUBES_CACHE_DIR": self.cache, **NO_TIME}
         self.assertEqual(self.mesh(env=env), self.mesh("--engine", "reference"))
         self.assertEqual(self.verdicts(), {})
@@ -209,7 +213,7 @@ class Sound(TrialCase):
         env = self.layer("lacks fame")
         expected = self.mesh(env=env)
         for damage in (lambda text: text[:-1], lambda text: text + "x", lambda text: text.replace("good", "fine"),
-                       lambda text: text.replace("driver 9.1", "driver 9.2"), lambda text: ""):
+                       lambda text: re.sub(r"driver 9\.\d", "driver 8.1", text), lambda text: ""):
             before = self.texts()
             for path, text in before.items():
                 with open(path, "w", encoding="utf-8") as file:

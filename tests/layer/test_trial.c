@@ -127,7 +127,7 @@ static void test_other_text(void) {
     setenv("TETRACUBES_CACHE_DIR", "", 1);
     script none = {TC_VERDICT_GOOD, TC_VERDICT_CRASHED, TC_VERDICT_HUNG, 0, 0, 0, ""};
     EXPECT_REFUSED(extract_try(&none, 0), TC_ERROR_DEVICE, "no text is left");
-    EXPECT(strstr(tc_message(), "driver 9.1") && strstr(tc_message(), "hangs"), "message: %s", tc_message());
+    EXPECT(strstr(tc_message(), "driver 9.") && strstr(tc_message(), "hangs"), "message: %s", tc_message());
     expect_asked(&none, 1, 1, 1, "no text is left");
     script closed = {TC_VERDICT_CRASHED, TC_VERDICT_GOOD, TC_VERDICT_GOOD, 0, 0, 0, ""};
     EXPECT_REFUSED(extract_try(&closed, 0), TC_ERROR_DEVICE, "a device that cannot be opened");

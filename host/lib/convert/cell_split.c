@@ -168,7 +168,7 @@ static void fan_cone(splitting *s, int apex, const uint8_t *face, int corner_cou
 /* Corners 0 to sides - 1 wind around the bottom, the next around the top, each above its like. */
 static void prism_split(splitting *s, int sides) {
     const int apex = smallest_corner(s->points, 2 * sides);
-    uint8_t bottom[CELL_CORNERS_MAX / 2], top[CELL_CORNERS_MAX / 2];
+    uint8_t bottom[CELL_CORNERS_MAX / 2] = {0}, top[CELL_CORNERS_MAX / 2] = {0};
     for (int n = 0; n < sides; n++) {
         const int next = (n + 1) % sides;
         const uint8_t side[4] = {(uint8_t)n, (uint8_t)next, (uint8_t)(sides + next), (uint8_t)(sides + n)};

@@ -43,7 +43,7 @@ static bool job_write(const tc_context *context, unsigned kind, char *job, size_
     int platform = context->info.platform_index, index = context->info.device_index;
     if (platform < 0 && !device_find(context->device, &platform, &index)) return false;
     const bool opens = kind == OPENING;
-    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0 : p->work_items,
+    snprintf(job, bytes, "tetracubes-trial-1 %d:%d %u %u %d %d %s", platform, index, kind, opens ? 0u : p->work_items,
              opens ? 0 : (int)p->division, !opens && !context->in_place, context->info.name);
     return true;
 }

@@ -28,7 +28,7 @@ static const option *find(enum command_bit command, const char *argument, size_t
 }
 
 static int unknown_option(enum command_bit command, const char *name, const char *argument, size_t length) {
-    const char *names[OPTION_TABLE_MOST];
+    const char *names[OPTION_TABLE_MOST] = {NULL};
     char typed[64];
     snprintf(typed, sizeof typed, "%.*s", (int)(length < sizeof typed ? length : sizeof typed - 1), argument);
     for (size_t n = 0; n < option_table_count; n++)
