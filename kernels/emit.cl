@@ -22,7 +22,7 @@
 #define RUNS_PER_GROUP 16
 
 /* Bricks outside [brick_first, brick_last) are left to another launch, where the mesh is larger than a buffer. Buffers
- * of channels that are not made are NULL, and not used. */
+ * of channels that are not made may be NULL, and are not used. */
 kernel void emit(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
                  global const ulong *offsets, global const ushort *triangle_offsets, global const brick_state *bricks,
                  global const uint *active, global uint *state, global const uchar *cases, global float *positions,

@@ -90,7 +90,7 @@ typedef struct isovalue_test {
     slab_u64 isovalue64;     /* bits of the double */
     slab_f32 isovalue32;
     slab_u32 key_inside;  /* all keys from here on are inside */
-    slab_u32 key_outside; /* all keys below are outside; between the two, half a 64-bit key decides nothing */
+    slab_u32 key_outside; /* all keys below are outside; in between, the upper half of a 64-bit key is not enough */
     slab_u32 has_nodata;
 } isovalue_test;
 

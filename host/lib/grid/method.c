@@ -7,4 +7,8 @@
 #define METHOD_ROW(name, types, most, usual) {#name, types, name##_cases_derive},
 const method_row methods[METHOD_COUNT] = {METHODS(METHOD_ROW)};
 
+#define METHOD_FITS(name, types, most, usual)                                                                          \
+    _Static_assert((types) <= EDGES_PER_SAMPLE && (usual) <= (most) && (most) <= CUBE_TRIANGLES_MAX, #name);
+METHODS(METHOD_FITS)
+
 const char *tc_method_name(tc_method method) { return (unsigned)method < METHOD_COUNT ? methods[method].name : NULL; }

@@ -20,7 +20,7 @@ typedef struct kernel_kind {
 
 enum { KIND_COMPLEX = 3, KERNEL_KINDS = (4 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
 
-/* A number below KERNEL_KINDS, and back. */
+/* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing. */
 unsigned kind_number(kernel_kind kind);
 kernel_kind kind_of_number(unsigned number);
 

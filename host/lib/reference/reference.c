@@ -123,7 +123,7 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
  * the same sample twice, so 0, where both sides are a border or missing. */
 typedef struct neighbours {
     int64_t before[3], after[3];
-    float weight; /* 1/16 of the usual weight, so that products of differences do not overflow */
+    float weight; /* 1/32 or 1/16 in place of 1/2 or 1, so that products of differences do not overflow */
 } neighbours;
 
 static neighbours neighbours_of(const reference *r, const int64_t p[3], int axis) {
@@ -164,7 +164,7 @@ static void position_between(const reference *r, const int64_t a[3], const int64
     }
 }
 
-static void position_mapped(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     const float *m = r->grid->matrix;
     float p[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -183,22 +183,21 @@ static float edge_crossing(const reference *r, const int64_t a[3], const int64_t
 /* What each channel has at t on an edge. */
 typedef void channel_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]);
 
-static void position_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+static void position_at(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     if (r->grid->kind == GRID_UNIFORM)
-        position_mapped(r, a, b, t, out);
+        position_make(r, a, b, t, out);
     else
         position_between(r, a, b, t, out);
 }
 
-static void normal_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+static void normal_at(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     if (type_is_wide(r->grid->type))
         normal_f64(r, a, b, t, out);
     else
         normal_f32(r, a, b, t, out);
 }
 
-static channel_make *const makes[CHANNEL_COUNT] = {
-    [CHANNEL_POSITIONS] = position_make, [CHANNEL_NORMALS] = normal_make};
+static channel_make *const makes[CHANNEL_COUNT] = {[CHANNEL_POSITIONS] = position_at, [CHANNEL_NORMALS] = normal_at};
 
 /* Not inlined, as few edges have a vertex: the loop over all edges keeps its registers. */
 __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
@@ -241,7 +240,8 @@ static uint32_t *triangle_next(const reference *r) {
     return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
 }
 
-/* By method tetra, triangles are made here without the table of cubes, by which the kernels make them. */
+/* Method tetra: triangles by the 16 cases of a tetrahedron. The kernels have them from the table of cubes that is
+ * derived of these, so that each checks the other. */
 static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], unsigned pattern) {
     unsigned index = 0;
     for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
@@ -321,7 +321,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     *r = (reference){.grid = grid, .isovalue = options->isovalue, .made = channels_asked(options)};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
     r->method = options->method;
-    methods[r->method].derive(r->cases, grid->mirrored);
+    if (r->method != TC_METHOD_TETRA) methods[r->method].derive(r->cases, grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
