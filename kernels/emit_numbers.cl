@@ -16,8 +16,8 @@
 #include "mesh.cl"
 #include "tetrahedra.cl"
 
-#define NUMBER_STEP NUMBER_TYPES(EDGE_TYPES)
-#define LIST_EDGES  (BRICK_WORDS * 64 * EDGE_TYPES)
+#define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)
+#define LIST_EDGES  (BRICK_WORDS * 64 * VERTEX_TYPES)
 #define LIST_MORE   16 /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
@@ -30,7 +30,7 @@ typedef struct brick_signs {
 
 /* What a work-item needs of private memory for a brick. */
 typedef struct brick_work {
-    ulong crossed[BRICK_PLANES][EDGE_TYPES][BRICK_ROWS];
+    ulong crossed[BRICK_PLANES][VERTEX_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
     uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
@@ -111,7 +111,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
         crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &edges);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
-        for (uint type = 0; type < EDGE_TYPES; type++) vstore8(edges.type[type], 0, work->crossed[n][type]);
+        for (uint type = 0; type < VERTEX_TYPES; type++) vstore8(edges.type[type], 0, work->crossed[n][type]);
         vstore8(active, 0, work->active[n]);
     }
 }
@@ -136,7 +136,7 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS,
              row = y << 7 | z << 11;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
-        loop_unrolled for (uint type = 0; type < EDGE_TYPES; type++) {
+        loop_unrolled for (uint type = 0; type < VERTEX_TYPES; type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);

@@ -20,7 +20,7 @@
 
 /* The table of a brick; rows in y, then z. */
 typedef struct row_table {
-    ulong crossed[EDGE_TYPES][TABLE_ROWS];
+    ulong crossed[VERTEX_TYPES][TABLE_ROWS];
     ulong packed[TABLE_ROWS]; /* owner */
     uint first[TABLE_ROWS];
 } row_table;
@@ -78,7 +78,7 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
 #endif
     const owner o = owner_of(s, y, z, w, k1);
 #pragma unroll
-    for (uint type = 0; type < EDGE_TYPES; type++) table->crossed[type][n] = edges.type[type];
+    for (uint type = 0; type < VERTEX_TYPES; type++) table->crossed[type][n] = edges.type[type];
     table->first[n] = o.first, table->packed[n] = o.packed;
 }
 
@@ -102,7 +102,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
     const uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
     ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
-    for (uint type = 0; type < EDGE_TYPES; type++) {
+    for (uint type = 0; type < VERTEX_TYPES; type++) {
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);

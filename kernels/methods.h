@@ -7,15 +7,17 @@
 /* METHOD(name, types, most, usual)
  *
  * name: as the public header numbers methods, from 0 on; kernels are built with -DMETHOD=name
- * types: types of edges that have vertices, the first so many of x, y, z, xy, xz, yz
+ * types: of vertices, the first so many of these: on an edge x, y, z, xy, xz, yz; at a sample
  * most: triangles of a cube at the most; no more than 10, which fill CUBE_CASE_BYTES
  * usual: triangles that are copied without a branch; more only where a cube has more
  *
  * A method also has the table name_cases_derive (declared in host/lib/grid/tables.h), which fills cubes with triangles,
- * and the function name_triangles (tetrahedra.cl), which counts them. */
+ * and the function name_triangles (tetrahedra.cl), which counts them. Where samples can be vertices they have a third
+ * sign, 0, and a cube has more cases (CASE_COUNT in slab.h). */
 #define METHODS(METHOD)                                                                                                \
     METHOD(tetra, 6, 10, 5)                                                                                            \
-    METHOD(hybrid, 3, 6, 3)
+    METHOD(hybrid, 3, 6, 3)                                                                                            \
+    METHOD(snap, 7, 10, 3)
 
 #define METHOD_NUMBER(name, types, most, usual) method_##name,
 enum { METHODS(METHOD_NUMBER) METHOD_COUNT };

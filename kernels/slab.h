@@ -42,13 +42,16 @@ typedef struct brick_range {
     slab_u32 low, high;
 } brick_range;
 
-/* The table of cases for kernel 2, of 2 parities x 256 patterns: the number of triangles, then three edges for each. */
-enum { CUBE_CASE_BYTES = 32, CASES_BYTES = 2 * 256 * CUBE_CASE_BYTES };
+/* The table of cases for kernel 2, of 2 parities x CASE_COUNT patterns of a cube: the number of triangles, then three
+ * vertices for each. A pattern of two signs has a bit per corner; where samples can be vertices, a digit to the base 3,
+ * and behind the table are 256 shorts: number n's bits as digits. */
+#define CASE_COUNT(vertex_types) ((vertex_types) > 6 ? 6561 : 256)
+enum { CUBE_CASE_BYTES = 32 };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
  * make their number a power of two. */
-#define NUMBER_TYPES(edge_types) ((edge_types) > 4 ? 8 : 4)
+#define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* The index of a sample in that table, in samples. */
@@ -56,7 +59,8 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 
 /* For that kernel the table of cases has for every corner of a triangle an index into 4 x NUMBER_LANES numbers: those
  * that begin at the cube's first sample in its four rows of the table of vertex numbers. */
-#define CASE_INDEX(x, y, z, type, edge_types) (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(edge_types) + (type))
+#define CASE_INDEX(x, y, z, type, vertex_types)                                                                        \
+    (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(vertex_types) + (type))
 
 /* Local memory that a group takes for every 32 of its work-items: at most kernel 2's table of a brick's rows
  * (emit_rows.cl). */

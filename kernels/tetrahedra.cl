@@ -65,11 +65,11 @@ inline_always lanes cubes_active(const cube_rows *r) {
 #define OF_METHOD(what) PASTE(METHOD, _##what)
 
 #define METHOD_CONSTANTS(name, types, most, usual)                                                                     \
-    name##_edge_types = (types), name##_triangles_most = (most), name##_triangles_usual = (usual),
+    name##_vertex_types = (types), name##_triangles_most = (most), name##_triangles_usual = (usual),
 enum { METHODS(METHOD_CONSTANTS) };
 
-#define EDGE_TYPES OF_METHOD(edge_types) /* that have vertices */
-#define DIAGONALS  (EDGE_TYPES > 3)      /* whether those across faces are among them */
+#define VERTEX_TYPES OF_METHOD(vertex_types) /* that have vertices */
+#define DIAGONALS  (VERTEX_TYPES > 3)      /* whether those across faces are among them */
 
 /* Edges owned by the samples of rows a whose ends differ, where both ends are in the grid. */
 typedef struct crossings {

@@ -18,7 +18,7 @@
 
 void tc_extract_options_init(tc_extract_options *options) {
     if (!options) return;
-    *options = (tc_extract_options){.struct_size = sizeof *options};
+    *options = (tc_extract_options){.struct_size = sizeof *options, .snap = 0.4};
 }
 
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {
@@ -28,12 +28,16 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "isovalue %g: it has to be finite", o->isovalue);
     if (!status && !tc_method_name(o->method))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
+    if (!status && o->method == TC_METHOD_SNAP && !(o->snap >= 0 && o->snap <= 0.5))
+        status = (tc_status)fail(TC_ERROR_ARGUMENT, "snap %g: it has to be from 0 to 0.5", o->snap);
     return status;
 }
 
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other text of the kernels. */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!surface_needs_kernels(grid, options)) return TC_OK;
+    if (options->method == TC_METHOD_SNAP)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "method snap: the reference engine makes it, no device yet");
     tc_status status = call_vet(grid->context, surface_kind(grid, options, emits));
     if (!status && grid->device) structured_reshape(grid);
     return status;

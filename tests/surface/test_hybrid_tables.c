@@ -426,7 +426,7 @@ static void test_wrong_parity_is_found(void) {
 
 int main(void) {
     random_state = 1996;
-    for (int mirrored = 0; mirrored < 2; mirrored++) hybrid_cases_derive(cases[mirrored], mirrored);
+    for (int mirrored = 0; mirrored < 2; mirrored++) hybrid_cases_derive(cases[mirrored][0], mirrored);
     test_cases();
     test_chords_are_short();
     test_tables_are_the_known_ones();

@@ -125,8 +125,7 @@ static void hybrid_case_derive(cube_case *out, unsigned parity, unsigned pattern
     }
 }
 
-void hybrid_cases_derive(cube_case cases[2][256], int mirrored) {
-    for (unsigned parity = 0; parity < 2; parity++)
-        for (unsigned pattern = 0; pattern < 256; pattern++)
-            hybrid_case_derive(&cases[parity][pattern], parity, pattern, mirrored);
+void hybrid_cases_derive(cube_case *cases, int mirrored) {
+    for (unsigned n = 0; n < 2 * CASES_TWO_SIGNS; n++)
+        hybrid_case_derive(&cases[n], n / CASES_TWO_SIGNS, n % CASES_TWO_SIGNS, mirrored);
 }

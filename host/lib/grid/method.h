@@ -9,7 +9,7 @@
 
 typedef struct method_row {
     const char *name;
-    int edge_types; /* that have vertices: the first so many */
+    int vertex_types; /* the first so many of enum vertex_type */
     cases_derive *derive;
 } method_row;
 

@@ -50,25 +50,54 @@ uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b) {
     return n;
 }
 
-static void cube_case_derive(cube_case *out, unsigned parity, unsigned pattern, int mirrored) {
+owned_edge cube_vertex(unsigned index) {
+    if (index < CUBE_EDGES) return cube_edges[index];
+    const unsigned corner = index - CUBE_EDGES;
+    return (owned_edge){corner & 1, corner >> 1 & 1, (uint8_t)(corner >> 2), VERTEX_SAMPLE};
+}
+
+/* On an edge whose ends differ; one that ends in a corner of `zeros` has its vertex there. */
+static uint8_t vertex_between(unsigned zeros, unsigned corner_a, unsigned corner_b) {
+    if (zeros >> corner_a & 1) return (uint8_t)(CUBE_EDGES + corner_a);
+    if (zeros >> corner_b & 1) return (uint8_t)(CUBE_EDGES + corner_b);
+    return cube_edge_index(corner_a, corner_b);
+}
+
+/* inside, zeros: corners as bits; zeros are vertices themselves, and count as outside. Triangles of which two vertices
+ * fall together are left out. */
+static void cube_case_derive(cube_case *out, unsigned parity, unsigned inside, unsigned zeros, int mirrored) {
     *out = (cube_case){0};
     for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++) {
         const uint8_t *corners = tetrahedron_corners[parity][t];
         unsigned index = 0;
-        for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
+        for (unsigned v = 0; v < 4; v++) index |= (inside >> corners[v] & 1) << v;
         const tetrahedron_case *c = &tetrahedron_cases[index];
         for (unsigned n = 0; n < c->triangle_count; n++) {
-            uint8_t *edges = out->edges[out->triangle_count++];
+            uint8_t *edges = out->edges[out->triangle_count];
             for (unsigned m = 0; m < 3; m++) {
                 const uint8_t *ends = tetrahedron_edges[c->triangles[n][mirrored ? (3 - m) % 3 : m]];
-                edges[m] = cube_edge_index(corners[ends[0]], corners[ends[1]]);
+                edges[m] = vertex_between(zeros, corners[ends[0]], corners[ends[1]]);
             }
+            if (edges[0] != edges[1] && edges[1] != edges[2] && edges[2] != edges[0]) out->triangle_count++;
         }
     }
 }
 
-void tetra_cases_derive(cube_case cases[2][256], int mirrored) {
-    for (unsigned parity = 0; parity < 2; parity++)
-        for (unsigned pattern = 0; pattern < 256; pattern++)
-            cube_case_derive(&cases[parity][pattern], parity, pattern, mirrored);
+void tetra_cases_derive(cube_case *cases, int mirrored) {
+    for (unsigned n = 0; n < 2 * CASES_TWO_SIGNS; n++)
+        cube_case_derive(&cases[n], n / CASES_TWO_SIGNS, n % CASES_TWO_SIGNS, 0, mirrored);
+}
+
+uint16_t bits_as_digits(unsigned bits) {
+    unsigned digits = 0;
+    for (int c = 7; c >= 0; c--) digits = 3 * digits + (bits >> c & 1);
+    return (uint16_t)digits;
+}
+
+void snap_cases_derive(cube_case *cases, int mirrored) {
+    for (unsigned n = 0; n < 2 * CASES_THREE_SIGNS; n++) {
+        unsigned inside = 0, zeros = 0, digits = n % CASES_THREE_SIGNS;
+        for (unsigned c = 0; c < 8; c++, digits /= 3) inside |= (digits % 3 / 2) << c, zeros |= (digits % 3 & 1) << c;
+        cube_case_derive(&cases[n], n / CASES_THREE_SIGNS, inside, zeros, mirrored);
+    }
 }

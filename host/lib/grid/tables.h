@@ -26,8 +26,9 @@
 
 enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
 
-/* Edges that a sample owns, in the order of their vertices in a mesh. */
-enum edge_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ };
+/* Vertices that a sample owns, in their order in a mesh: on its six edges, and the one in its own place (method snap).
+ */
+enum vertex_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ, VERTEX_SAMPLE, VERTEX_TYPES_MOST };
 
 extern const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4]; /* [parity][tetrahedron][vertex] */
 extern const uint8_t tetrahedron_edges[6][2];                        /* [edge][end] */
@@ -54,17 +55,27 @@ extern const owned_edge cube_edges[CUBE_EDGES];
 /* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
-/* What all tetrahedra of a cube emit, derived from the tables above; edges are indices in cube_edges. */
+/* The place of a vertex of a cube: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
+owned_edge cube_vertex(unsigned index);
+
+/* What all tetrahedra of a cube emit, derived from the tables above; edges are indices as cube_vertex has them. */
 typedef struct cube_case {
     uint8_t triangle_count;
     uint8_t edges[CUBE_TRIANGLES_MAX][3];
     uint8_t padding;
 } cube_case; /* 32 bytes, as the emit kernel reads it */
 
-/* Fills cases[parity][pattern], bit c of pattern being corner c. mirrored: the grid's Jacobian is negative, so
- * triangles are turned over. */
-typedef void cases_derive(cube_case cases[2][256], int mirrored);
+/* Cases of a cube of either parity. Two signs: bit c of a case is corner c, 1 inside. Three: digit c to the base 3 is
+ * corner c, 0 outside, 1 a vertex, 2 inside. */
+enum { CASES_TWO_SIGNS = 256, CASES_THREE_SIGNS = 6561 };
 
-cases_derive tetra_cases_derive, hybrid_cases_derive;
+/* The bits of a number below 256 as digits to the base 3. */
+uint16_t bits_as_digits(unsigned bits);
+
+/* Fills cases[parity * cases of a cube + case]. mirrored: the grid's Jacobian is negative, so triangles are turned
+ * over. */
+typedef void cases_derive(cube_case *cases, int mirrored);
+
+cases_derive tetra_cases_derive, hybrid_cases_derive, snap_cases_derive;
 
 #endif

@@ -63,7 +63,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
-    device_buffer cases[METHOD_COUNT][2]; /* cube table of each method; [1] for mirrored grids */
+    device_buffer cases[METHOD_COUNT][2]; /* table of each method; [1] for mirrored grids */
 } workspace;
 
 struct tc_context {

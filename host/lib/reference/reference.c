@@ -3,49 +3,20 @@
  * triangles of that layer, which need the numbers of the next one too, so numbering runs one layer ahead.
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
- * row, vertices by edge type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
+ * row, vertices by type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
  * are those of cubes, and triangles come from the table of a cube.
  */
 #include "reference/reference.h"
 
 #include "opencl/context.h"
 #include "failure.h"
-#include "grid/method.h"
+#include "reference/reference_run.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { BRICK_X = 64, BRICK_Y = 8, BRICK_Z = 4 };
-enum { INSIDE = 1, PRESENT = 2 };
-
-typedef struct reference {
-    const tc_grid *grid;
-    double isovalue;
-    int64_t dims[3];
-    uint8_t *signs;   /* per sample: INSIDE | PRESENT */
-    bool complete;    /* no sample is missing */
-    uint32_t *ids[2]; /* vertex of each edge, for even and odd layers: [(sample in layer)][edge type] */
-    tc_mesh *mesh;    /* NULL: count only */
-    const carry *carried;
-    channel_set made;
-    tc_method method;
-    cube_case cases[2][256]; /* of the method, where it is not made of tetrahedra */
-    uint64_t vertex_count, triangle_count, active_cell_count;
-} reference;
-
-/* --------------------------------------------------------------------------------------------------------- samples */
-
-static int64_t sample_index(const reference *r, const int64_t p[3]) {
-    return (p[2] * r->dims[1] + p[1]) * r->dims[0] + p[0];
-}
-
-static double sample_value(const reference *r, const int64_t p[3]) {
-    return grid_value_at(r->grid, sample_index(r, p));
-}
-
-static bool sample_present(const reference *r, const int64_t p[3]) { return r->signs[sample_index(r, p)] & PRESENT; }
-
-static bool sample_inside(const reference *r, const int64_t p[3]) { return r->signs[sample_index(r, p)] & INSIDE; }
 
 static void signs_make(reference *r) {
     const tc_grid *grid = r->grid;
@@ -61,20 +32,6 @@ static void signs_make(reference *r) {
 }
 
 /* ----------------------------------------------------------------------------------------------------------- edges */
-
-static unsigned cube_parity(const reference *r, const int64_t p[3]) {
-    return (grid_parity(r->grid) ^ (unsigned)(p[0] + p[1] + p[2])) & 1;
-}
-
-static bool cube_present(const reference *r, const int64_t p[3]) {
-    for (int axis = 0; axis < 3; axis++)
-        if (p[axis] < 0 || p[axis] + 1 >= r->dims[axis]) return false;
-    int64_t number = (p[2] * (r->dims[1] - 1) + p[1]) * (r->dims[0] - 1) + p[0];
-    if (r->grid->blanked_cells && r->grid->blanked_cells[number]) return false;
-    for (int c = 0; c < 8 && !r->complete; c++)
-        if (!sample_present(r, (int64_t[3]){p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)})) return false;
-    return true;
-}
 
 static const uint8_t edge_axes[EDGES_PER_SAMPLE] = {1, 2, 4, 3, 5, 6}; /* bit n: the edge spans axis n */
 
@@ -104,7 +61,7 @@ static bool edge_exists(const reference *r, const int64_t owner[3], int type) {
     return false;
 }
 
-/* Whether a row of cubes and edges has no sign change, neighbours included: it then emits nothing. */
+/* Whether a row of cubes and samples has no sign change, neighbours included: it then emits nothing. */
 static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     int64_t count = (x1 < r->dims[0] ? x1 + 1 : x1) - x0;
     uint8_t any = 0, all = INSIDE;
@@ -114,7 +71,7 @@ static bool row_uniform(const reference *r, int64_t x0, int64_t x1, int64_t y, i
             /* Classified before. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
             for (int64_t n = 0; n < count; n++) any |= signs[n], all &= signs[n];
         }
-    return !(any & INSIDE) || (all & INSIDE);
+    return !(any & SNAPPED) && (!(any & INSIDE) || (all & INSIDE));
 }
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
@@ -129,8 +86,8 @@ typedef struct neighbours {
 static neighbours neighbours_of(const reference *r, const int64_t p[3], int axis) {
     neighbours n = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, 0.0625f};
     n.before[axis]--, n.after[axis]++;
-    bool has_before = n.before[axis] >= 0 && sample_present(r, n.before);
-    bool has_after = n.after[axis] < r->dims[axis] && sample_present(r, n.after);
+    bool has_before = n.before[axis] >= 0 && sample_is(r, n.before, PRESENT);
+    bool has_after = n.after[axis] < r->dims[axis] && sample_is(r, n.after, PRESENT);
     if (!has_before) n.before[axis]++;
     if (!has_after) n.after[axis]--;
     if (has_before && has_after) n.weight = 0.03125f;
@@ -207,22 +164,32 @@ __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[
             makes[channel](r, a, b, t, (float *)r->mesh->channels[channel].memory + 3 * r->vertex_count);
 }
 
-static uint32_t *edge_id(const reference *r, const int64_t owner[3], int type) {
+static uint32_t *vertex_id(const reference *r, const int64_t owner[3], int type) {
     int64_t z = owner[2] % BRICK_Z, layer = owner[2] / BRICK_Z;
     int64_t sample = (z * r->dims[1] + owner[1]) * r->dims[0] + owner[0];
-    return r->ids[layer & 1] + sample * EDGES_PER_SAMPLE + type;
+    return r->ids[layer & 1] + sample * methods[r->method].vertex_types + type;
+}
+
+/* Whether a sample owns a vertex of a type, and the ends of the edge that it lies on. */
+static bool vertex_find(const reference *r, const int64_t owner[3], int type, int64_t a[3], int64_t b[3]) {
+    if (type == VERTEX_SAMPLE) {
+        if (!sample_is(r, owner, SNAPPED)) return false;
+        snapped_edge(r, owner, a, b);
+        return true;
+    }
+    if (!edge_exists(r, owner, type)) return false;
+    edge_ends(r, owner, type, a, b);
+    return sample_is(r, a, INSIDE) != sample_is(r, b, INSIDE) && !sample_is(r, a, SNAPPED) && !sample_is(r, b, SNAPPED);
 }
 
 static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
-    for (int type = 0; type < methods[r->method].edge_types; type++)
+    for (int type = 0; type < methods[r->method].vertex_types; type++)
         for (int64_t x = x0; x < x1; x++) {
             int64_t owner[3] = {x, y, z}, a[3], b[3];
-            if (!edge_exists(r, owner, type)) continue;
-            edge_ends(r, owner, type, a, b);
-            if (sample_inside(r, a) == sample_inside(r, b)) continue;
+            if (!vertex_find(r, owner, type, a, b)) continue;
             if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
-                *edge_id(r, owner, type) = (uint32_t)r->vertex_count;
+                *vertex_id(r, owner, type) = (uint32_t)r->vertex_count;
                 vertex_emit(r, a, b);
             }
             if (r->carried)
@@ -240,35 +207,58 @@ static uint32_t *triangle_next(const reference *r) {
     return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
 }
 
-/* Method tetra: triangles by the 16 cases of a tetrahedron. The kernels have them from the table of cubes that is
- * derived of these, so that each checks the other. */
-static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], unsigned pattern) {
+static void triangle_emit(reference *r, const int64_t cube[3], const owned_edge vertices[3]) {
+    uint32_t *triangle = triangle_next(r);
+    for (unsigned m = 0; m < 3 && triangle; m++) {
+        const owned_edge v = vertices[m];
+        triangle[m] = *vertex_id(r, (int64_t[3]){cube[0] + v.dx, cube[1] + v.dy, cube[2] + v.dz}, v.type);
+    }
+    r->triangle_count++;
+}
+
+/* The signs of a cube's corners, as bits. */
+typedef struct cube_signs {
+    unsigned inside, snapped;
+} cube_signs;
+
+/* On an edge of a tetrahedron whose ends differ: a snapped sample counts as outside, and is the vertex. */
+static owned_edge vertex_between(cube_signs signs, unsigned a, unsigned b) {
+    if (signs.snapped >> a & 1) return cube_vertex(CUBE_EDGES + a);
+    if (signs.snapped >> b & 1) return cube_vertex(CUBE_EDGES + b);
+    return edge_between(a, b);
+}
+
+static bool same_vertex(owned_edge a, owned_edge b) { return memcmp(&a, &b, sizeof a) == 0; }
+
+/* Triangles by the 16 cases of a tetrahedron; those of which two vertices fall together are left out. The kernels have
+ * them from the table of cubes that is derived of these, so that each checks the other. */
+static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t corners[4], cube_signs signs) {
     unsigned index = 0;
-    for (unsigned v = 0; v < 4; v++) index |= (pattern >> corners[v] & 1) << v;
+    for (unsigned v = 0; v < 4; v++) index |= (signs.inside >> corners[v] & 1) << v;
     const tetrahedron_case *c = &tetrahedron_cases[index];
-    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
-        uint32_t *triangle = triangle_next(r);
-        for (unsigned m = 0; m < 3 && triangle; m++) {
+    for (unsigned n = 0; n < c->triangle_count; n++) {
+        owned_edge vertices[3];
+        for (unsigned m = 0; m < 3; m++) {
             const uint8_t *ends = tetrahedron_edges[c->triangles[n][r->grid->mirrored ? (3 - m) % 3 : m]];
-            owned_edge e = edge_between(corners[ends[0]], corners[ends[1]]);
-            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
+            vertices[m] = vertex_between(signs, corners[ends[0]], corners[ends[1]]);
         }
+        if (!same_vertex(vertices[0], vertices[1]) && !same_vertex(vertices[1], vertices[2]) &&
+            !same_vertex(vertices[2], vertices[0]))
+            triangle_emit(r, cube, vertices);
     }
 }
 
-static void tetrahedra_emit(reference *r, const int64_t cube[3], unsigned pattern) {
+static void tetrahedra_emit(reference *r, const int64_t cube[3], cube_signs signs) {
     for (unsigned t = 0; t < TETRAHEDRA_PER_CUBE; t++)
-        tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], pattern);
+        tetrahedron_emit(r, cube, tetrahedron_corners[cube_parity(r, cube)][t], signs);
 }
 
-static void case_emit(reference *r, const int64_t cube[3], unsigned pattern) {
-    const cube_case *c = &r->cases[cube_parity(r, cube)][pattern];
-    for (unsigned n = 0; n < c->triangle_count; n++, r->triangle_count++) {
-        uint32_t *triangle = triangle_next(r);
-        for (unsigned m = 0; m < 3 && triangle; m++) {
-            const owned_edge e = cube_edges[c->edges[n][m]];
-            triangle[m] = *edge_id(r, (int64_t[3]){cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz}, e.type);
-        }
+static void case_emit(reference *r, const int64_t cube[3], cube_signs signs) {
+    const cube_case *c = &r->cases[cube_parity(r, cube)][signs.inside];
+    for (unsigned n = 0; n < c->triangle_count; n++) {
+        owned_edge vertices[3];
+        for (unsigned m = 0; m < 3; m++) vertices[m] = cube_vertex(c->edges[n][m]);
+        triangle_emit(r, cube, vertices);
     }
 }
 
@@ -277,15 +267,21 @@ static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64
     for (int64_t x = x0; x < x1; x++) {
         int64_t cube[3] = {x, y, z};
         if (!cube_present(r, cube)) continue;
-        unsigned pattern = 0;
-        for (unsigned c = 0; c < 8; c++)
-            pattern |= (unsigned)sample_inside(r, (int64_t[3]){x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)}) << c;
-        if (pattern == 0 || pattern == 255) continue;
-        r->active_cell_count++;
-        if (r->method == TC_METHOD_TETRA)
-            tetrahedra_emit(r, cube, pattern);
+        const uint64_t before = r->triangle_count;
+        cube_signs signs = {0, 0};
+        for (unsigned c = 0; c < 8; c++) {
+            const int64_t corner[3] = {x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
+            if (sample_is(r, corner, SNAPPED))
+                signs.snapped |= 1u << c;
+            else if (sample_is(r, corner, INSIDE))
+                signs.inside |= 1u << c;
+        }
+        if (signs.inside == 0 || signs.inside == 255) continue;
+        if (r->method == TC_METHOD_HYBRID)
+            case_emit(r, cube, signs);
         else
-            case_emit(r, cube, pattern);
+            tetrahedra_emit(r, cube, signs);
+        r->active_cell_count += r->triangle_count > before;
     }
 }
 
@@ -321,16 +317,18 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     *r = (reference){.grid = grid, .isovalue = options->isovalue, .made = channels_asked(options)};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
     r->method = options->method;
-    if (r->method != TC_METHOD_TETRA) methods[r->method].derive(r->cases, grid->mirrored);
+    r->threshold = (float)options->snap;
+    if (r->method == TC_METHOD_HYBRID) methods[r->method].derive(r->cases[0], grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
+    if (r->method == TC_METHOD_SNAP) samples_snap(r);
     return TC_OK;
 }
 
 /* Zeroed: edges without a vertex are read only where the caller changes samples meanwhile. */
 static tc_status ids_allocate(reference *r) {
-    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * EDGES_PER_SAMPLE;
+    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * (size_t)methods[r->method].vertex_types;
     for (int n = 0; n < 2; n++)
         if (!(r->ids[n] = calloc(count, sizeof *r->ids[n])))
             return (tc_status)fail(TC_ERROR_MEMORY, "no memory for vertex numbers");

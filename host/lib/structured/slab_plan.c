@@ -81,7 +81,8 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->launch.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
-    uint64_t fixed = 4 * CASES_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
+    uint64_t fixed = 4 * 2 * 256 * CUBE_CASE_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS +
+                     12 * 4096; /* and buffers from page to page */
     *largest = words;
     for (int array = 0; array < ARRAY_COUNT; array++) {
         uint64_t bytes = plan_array_bytes(plan, grid, array);

@@ -33,7 +33,7 @@ typedef struct carry_job {
     const carry *carry;
     double isovalue;
     results k1;
-    int edge_types;
+    int vertex_types;
     int64_t from[EDGES_PER_SAMPLE][2],
         to[EDGES_PER_SAMPLE][2]; /* samples from an edge's owner to its ends, by parity */
     uint64_t slab_brick;         /* the slab's first, and those before its end */
@@ -156,7 +156,7 @@ static uint32_t type_end(uint64_t packed, int type) {
 static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t first[3],
                            uint64_t crossed[EDGES_PER_SAMPLE]) {
     uint32_t begin = 0;
-    for (int type = 0; type < j->edge_types; type++) {
+    for (int type = 0; type < j->vertex_types; type++) {
         const uint32_t end = type == EDGE_YZ ? begin : type_end(packed, type);
         if (begin + (uint32_t)__builtin_popcountll(crossed[type]) != end)
             crossed[type] = present_only(j, crossed[type], type, first);
@@ -181,7 +181,7 @@ static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE]
                     edge_batch *batch) {
     if (batch->count + EDGES_PER_SAMPLE * 64 > BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
     uint32_t count = batch->count;
-    for (int type = 0; type < j->edge_types; type++) {
+    for (int type = 0; type < j->vertex_types; type++) {
         uint64_t rest = crossed[type];
         edge_put(j, rest, type, owner, odd, count, batch);
         count += rest != 0, rest &= rest - 1;
@@ -368,7 +368,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
-    j.edge_types = methods[options->method].edge_types;
+    j.vertex_types = methods[options->method].vertex_types;
     ends_fill(&j);
     if (!j.plan->words_whole) {
         const slab_store *s = &device->store;

@@ -80,36 +80,49 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
 /* How kernel 2 finds the vertex on an edge of a cube: by the edge's owner and type, or, where a work-item has a brick
  * to itself, by its index among their numbers. */
 static uint8_t edge_item(const run *r, uint8_t edge) {
-    const owned_edge e = cube_edges[edge];
+    const owned_edge e = cube_vertex(edge);
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
-    return (uint8_t)CASE_INDEX(e.dx, e.dy, e.dz, e.type, methods[r->method].edge_types);
+    return (uint8_t)CASE_INDEX(e.dx, e.dy, e.dz, e.type, methods[r->method].vertex_types);
 }
 
-/* Writes the cube table of the run's method, with edges as kernel 2 names them (edge_item). */
-static void cases_write(const run *r, cube_case cases[2][256]) {
+/* The table of cases of the run's method, in memory that the caller frees. Its vertices are as kernel 2 names them
+ * (edge_item). */
+static tc_status cases_make(const run *r, void **out, uint64_t *bytes) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
+    const size_t count = 2 * (size_t)CASE_COUNT(methods[r->method].vertex_types);
+    cube_case *cases = malloc(count * sizeof *cases + 256 * sizeof(uint16_t));
+    if (!cases) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the case table");
     methods[r->method].derive(cases, r->grid->mirrored);
-    for (int n = 0; n < 2 * 256; n++)
+    for (size_t n = 0; n < count; n++)
         for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
             for (int corner = 0; corner < 3; corner++) {
-                uint8_t *edge = &cases[n / 256][n % 256].edges[triangle][corner];
+                uint8_t *edge = &cases[n].edges[triangle][corner];
                 *edge = edge_item(r, *edge);
             }
+    uint16_t *digits = (uint16_t *)(cases + count);
+    for (unsigned n = 0; n < 256; n++) digits[n] = bits_as_digits(n);
+    *out = cases;
+    *bytes = count * sizeof *cases + 256 * sizeof *digits;
+    return TC_OK;
 }
 
-/* The cube table, uploaded once per context, method and winding. */
+/* The table of cases, uploaded once per context, method and winding. */
 static tc_status cases_provide(run *r, device_buffer **out) {
     device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
-    cube_case cases[2][256];
+    void *cases = NULL;
+    uint64_t bytes;
     *out = buffer;
     if (buffer->memory) return TC_OK;
-    tc_status status = buffer_reserve(r->context, buffer, sizeof cases, "the case table");
-    if (status) return status;
-    cases_write(r, cases);
-    cl_int error =
-        cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    if (error) buffer_release(r->context, buffer); /* a buffer that exists counts as filled */
-    return error ? context_fail(r->context, "uploading the case table", error) : TC_OK;
+    tc_status status = cases_make(r, &cases, &bytes);
+    if (!status) status = buffer_reserve(r->context, buffer, bytes, "the case table");
+    if (!status) {
+        cl_int error =
+            cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, bytes, cases, 0, NULL, NULL);
+        if (error) status = context_fail(r->context, "uploading the case table", error);
+        if (error) buffer_release(r->context, buffer); /* a buffer that exists counts as filled */
+    }
+    free(cases);
+    return status;
 }
 
 /* Emits the active bricks of s among [brick_first, brick_last). */

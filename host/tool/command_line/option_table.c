@@ -11,7 +11,7 @@ static const char *const type_choices[SAMPLE_TYPE_COUNT + 1] = {SAMPLE_TYPES(TYP
 
 static const char *const endian_choices[] = {"little", "big", NULL};
 static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
-static const char *const method_choices[] = {"tetra", "hybrid", NULL}; /* as tc_method_name has them */
+static const char *const method_choices[] = {"tetra", "hybrid", "snap", NULL}; /* as tc_method_name has them */
 #define FORMAT_CHOICE(name, ...) #name,
 static const char *const format_choices[] = {MESH_FORMATS(FORMAT_CHOICE) NULL};
 static const char *const blocks_choices[] = {"joined", "separate", NULL};

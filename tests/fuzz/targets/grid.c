@@ -92,7 +92,7 @@ static void compare_complex(const tc_grid_options *from, const tc_extract_option
 
 /* Hybrid tables cost a thousand small grids: one input in eight asks for them. */
 static tc_method method_of(uint8_t bits) {
-    return (bits & 0x70) == 0x70 ? TC_METHOD_HYBRID : (bits & 0x70) == 0x60 ? (tc_method)2 : TC_METHOD_TETRA;
+    return (bits & 0x70) == 0x70 ? TC_METHOD_HYBRID : (bits & 0x70) == 0x60 ? (tc_method)METHOD_COUNT : TC_METHOD_TETRA;
 }
 
 static void extract(const tc_grid_options *from, tc_grid *grid, uint8_t bits, double isovalue) {
