@@ -45,8 +45,9 @@ def test_tune(cache):
     expect(list(report) == ["device", "driver", *NAMES, "tried", "times_as_fast"], f"keys {list(report)}")
     expect(values == [report[name] for name in NAMES], f"kept {values}, reported {report}")
     expect(report["device"] in device and report["driver"] in device, f"kept for {device}")
-    # Each way through a list ends where times get far slower: four ways have values, however noisy the machine is.
-    expect(report["tried"] >= 4 and report["times_as_fast"] >= 1, f"{report}")
+    # Each way through a list ends where times get far slower: four ways have values, however noisy the machine is. One,
+    # groups of work-items, may end before the first: PoCL 6 can take longer for these than a trial may.
+    expect(report["tried"] >= 3 and report["times_as_fast"] >= 1, f"{report}")
 
     done = bench(cache, "--tune", *CASE)
     rows = [line.split() for line in done.stdout.splitlines() if re.match(r" +\d", line)]

@@ -4,7 +4,7 @@
  * Groups are persistent and take tiles (count.cl) by ticket. For each tile, a group
  *
  * 1. finds on which side of the isovalue its bricks are, makes the sign words of mixed bricks (sign.cl) and of the
- * halo: the next row and the next plane of samples;
+ *    halo: the next row and the next plane of samples. In method snap, snap.cl has done this before, for all bricks;
  * 2. counts the vertices and triangles of every brick that may emit some, row by row, and stores where in the brick
  *    each row's output begins (count.cl);
  * 3. posts the tile's sums and, now or after its other tiles, obtains the sums over all tiles before it (scan.cl);
@@ -27,7 +27,7 @@ enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_W
  * sums in prefix go back to tile back; tile `unposted`, before that, has posted none in time, and is recounted. With
  * spin_limit 1, which is for tests, the tile before is recounted every time. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
-                                global uint *tiles, local uint *shared) {
+                                tile_words signs, global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
     uint back[2] = {number, number}, prefix[2] = {0, 0};
     while (!complete) {
@@ -44,7 +44,7 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
         uint unposted = shared[PREFIX_TILE] - 1;
         look = true;
         if (!complete) {
-            emit_counts e = tile_recount(s, unposted, samples, cells);
+            emit_counts e = tile_recount(s, unposted, samples, cells, signs);
             atomic_add(&shared[PREFIX_VERTICES], e.vertices);
             atomic_add(&shared[PREFIX_TRIANGLES], e.triangles);
         }
@@ -89,9 +89,9 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emittin
 
 /* For a tile whose sums are posted: looks back, posts its prefix and completes its bricks. */
 inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
-                               global brick_state *bricks, global uint *active, global uint *head, global uint *tiles,
+                               tile_words signs, global uint *active, global uint *head, global uint *tiles,
                                local uint *shared) {
-    uint2 prefix = tile_prefix(s, number, samples, cells, tiles, shared);
+    uint2 prefix = tile_prefix(s, number, samples, cells, signs, tiles, shared);
     uint emitting = tiles[TILE_WORDS * number + TILE_BRICKS];
     if (get_local_id(0) == 0) {
         uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
@@ -100,7 +100,7 @@ inline_always void tile_settle(const slab *s, uint number, global const BITS *sa
         scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
         if (number + 1 == s->tiling.tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
     }
-    tile_finish(s, tile_locate(s, number), prefix, emitting, bricks, active, head, shared);
+    tile_finish(s, tile_locate(s, number), prefix, emitting, signs.bricks, active, head, shared);
 }
 
 /* state: heads and tiles of the slabs, cleared. scratch: per group, room for the halo of a tile. */
@@ -126,9 +126,9 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
         if (number < s.tiling.tile_count) {
             tile t = tile_locate(&s, number);
             emit_counts sums = {0, 0, 0};
-            for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
+            for (uint z = ZEROS ? t.z1 : t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &for_sign);
-            halo_make(&s, t, samples, ranges, signs.scratch);
+            if (!ZEROS) halo_make(&s, t, samples, ranges, signs.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_count(&s, t, z, signs, cells, ranges, offsets, triangle_offsets, &sums,
@@ -141,11 +141,11 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             if (SETTLES_LATER)
                 own_append(&own, number, tiles);
             else
-                tile_settle(&s, number, samples, cells, bricks, active, head, tiles, shared);
+                tile_settle(&s, number, samples, cells, signs, active, head, tiles, shared);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
-        tile_settle(&s, n, samples, cells, bricks, active, head, tiles, shared);
+        tile_settle(&s, n, samples, cells, signs, active, head, tiles, shared);
     if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
     if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }

@@ -41,10 +41,15 @@ inline_always ulong halo_row(const slab *s, tile t, uint z, uint w) {
     return BRICK_ROWS * (ulong)(s->tiling.tile_rows + 1) * s->words_x + (ulong)(z - t.z0) * s->words_x + w;
 }
 
-/* The word of a row in the grid. The words of the next rows of its brick follow it, except in row y1. */
+/* Whether the words of a row are with those of its brick, or in scratch. Where samples are snapped the words of all
+ * tiles have been made before. */
+inline_always bool row_in_tile(tile t, uint y) { return ZEROS || y < t.y1; }
+inline_always bool plane_in_tile(tile t, uint z) { return ZEROS || z < t.z1; }
+
+/* The word of a row in the grid. The words of the next rows of its brick follow it, except in row y1 of scratch. */
 inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
-    if (z >= t.z1) return signs.scratch + halo_plane(s, t, y, w);
-    if (y >= t.y1) return signs.scratch + halo_row(s, t, z, w);
+    if (!plane_in_tile(t, z)) return signs.scratch + halo_plane(s, t, y, w);
+    if (!row_in_tile(t, y)) return signs.scratch + halo_row(s, t, z, w);
     uint number = brick_index(s, y, z, w);
     return brick_words(number, signs.bricks[number].sign, signs.words) + row_in_brick(s, y, z);
 }
@@ -79,7 +84,7 @@ inline_always row_counts rows_count(const slab *s, const cube_rows *r, uint y, u
 #endif
     if (!lanes_any(active | crossings_any(&edges))) return c;
     c.packed = offsets_pack(&edges, &c.vertices);
-    c.triangles = triangles_count(r, active);
+    c.triangles = triangles_count(r, &active);
     c.cells = lanes_popcount(active);
     return c;
 }
@@ -88,21 +93,33 @@ inline_always uint layer_bricks(const slab *s, tile t) {
     return (t.y1 - t.y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
 }
 
-/* The words of LANES rows, made of the samples; 0 outside the grid. */
-inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global const BITS *samples) {
-    ulong word[LANES];
-    for (uint n = 0; n < LANES; n++)
-        word[n] = w < s->words_x && y + n < s->ny && z < s->nz ? word_inside(samples, s, y + n, z, w) : 0;
+/* The words of LANES rows, made of the samples, or where samples are snapped read; 0 outside the grid. */
+inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global const BITS *samples, tile_words signs,
+                                lanes *zeros) {
+    ulong word[LANES], zero[LANES];
+    for (uint n = 0; n < LANES; n++) {
+        word[n] = zero[n] = 0;
+        if (w >= s->words_x || y + n >= s->ny || z >= s->nz) continue;
+        if (ZEROS) {
+            uint number = brick_index(s, y + n, z, w), brick_row = row_in_brick(s, y + n, z);
+            global const ulong *words = brick_words(number, signs.bricks[number].sign, signs.words);
+            word[n] = words[brick_row] & word_valid(s, w), zero[n] = zeros_of(s, words)[brick_row];
+        } else {
+            word[n] = word_inside(samples, s, y + n, z, w);
+        }
+    }
 #if LANES == 8
+    *zeros = vload8(0, zero);
     return vload8(0, word);
 #else
+    *zeros = zero[0];
     return word[0];
 #endif
 }
 
-/* The fallback of the scan: one work-item's share of a tile's sums, made of the samples alone. */
+/* The fallback of the scan: one work-item's share of a tile's sums, made without what other groups may not have. */
 inline_always emit_counts tile_recount(const slab *s, uint number, global const BITS *samples,
-                                       global const ulong *cells) {
+                                       global const ulong *cells, tile_words signs) {
     tile t = tile_locate(s, number);
     emit_counts sums = {0, 0, 0};
     uint rows = (t.y1 - t.y0 + LANES - 1) / LANES, count = rows * (t.z1 - t.z0) * s->words_x;
@@ -110,16 +127,18 @@ inline_always emit_counts tile_recount(const slab *s, uint number, global const 
         uint n = first + (uint)get_local_id(0);
         if (n >= count) continue;
         uint w = n % s->words_x, y = t.y0 + n / s->words_x % rows * LANES, z = t.z0 + n / s->words_x / rows;
-        lanes words[8] = {0}; /* the cubes' four rows, at w and w + 1. They enter at [7] and move down: a variable index
-                                 needs memory. */
+        lanes words[8] = {0}, zeros[8] = {0}; /* the cubes' four rows, at w and w + 1. They enter at [7] and move down:
+                                                 a variable index needs memory. */
 #pragma unroll 1
         for (uint m = 0; m < 8; m++) {
 #pragma unroll
-            for (uint lower = 0; lower < 7; lower++) words[lower] = words[lower + 1];
-            words[7] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples);
+            for (uint lower = 0; lower < 7; lower++) words[lower] = words[lower + 1], zeros[lower] = zeros[lower + 1];
+            words[7] = rows_inside(s, y + m / 2 % 2, z + m / 4, w + m % 2, samples, signs, &zeros[7]);
         }
-        cube_rows r = cube_rows_of(s, y, z, w, rows_shifted(words[0], words[1]), rows_shifted(words[2], words[3]),
-                                   rows_shifted(words[4], words[5]), rows_shifted(words[6], words[7]));
+        cube_rows r = cube_rows_of(s, y, z, w, rows_with_zeros(words[0], words[1], zeros[0], zeros[1]),
+                                   rows_with_zeros(words[2], words[3], zeros[2], zeros[3]),
+                                   rows_with_zeros(words[4], words[5], zeros[4], zeros[5]),
+                                   rows_with_zeros(words[6], words[7], zeros[6], zeros[7]));
         row_counts c = rows_count(s, &r, y, z, w, cells);
         sums.vertices += (uint)lanes_sum(c.vertices), sums.triangles += (uint)lanes_sum(c.triangles);
     }

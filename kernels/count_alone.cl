@@ -19,12 +19,14 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
     for (uint n = 1; n < 8; n++) {
         const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
         if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
-        const uint found = up < t.y1 && deep < t.z1 ? signs.bricks[brick_index(s, up, deep, across)].sign : SIGN_MIXED;
+        const uint found = row_in_tile(t, up) && plane_in_tile(t, deep)
+                               ? signs.bricks[brick_index(s, up, deep, across)].sign
+                               : SIGN_MIXED;
         if (found == sign) continue;
         if (found != SIGN_MIXED) return true;
         const ulong columns = n & 1 ? 1 : word_valid(s, across);
         const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
-        const uint stride = up < t.y1 ? BRICK_ROWS : s->words_x; /* from plane to plane */
+        const uint stride = row_in_tile(t, up) ? BRICK_ROWS : s->words_x; /* from plane to plane */
         global const ulong *row = tile_row(s, t, up, deep, across, signs);
         lanes differ = 0;
         ulong differs = 0;
@@ -49,7 +51,7 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
     const uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
                         (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
                         (behind[up + across].sign ^ sign);
-    const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz);
+    const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz); /* bricks of other tiles follow */
     return (differ || halo) && neighbours_differ(s, t, y, z, w, signs, sign);
 }
 
@@ -66,7 +68,7 @@ inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, ti
     column c = {none, none, 0, 0};
     if (w >= s->words_x || y >= s->ny) return c;
     const uint end = min(z + BRICK_PLANES, t.z1);
-    c.first = tile_row(s, t, y, z, w, signs), c.stride = y < t.y1 ? BRICK_ROWS : s->words_x;
+    c.first = tile_row(s, t, y, z, w, signs), c.stride = row_in_tile(t, y) ? BRICK_ROWS : s->words_x;
     if (end < s->nz) c.after = tile_row(s, t, y, end, w, signs);
     c.valid = rows_valid(s, y, w);
     return c;
@@ -88,13 +90,23 @@ inline_always global const ulong *column_row(column c, uint plane, bool after) {
 }
 
 /* Loads rows y to y + 7 into *a and y + 1 to y + 8 into *b, of a plane of the brick or of the plane after. */
-inline_always void plane_rows(brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
+inline_always void plane_rows(const slab *s, brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
     lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
     lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
     ulong up = *column_row(c.up, plane, after) & c.up.valid.s0;
     ulong up_next = *column_row(c.up_next, plane, after) & c.up_next.valid.s0;
-    *a = rows_shifted(at, next);
-    *b = rows_shifted(lanes_next_row(at, up), lanes_next_row(next, up_next));
+    if (ZEROS) {
+        const lanes zero = vload8(0, zeros_of(s, column_row(c.at, plane, after)));
+        const lanes zero_next = vload8(0, zeros_of(s, column_row(c.next, plane, after)));
+        const ulong zero_up = *zeros_of(s, column_row(c.up, plane, after));
+        const ulong zero_up_next = *zeros_of(s, column_row(c.up_next, plane, after));
+        *a = rows_with_zeros(at, next, zero, zero_next);
+        *b = rows_with_zeros(lanes_next_row(at, up), lanes_next_row(next, up_next), lanes_next_row(zero, zero_up),
+                             lanes_next_row(zero_next, zero_up_next));
+    } else {
+        *a = rows_shifted(at, next);
+        *b = rows_shifted(lanes_next_row(at, up), lanes_next_row(next, up_next));
+    }
 }
 
 /* Exclusive prefix sum over lanes. */
@@ -114,9 +126,9 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
     uint mask = 0;
     lanes cells_seen = 0, begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
     sample_rows a, b, c, d;
-    plane_rows(columns, 0, false, &a, &b);
+    plane_rows(s, columns, 0, false, &a, &b);
     for (uint plane = 0; plane < planes; plane++) {
-        plane_rows(columns, plane + 1, plane + 1 == planes, &c, &d);
+        plane_rows(s, columns, plane + 1, plane + 1 == planes, &c, &d);
         cube_rows r = cube_rows_of(s, y, z + plane, w, a, b, c, d);
         a = c, b = d;
         row_counts rows = rows_count(s, &r, y, z + plane, w, cells);
@@ -166,7 +178,7 @@ inline_always void layer_count(const slab *s, tile t, uint z, tile_words signs, 
     for (uint y = t.y0; y < t.y1; y += BRICK_ROWS)
         for (uint run = 0; run < s->words_x; run += RUN_BRICKS_X) {
             uint end = min(run + RUN_BRICKS_X, s->words_x);
-            if (run_skipped(s, t, y, z, run, end - run, ranges)) continue;
+            if (!ZEROS && run_skipped(s, t, y, z, run, end - run, ranges)) continue;
             for (uint w = run; w < end; w++) {
                 if (!brick_emits(s, t, y, z, w, signs)) continue;
                 global brick_state *b = &signs.bricks[brick_index(s, y, z, w)];

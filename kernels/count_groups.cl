@@ -17,12 +17,18 @@ inline_always brick brick_locate(const slab *s, tile t, uint n) {
 }
 
 inline_always sample_rows tile_rows_at(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
-    ulong at = 0, next = 0;
+    ulong at = 0, next = 0, zero = 0, zero_next = 0;
     if (y < s->ny && z < s->nz) {
-        at = *tile_row(s, t, y, z, w, signs) & word_valid(s, w);
-        if (w + 1 < s->words_x) next = *tile_row(s, t, y, z, w + 1, signs) & word_valid(s, w + 1);
+        global const ulong *row = tile_row(s, t, y, z, w, signs);
+        at = *row & word_valid(s, w);
+        if (ZEROS) zero = *zeros_of(s, row);
+        if (w + 1 < s->words_x) {
+            row = tile_row(s, t, y, z, w + 1, signs);
+            next = *row & word_valid(s, w + 1);
+            if (ZEROS) zero_next = *zeros_of(s, row);
+        }
     }
-    return rows_shifted(at, next);
+    return ZEROS ? rows_with_zeros(at, next, zero, zero_next) : rows_shifted(at, next);
 }
 
 /* What a work-item tells its group about the row that it counted. */

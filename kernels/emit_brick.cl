@@ -17,7 +17,7 @@
 #include "emit_numbers.cl"
 #include "vertex.cl"
 
-#define CASE_BITS  9
+#define CASE_BITS  (ZEROS ? 17 : 9)                 /* a pattern's bits, those of corners that are vertices, parity */
 #define CASE_STEP  (3 * OF_METHOD(triangles_usual)) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
@@ -94,9 +94,10 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
 
 inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, grid_arrays in, mesh_buffers mesh,
                                  brick_work *work) {
-    for (uint z = 0; z < BRICK_PLANES; z++)
-        for (uint y = 0; y <= BRICK_ROWS; y++)
-            work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + brick.x;
+    brick = edges_corner(brick);
+    for (uint z = 0; z < BRICK_PLANES + EDGES_BEFORE; z++)
+        for (uint y = 0; y <= BRICK_ROWS + EDGES_BEFORE; y++)
+            work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + (ulong)(int)brick.x;
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
         batch_gather(s, work->list + first, batch, in, work);
@@ -127,16 +128,21 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
     for (uint rows = mask; rows; rows &= rows - 1) {
         uint brick_row = lowest_bit(rows), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         work->patterns[brick_row] = row_patterns(work->corners[z] + 2 * y, work->corners[z + 1] + 2 * y);
+        if (ZEROS)
+            work->zero_patterns[brick_row] =
+                row_patterns(work->zero_corners[z] + 2 * y, work->zero_corners[z + 1] + 2 * y);
     }
     for (; mask; mask &= mask - 1) {
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS, x = 0;
         const uchar *patterns = (const uchar *)&work->patterns[brick_row];
+        const uchar *zero_patterns = (const uchar *)&work->zero_patterns[ZEROS ? brick_row : 0];
         ulong active = work->active[z][y];
         do {
             uint skipped = lowest_bit(active);
             x += skipped, active >>= skipped;
             uint16 odd = (lane ^ x ^ row_odd(s, y, z)) & 1, number = NUMBER_INDEX(x, y, z) + lane;
-            uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << 8 | number << CASE_BITS;
+            uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << (CASE_BITS - 1) | number << CASE_BITS;
+            if (ZEROS) items |= convert_uint16(vload16(0, zero_patterns + x)) << 8;
             count += items_keep(items, active, work->list + count);
             x += 16, active >>= 16;
         } while (active);
@@ -160,7 +166,12 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
         uint x = work->list[n] & 0x7f, y = (work->list[n] >> 7) % BRICK_ROWS, z = (work->list[n] >> 7) / BRICK_ROWS;
         uint odd = (x ^ row_odd(s, y, z)) & 1;
         ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
-        work->list[n] = pattern_at(corners, x) | odd << 8 | NUMBER_INDEX(x, y, z) << CASE_BITS;
+        uint pattern = pattern_at(corners, x) | odd << (CASE_BITS - 1);
+        if (ZEROS) {
+            corners = (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
+            pattern |= pattern_at(corners, x) << 8;
+        }
+        work->list[n] = pattern | NUMBER_INDEX(x, y, z) << CASE_BITS;
     }
     return count;
 }
@@ -194,7 +205,9 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
     for (uint first = 0; first < count; first += BATCH_CUBES) {
         uint *at = work->triangles, end = min(count, first + BATCH_CUBES);
         for (uint n = first; n < end; n++) {
-            global const uchar *entry = cases + CUBE_CASE_BYTES * (work->list[n] & ((1u << CASE_BITS) - 1));
+            const uint pattern = work->list[n] & ((1u << CASE_BITS) - 1);
+            global const uchar *entry = ZEROS ? case_of(cases, pattern >> 16, pattern & 0xff, pattern >> 8 & 0xff)
+                                              : cases + CUBE_CASE_BYTES * pattern;
             case_store(work->number + NUMBER_STEP * (work->list[n] >> CASE_BITS), entry, at, work);
             at += 3u * *entry;
         }
@@ -259,7 +272,7 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
     crossings_store(s, c, &signs, k1, work);
-    uint count = edges_list(s, state.rows, first, work);
+    uint count = edges_list(s, c, state.rows, first, in, k1, work);
 #ifdef REAL
     vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif

@@ -14,6 +14,7 @@
 
 #include "cells.cl"
 #include "mesh.cl"
+#include "snapped.cl"
 #include "tetrahedra.cl"
 
 #define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)
@@ -33,10 +34,12 @@ typedef struct brick_work {
     ulong crossed[BRICK_PLANES][VERTEX_TYPES][BRICK_ROWS];
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
+    ulong zero_corners[ZEROS ? NUMBER_PLANES : 1][2 * (NUMBER_ROWS + 1)];
     uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
     uint list[LIST_EDGES + LIST_MORE]; /* edges as EDGE_CODE has them; cubes: see cubes_list */
 #ifdef MASK_REGISTERS
     bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
+    bytes64 zero_patterns[ZEROS ? BRICK_WORDS + 1 : 1];
 #endif
     ushort lane_index[4 * NUMBER_LANES];
     uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
@@ -69,22 +72,33 @@ inline_always global const ulong *words_beside(const slab *s, corner c, uint num
     return brick_words(number, k1.bricks[number].sign, k1.words);
 }
 
+inline_always sample_rows plane_load(const slab *s, uint z, ulong valid, global const ulong *at,
+                                     global const ulong *next) {
+    if (ZEROS)
+        return rows_with_zeros(vload8(z, at) & valid, vload8(z, next), vload8(z, zeros_of(s, at)),
+                               vload8(z, zeros_of(s, next)));
+    return rows_shifted(vload8(z, at) & valid, vload8(z, next));
+}
+
 inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
     ulong valid = word_valid(s, c.x / 64);
     for (uint up = 0; up < 2; up++) {
         global const ulong *at = words_beside(s, c, number, 0, up, 0, k1);
         global const ulong *next = words_beside(s, c, number, 1, up, 0, k1);
-        for (uint z = 0; z < BRICK_PLANES; z++)
-            signs->rows[up][z] = rows_shifted(vload8(z, at) & valid, vload8(z, next));
+        for (uint z = 0; z < BRICK_PLANES; z++) signs->rows[up][z] = plane_load(s, z, valid, at, next);
         at = words_beside(s, c, number, 0, up, 1, k1), next = words_beside(s, c, number, 1, up, 1, k1);
-        signs->rows[up][BRICK_PLANES] = rows_shifted(vload8(0, at) & valid, vload8(0, next));
+        signs->rows[up][BRICK_PLANES] = plane_load(s, 0, valid, at, next);
     }
 }
 
 /* Rows 1 to 8 of plane z, where the brick has rows 0 to 7. */
 inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
     const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
-    sample_rows r = {lanes_next_row(here->at, up->at.s0), lanes_next_row(here->next, up->next.s0)};
+    sample_rows r = {lanes_next_row(here->at, up->at.s0), lanes_next_row(here->next, up->next.s0), 0, 0};
+    if (ZEROS) {
+        r.zero_at = lanes_next_row(here->zero_at, up->zero_at.s0);
+        r.zero_next = lanes_next_row(here->zero_next, up->zero_next.s0);
+    }
     return r;
 }
 
@@ -96,6 +110,11 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
         vstore16(both, 0, work->corners[z]);
         work->corners[z][2 * BRICK_ROWS] = signs->rows[1][z].at.s0;
         work->corners[z][2 * BRICK_ROWS + 1] = signs->rows[1][z].next.s0;
+        if (!ZEROS) continue;
+        both.even = signs->rows[0][z].zero_at, both.odd = signs->rows[0][z].zero_next;
+        vstore16(both, 0, work->zero_corners[z]);
+        work->zero_corners[z][2 * BRICK_ROWS] = signs->rows[1][z].zero_at.s0;
+        work->zero_corners[z][2 * BRICK_ROWS + 1] = signs->rows[1][z].zero_next.s0;
     }
 }
 
@@ -129,14 +148,29 @@ inline_always void neighbour_row_number(uint *number, ulong crossed, uint first)
     } while (crossed);
 }
 
+/* Lists and numbers the samples of a row that are vertices. */
+inline_always uint snapped_list(const slab *s, corner c, uint y, uint z, ulong snapped, uint first, uint count,
+                                uint *number, grid_arrays in, row_results k1, brick_work *work) {
+    for (; snapped; snapped &= snapped - 1) {
+        uint bit = lowest_bit(snapped);
+        number[NUMBER_STEP * bit + 6] = first + count;
+#ifdef REAL
+        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, in, k1);
+#endif
+        count++;
+    }
+    return count;
+}
+
 /* Lists and numbers the vertices that the brick owns; returns their count. */
-inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *work) {
+inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, row_results k1,
+                              brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
-        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS,
-             row = y << 7 | z << 11;
+        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
+        uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
-        loop_unrolled for (uint type = 0; type < VERTEX_TYPES; type++) {
+        loop_unrolled for (uint type = 0; type < (ZEROS ? 6 : VERTEX_TYPES); type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
@@ -148,6 +182,8 @@ inline_always uint edges_list(const slab *s, uint mask, uint first, brick_work *
             } while (crossed);
             count = end;
         }
+        if (ZEROS)
+            count = snapped_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], first, count, number, in, k1, work);
     }
     return count;
 }
@@ -162,14 +198,17 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
 #if MISSING
     crossings_keep(s, k1.cells, c.y, z, w, &edges);
 #endif
-    ulong crossed[3][BRICK_ROWS];
+    ulong crossed[4][BRICK_ROWS];
     vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
-    for (uint rows = lanes_nonzero(edges.type[0] | edges.type[1] | edges.type[3]); rows; rows &= rows - 1) {
+    vstore8(edges.type[6], 0, crossed[3]);
+    const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[6];
+    for (uint rows = lanes_nonzero(any); rows; rows &= rows - 1) {
         uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
         neighbour_row_number(number, crossed[0][y], number_of(o, 0));
         neighbour_row_number(number + 1, crossed[1][y], number_of(o, 1));
         if (DIAGONALS) neighbour_row_number(number + 3, crossed[2][y], number_of(o, 3));
+        if (ZEROS) neighbour_row_number(number + 6, crossed[3][y], number_of(o, 6));
     }
 }
 
@@ -184,26 +223,31 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         const ulong even = even_cubes(s, y, c.z + n), has_z = last || c.z + n + 1 >= s->nz ? 0 : ~0ul;
         const sample_rows *here = &signs->rows[1][n], *behind = last ? here : here + 1;
         const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = behind->at.s0, c1 = behind->next.s0;
-        ulong x = (a0 ^ a1) & has_x, z = (a0 ^ c0) & has_z;
-        ulong xz = DIAGONALS ? ((even & (a0 ^ c1)) | (~even & (a1 ^ c0))) & has_x & has_z : 0;
+        const ulong zero = ZEROS ? here->zero_at.s0 : 0, zero_x = ZEROS ? here->zero_next.s0 : 0;
+        const ulong zero_z = ZEROS ? behind->zero_at.s0 : 0, zero_xz = ZEROS ? behind->zero_next.s0 : 0;
+        ulong x = (a0 ^ a1) & ~(zero | zero_x) & has_x, z = (a0 ^ c0) & ~(zero | zero_z) & has_z;
+        ulong xz = (even & (a0 ^ c1) & ~(zero | zero_xz)) | (~even & (a1 ^ c0) & ~(zero_x | zero_z));
+        xz = DIAGONALS ? xz & has_x & has_z : 0;
 #if MISSING
-        crossings edges = {{x, 0, z, 0, xz, 0}};
+        crossings edges = {{x, 0, z, 0, xz, 0, 0}};
         crossings_keep(s, k1.cells, y, c.z + n, w, &edges);
         x = edges.type[0].s0, z = edges.type[2].s0, xz = edges.type[4].s0;
 #endif
-        if (!(x | z | xz)) continue;
+        if (!(x | z | xz | zero)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
         neighbour_row_number(number, x, number_of(o, 0));
         neighbour_row_number(number + 2, z, number_of(o, 2));
         if (DIAGONALS) neighbour_row_number(number + 4, xz, number_of(o, 4));
+        if (ZEROS) neighbour_row_number(number + 6, zero, number_of(o, 6));
     }
 }
 
-/* The first samples of the rows in the next brick in x. */
+/* The first samples of the rows in the next brick in x, and whether they are vertices. */
 inline_always lanes next_column(sample_rows rows) { return rows.next >> 63; }
+inline_always lanes next_zeros(sample_rows rows) { return ZEROS ? rows.zero_next >> 63 : (lanes)0; }
 
-/* Numbers the first edge of one type of the rows from y on in plane z of word w. */
+/* Numbers the first vertex of one type of the rows from y on in plane z of word w. */
 inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, corner c, row_results k1,
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
@@ -222,13 +266,19 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         const uint z = c.z + n;
         const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
         const lanes a = next_column(signs->rows[0][n]), b = next_column(signs_up(signs, n));
-        crossings edges = {{0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0}};
-        edges.type[1] = (a ^ b) & has_y;
+        const lanes za = next_zeros(signs->rows[0][n]), zb = next_zeros(signs_up(signs, n));
+        crossings edges = {{0, 0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0, 0}};
+        edges.type[1] = crossed(a, b, za, zb) & has_y;
+        edges.type[6] = za, up.type[6] = next_zeros(signs->rows[1][n]);
         if (n < BRICK_PLANES && z + 1 < s->nz) {
             const lanes behind = next_column(signs->rows[0][n + 1]), diagonal = next_column(signs_up(signs, n + 1));
-            edges.type[2] = a ^ behind;
-            if (DIAGONALS) edges.type[5] = choose(even_rows(s, c.y, z), a ^ diagonal, b ^ behind) & has_y;
-            up.type[2].s0 = (signs->rows[1][n].next.s0 ^ signs->rows[1][n + 1].next.s0) >> 63;
+            const lanes zc = next_zeros(signs->rows[0][n + 1]), zd = next_zeros(signs_up(signs, n + 1));
+            edges.type[2] = crossed(a, behind, za, zc);
+            if (DIAGONALS)
+                edges.type[5] =
+                    choose(even_rows(s, c.y, z), crossed(a, diagonal, za, zd), crossed(b, behind, zb, zc)) & has_y;
+            up.type[2] = crossed(next_column(signs->rows[1][n]), next_column(signs->rows[1][n + 1]), up.type[6],
+                                 next_zeros(signs->rows[1][n + 1]));
         }
 #if MISSING
         crossings_keep(s, k1.cells, c.y, z, w, &edges);
@@ -237,7 +287,10 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
         column_store(s, c.y, z, w, 2, lanes_nonzero(edges.type[2]), c, k1, work);
         column_store(s, c.y, z, w, 5, lanes_nonzero(edges.type[5]), c, k1, work);
-        if (c.y + BRICK_ROWS < s->ny && up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
+        if (ZEROS) column_store(s, c.y, z, w, 6, lanes_nonzero(edges.type[6]), c, k1, work);
+        if (c.y + BRICK_ROWS >= s->ny) continue;
+        if (up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
+        if (ZEROS && up.type[6].s0) column_store(s, c.y + BRICK_ROWS, z, w, 6, 1, c, k1, work);
     }
 }
 

@@ -12,6 +12,7 @@
 
 #include "cells.cl"
 #include "mesh.cl"
+#include "snapped.cl"
 #include "tetrahedra.cl"
 #include "vertex.cl"
 
@@ -50,9 +51,15 @@ inline_always void next_prefetch(const slab *s, global const uint *active, uint 
 inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_results k1) {
     if (y >= s->ny || z >= s->nz) return rows_shifted(0, 0);
     uint number = brick_index(s, y, z, w), brick_row = row_in_brick(s, y, z);
-    ulong next = 0, at = brick_words(number, k1.bricks[number].sign, k1.words)[brick_row] & word_valid(s, w);
-    if (w + 1 < s->words_x) next = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words)[brick_row];
-    return rows_shifted(at, next);
+    global const ulong *words = brick_words(number, k1.bricks[number].sign, k1.words);
+    ulong at = words[brick_row] & word_valid(s, w), next = 0, zero = 0, zero_next = 0;
+    if (ZEROS) zero = zeros_of(s, words)[brick_row];
+    if (w + 1 < s->words_x) {
+        words = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words);
+        next = words[brick_row];
+        if (ZEROS) zero_next = zeros_of(s, words)[brick_row];
+    }
+    return ZEROS ? rows_with_zeros(at, next, zero, zero_next) : rows_shifted(at, next);
 }
 
 /* The cubes of a row. up, deep: whether the rows after it in y and in z are loaded; else they are 0. */
@@ -96,29 +103,32 @@ inline_always void table_make(const slab *s, corner brick, row_results k1, local
 #ifdef REAL
 
 /* All vertices of row n of a table, in order. */
-inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in,
+inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in, row_results k1,
                                 const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
-    const uint row = (y - brick.y) << 7 | (z - brick.z) << 11;
+    const corner first = edges_corner(brick);
+    const uint row = (y - first.y) << 7 | (z - first.z) << 11 | EDGES_BEFORE;
     ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < VERTEX_TYPES; type++) {
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint edge = edge_code(type, !(even >> bit & 1)) + row + bit;
-            ulong from = row_start(s, brick.y + (edge >> 7 & 0xf), z) + brick.x + (edge & 0x7f);
+            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, in, k1)
+                                           : edge_code(type, !(even >> bit & 1)) + row + bit;
+            ulong from =
+                row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));
             long step = edge_step(s, edge);
             BITS a = in.samples[from], b = in.samples[from + step];
             float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
 #if GRID
-            position_between(s, in, brick, edge, from, step, t, position);
+            position_between(s, in, first, edge, from, step, t, position);
 #else
-            position_make(s, brick, edge, t, position);
+            position_make(s, first, edge, t, position);
 #endif
             for (uint m = 0; m < 3; m++) mesh.positions[3 * out + m] = position[m];
 #if NORMALS
-            normal_store(in, s, brick, edge, t, mesh.normals + 3 * out);
+            normal_store(in, s, first, edge, t, mesh.normals + 3 * out);
 #endif
         }
     }
@@ -138,6 +148,13 @@ inline_always uint vertex_number(const slab *s, uint y, uint z, uint w, uint n, 
     return number_of(table_owner(table, n), type) + (uint)popcount(table->crossed[type][n] & ((1ul << x) - 1));
 }
 
+inline_always uint zeros_at(const cube_rows *r, uint bit) {
+    uint zeros = 0;
+#pragma unroll
+    for (uint n = 0; n < 8 && ZEROS; n++) zeros |= (uint)(r->zero[n] >> bit & 1) << n;
+    return zeros;
+}
+
 /* The signs of a cube's corners, corner n in bit n. */
 inline_always uint pattern_at(const cube_rows *r, uint bit) {
     return (uint)(r->a0 >> bit & 1) | (uint)(r->a1 >> bit & 1) << 1 | (uint)(r->b0 >> bit & 1) << 2 |
@@ -155,7 +172,7 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, 
 #endif
     for (; active; active &= active - 1) {
         uint bit = lowest_bit(active), odd = (uint)(~r.even >> bit & 1);
-        global const uchar *entry = cases + CUBE_CASE_BYTES * (256 * odd + pattern_at(&r, bit));
+        global const uchar *entry = case_of(cases, odd, pattern_at(&r, bit), zeros_at(&r, bit));
         const uint count = entry[0];
         for (uint m = 0; m < 3 * count; m++)
             mesh.triangles[3ul * out + m] = vertex_number(s, y, z, w, n, bit, entry[1 + m], k1, table);
@@ -173,7 +190,7 @@ inline_always void row_emit(const slab *s, uint number, uint brick_row, grid_arr
     const uint n = brick_row % BRICK_ROWS + TABLE_ROWS_Y * (brick_row / BRICK_ROWS);
     const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + brick_row];
 #ifdef REAL
-    row_vertices(s, brick, y, z, n, in, table, mesh);
+    row_vertices(s, brick, y, z, n, in, k1, table, mesh);
 #endif
     row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }

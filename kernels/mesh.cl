@@ -30,6 +30,12 @@ inline_always corner brick_corner(const slab *s, uint number) {
     return c;
 }
 
+/* From where the edges of a brick's vertices are counted; below the grid's first sample it wraps. */
+inline_always corner edges_corner(corner brick) {
+    corner c = {brick.x - EDGES_BEFORE, brick.y - EDGES_BEFORE, brick.z - EDGES_BEFORE};
+    return c;
+}
+
 inline_always uint brick_vertices(const slab *s, uint z, uint number, row_results k1) {
     return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[number].vertices;
 }
@@ -64,6 +70,14 @@ inline_always uint edge_code(uint type, bool odd) {
     default:
         return odd ? EDGE_CODE(0, 1, 0, 0, -1, 1) : EDGE_CODE(0, 0, 0, 0, 1, 1);
     }
+}
+
+/* The entry of a cube in the table of cases: its parity, corners inside, and corners that are vertices. */
+inline_always global const uchar *case_of(global const uchar *cases, uint odd, uint inside, uint zeros) {
+    const uint count = CASE_COUNT(VERTEX_TYPES);
+    if (!ZEROS) return cases + CUBE_CASE_BYTES * (count * odd + inside);
+    global const ushort *digits = (global const ushort *)(cases + CUBE_CASE_BYTES * 2 * count);
+    return cases + CUBE_CASE_BYTES * (count * odd + 2 * digits[inside] + digits[zeros]);
 }
 
 #ifdef REAL

@@ -29,7 +29,7 @@ enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
  * start of the buffer stand for them. */
 enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 
-/* What kernel 1 finds out about a brick. */
+/* What kernel 1 finds out about a brick. While samples are snapped, `rows` tells whether it is near the surface. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
     slab_u32 rows;                /* bit n: row n of the brick emits something */
@@ -78,6 +78,7 @@ enum {
     STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
     STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
+    STATE_NEAR_BRICKS, /* method snap: bricks near the surface */
     STATE_WORDS
 };
 
@@ -146,6 +147,12 @@ typedef struct slab_space {
     slab_f32 normal_matrix[9];
 } slab_space;
 
+/* Method snap: samples that are vertices, the third sign, have words of their own behind the others. */
+typedef struct slab_snapping {
+    slab_f32 threshold;
+    slab_u32 zero_bricks; /* from a brick's sign words to its words of zeros, in bricks */
+} slab_snapping;
+
 typedef struct slab {
     isovalue_test test;
     slab_arrays arrays;
@@ -159,10 +166,11 @@ typedef struct slab {
     slab_tiling tiling;
     slab_mesh mesh;
     slab_space space;
+    slab_snapping snapping;
 } slab;
 
 #ifndef __OPENCL_VERSION__
-_Static_assert(sizeof(slab) == 12 * 8 + 58 * 4, "no padding: Mesa's rusticl 22.3 leaves it out of an argument's size");
+_Static_assert(sizeof(slab) == 12 * 8 + 60 * 4, "no padding: Mesa's rusticl 22.3 leaves it out of an argument's size");
 #endif
 
 #endif

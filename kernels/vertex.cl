@@ -21,8 +21,8 @@ typedef struct corner {
     uint x, y, z;
 } corner;
 
-/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, from the brick's first sample. Then two bits
- * for each axis: the step to its other end, -1, 0 or 1, plus 1. */
+/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, from edges_corner of the brick on. Then two
+ * bits for each axis: the step to its other end, -1, 0 or 1, plus 1. */
 #define EDGE_CODE(x, y, z, step_x, step_y, step_z)                                                                     \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
      (uint)((step_z) + 1) << 18)
@@ -46,9 +46,9 @@ inline_always void position_make(const slab *s, corner c, uint edge, float t, fl
 inline_always void position_between(const slab *s, grid_arrays in, corner c, uint edge, ulong from, long step, float t,
                                     float out[3]) {
 #if GRID == 1
-    global const float *x = in.coordinates + c.x + (edge & 0x7f);
-    global const float *y = in.coordinates + s->nx + c.y + (edge >> 7 & 0xf);
-    global const float *z = in.coordinates + s->nx + s->ny + c.z + (edge >> 11 & 7);
+    global const float *x = in.coordinates + (c.x + (edge & 0x7f));
+    global const float *y = in.coordinates + s->nx + (c.y + (edge >> 7 & 0xf));
+    global const float *z = in.coordinates + s->nx + s->ny + (c.z + (edge >> 11 & 7));
     float3 p0 = (float3)(*x, *y, *z);
     float3 p1 = (float3)(x[(int)(edge >> 14 & 3) - 1], y[(int)(edge >> 16 & 3) - 1], z[(int)(edge >> 18 & 3) - 1]);
 #else

@@ -41,6 +41,15 @@ inline_always global const ulong *brick_words(uint number, uint sign, global con
     return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)number : (long)sign - UNIFORM_BRICKS);
 }
 
+/* Words of the samples that are vertices themselves (method snap), for words of a brick. */
+inline_always global const ulong *zeros_of(const slab *s, global const ulong *words) {
+    return words + BRICK_WORDS * (ulong)s->snapping.zero_bricks;
+}
+
+inline_always bool bits_inside(BITS bits, const isovalue_test *test) {
+    return (BITS)(bits - (BITS)test->inside_low) <= (BITS)test->inside_span;
+}
+
 /* Whether a sample's bits make it missing; without branches. */
 inline_always bool bits_missing(BITS bits, const isovalue_test *test) {
     bool missing =

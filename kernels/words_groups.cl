@@ -9,10 +9,6 @@
 
 #include "words.cl"
 
-inline_always bool bits_inside(BITS bits, const isovalue_test *test) {
-    return (BITS)(bits - (BITS)test->inside_low) <= (BITS)test->inside_span;
-}
-
 /* Signs of samples, bit n for row[n]. */
 inline_always ulong signs_make(global const BITS *row, uint count, const slab *s) {
     ulong word = 0;

@@ -36,8 +36,9 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other text of the kernels. */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!surface_needs_kernels(grid, options)) return TC_OK;
-    if (options->method == TC_METHOD_SNAP)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "method snap: the reference engine makes it, no device yet");
+    if (options->method == TC_METHOD_SNAP && !device_makes_vertices(grid->context, grid->type))
+        return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: method snap takes %s samples by the reference engine",
+                               grid->context->info.name, tc_type_name(grid->type));
     tc_status status = call_vet(grid->context, surface_kind(grid, options, emits));
     if (!status && grid->device) structured_reshape(grid);
     return status;

@@ -244,6 +244,17 @@ static void emit_programs(tc_context *context) {
                 }
 }
 
+static void snap_programs(tc_context *context) {
+    const program *found;
+    for (int type = TC_U8; type <= TC_F64; type++)
+        for (int missing = 0; missing < 2; missing++) {
+            const kernel_kind kind = {.type = (tc_type)type, .method = TC_METHOD_SNAP, .missing = missing};
+            snprintf(name, sizeof name, "snap-%s%s", type_names[type], missing ? "-missing" : "");
+            if (device_makes_vertices(context, kind.type))
+                status_check(program_get(context, PROGRAM_SNAP, kind, &found));
+        }
+}
+
 static void complex_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++) {
@@ -277,6 +288,7 @@ int main(int count, char **arguments) {
     status_check(tc_context_create(&options, &context));
     classify_programs(context);
     emit_programs(context);
+    snap_programs(context);
     complex_programs(context);
     printf("%d programs, %u work-items\n", written, context->launch.work_items);
     tc_context_destroy(context);

@@ -20,7 +20,8 @@ import sys
 import tempfile
 
 PROCESSORS = ["x86-64", "haswell", "skylake-avx512"]
-SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "emit-u8-tetra-uniform",
+SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "classify-u8-snap",
+          "emit-u8-tetra-uniform", "emit-f32-snap-curvilinear-missing-normals", "snap-u8", "snap-f64-missing",
           "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32"]
 
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals"  # its options define what any file looks at

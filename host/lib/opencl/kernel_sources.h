@@ -3,7 +3,7 @@
 #define KERNEL_SOURCES_H
 
 extern const char kernel_classify_alone[], kernel_classify_groups[];
-extern const char kernel_emit_alone[], kernel_emit_groups[];
+extern const char kernel_emit_alone[], kernel_emit_groups[], kernel_snap_alone[], kernel_snap_groups[];
 extern const char kernel_complex_alone[], kernel_complex_groups[];
 
 #endif

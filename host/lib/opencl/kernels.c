@@ -16,6 +16,11 @@ tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out) {
     if (status) return status;
     out->classify = kernel_of(p, 0);
     out->cells = kernel_of(p, KERNEL_CELLS);
+    if (kind.method == TC_METHOD_SNAP) {
+        status = vetted_program_get(context, PROGRAM_SNAP, kind_of_classify(kind), &p);
+        if (status) return status;
+        for (int n = 0; n < SNAP_KERNELS; n++) out->snap[n] = kernel_of(p, n);
+    }
     if (!kind.emits) return TC_OK;
     status = vetted_program_get(context, PROGRAM_EMIT, kind, &p);
     if (!status) out->emit = kernel_of(p, 0);

@@ -12,8 +12,12 @@ typedef struct sized_kernel {
     uint32_t work_items;
 } sized_kernel;
 
+/* In the order in which they run. */
+enum { SNAP_SIGN, SNAP_NEAR, SNAP_OPEN, SNAP_PASS, SNAP_CLOSE, SNAP_KERNELS };
+
 typedef struct kernels {
     sized_kernel classify, cells, emit; /* cells: where samples may be missing */
+    sized_kernel snap[SNAP_KERNELS];    /* method snap */
 } kernels;
 
 /* Of structured grids: kernel 1, and kernel 2 too where the kind emits. */

@@ -52,11 +52,20 @@ static void complex_options_write(const tc_context *context, kernel_kind kind, c
     snprintf(out, bytes, "%s -DCOMPLEX=1", common);
 }
 
+/* A definition that no file looks at tells the program from the one of kernel 2. */
+static void snap_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    char common[PROGRAM_OPTIONS_BYTES - 16];
+    emit_options_write(context, kind, 0, common, sizeof common);
+    snprintf(out, bytes, "%s -DSNAP=1", common);
+}
+
 static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
     if (name == PROGRAM_CLASSIFY)
         classify_options_write(context, kind, out, bytes);
     else if (name == PROGRAM_EMIT)
         emit_options_write(context, kind, kind.grid, out, bytes);
+    else if (name == PROGRAM_SNAP)
+        snap_options_write(context, kind, out, bytes);
     else
         complex_options_write(context, kind, out, bytes);
 }
@@ -90,6 +99,8 @@ static const program_text programs[PROGRAM_COUNT] = {
     [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
                           {[TEXT_ALONE] = kernel_classify_alone, [TEXT_GROUPS] = kernel_classify_groups}},
     [PROGRAM_EMIT] = {{"emit"}, {[TEXT_ALONE] = kernel_emit_alone, [TEXT_GROUPS] = kernel_emit_groups}},
+    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_pass", "snap_close"},
+                      {[TEXT_ALONE] = kernel_snap_alone, [TEXT_GROUPS] = kernel_snap_groups}},
     [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
                          {[TEXT_ALONE] = kernel_complex_alone, [TEXT_GROUPS] = kernel_complex_groups}},
 };

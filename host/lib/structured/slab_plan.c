@@ -17,29 +17,56 @@ uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_inde
     return (uint32_t)min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES, (uint64_t)grid->dims[2]);
 }
 
+/* Layers of bricks before a slab and after it in its window of words. */
+static uint32_t layers_before(const slab_plan *plan) { return plan->zeros ? 2 : 0; }
+
+static uint32_t layers_after(const slab_plan *plan) { return plan->zeros ? 2 : 1; }
+
+uint32_t slab_words_begin(const slab_plan *plan, uint32_t slab_index) {
+    const uint32_t z0 = slab_begin(plan, slab_index);
+    return plan->words_whole ? 0 : z0 - (uint32_t)min_u64(layers_before(plan) * BRICK_PLANES, z0);
+}
+
+uint32_t slab_words_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
+    const uint64_t nz = (uint64_t)grid->dims[2], end = slab_end(plan, grid, slab_index);
+    return (uint32_t)(plan->words_whole ? nz : min_u64(end + layers_after(plan) * BRICK_PLANES, nz));
+}
+
 uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index) {
-    uint32_t z0 = slab_begin(plan, slab_index);
-    return plan->samples_whole || z0 == 0 ? 0 : z0 - 1;
+    const uint32_t z0 = slab_begin(plan, slab_index);
+    if (plan->samples_whole || z0 == 0) return 0;
+    return plan->zeros ? slab_words_begin(plan, slab_index) : z0 - 1;
 }
 
 uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
-    uint64_t nz = (uint64_t)grid->dims[2];
-    return (uint32_t)(plan->samples_whole ? nz : min_u64(slab_end(plan, grid, slab_index) + 2ull, nz));
+    const uint64_t nz = (uint64_t)grid->dims[2];
+    if (plan->samples_whole) return (uint32_t)nz;
+    return plan->zeros ? slab_words_end(plan, grid, slab_index)
+                       : (uint32_t)min_u64(slab_end(plan, grid, slab_index) + 2ull, nz);
 }
 
 uint32_t plan_window_count(const slab_plan *plan) { return plan->overlaps && !plan->samples_whole ? 2 : 1; }
 
 uint32_t plan_window_layers(const slab_plan *plan) {
-    return plan->words_whole ? plan->layer_count : (uint32_t)min_u64(plan->slab_layers + 1ull, plan->layer_count);
+    return plan->words_whole ? plan->layer_count
+                             : (uint32_t)min_u64((uint64_t)plan->slab_layers + layers_before(plan) + layers_after(plan),
+                                                 plan->layer_count);
 }
 
 uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid) {
     return (uint64_t)plan->words_x * (uint64_t)grid->dims[1];
 }
 
-uint64_t plan_cell_planes(const slab_plan *plan) { return plan->slab_layers * (uint64_t)BRICK_PLANES + 2; }
+uint64_t plan_cell_planes(const slab_plan *plan, const tc_grid *grid) {
+    if (plan->zeros) return min_u64(plan_window_layers(plan) * (uint64_t)BRICK_PLANES, (uint64_t)grid->dims[2]);
+    return plan->slab_layers * (uint64_t)BRICK_PLANES + 2;
+}
 
 uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->words_x * plan->bricks_y; }
+
+uint32_t plan_zero_bricks(const slab_plan *plan) {
+    return plan->zeros ? (uint32_t)(UNIFORM_BRICKS + plan_window_layers(plan) * plan_bricks_per_layer(plan)) : 0;
+}
 
 /* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
  * samples. Never so large that groups run out of tiles. */
@@ -59,9 +86,9 @@ static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_pla
 }
 
 uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array) {
-    uint64_t planes = plan->samples_whole
-                          ? (uint64_t)grid->dims[2]
-                          : min_u64(plan->slab_layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
+    uint64_t planes = plan->samples_whole ? (uint64_t)grid->dims[2]
+                                          : min_u64((plan->slab_layers + (plan->zeros ? 4ull : 0)) * BRICK_PLANES + 3,
+                                                    (uint64_t)grid->dims[2]);
     return grid_array_data(grid, array) ? planes * grid_array_plane_bytes(grid, array) : 0;
 }
 
@@ -77,20 +104,21 @@ static bool can_miss_samples(const tc_grid *grid) {
 static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
     uint64_t layers = plan_window_layers(plan);
     uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
-    uint64_t arrays = 0, windows = plan_window_count(plan);
+    uint64_t signs = plan->zeros ? 2 * words : words, arrays = 0, windows = plan_window_count(plan);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->launch.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
-    uint64_t fixed = 4 * 2 * 256 * CUBE_CASE_BYTES + 8 * UNIFORM_BRICKS * BRICK_WORDS +
-                     12 * 4096; /* and buffers from page to page */
-    *largest = words;
+    uint64_t cases = 8 * CASES_TWO_SIGNS + (plan->zeros ? 4 * CASES_THREE_SIGNS : 0), constant = plan->zeros ? 4 : 2;
+    uint64_t fixed =
+        cases * CUBE_CASE_BYTES + constant * 8 * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
+    *largest = signs;
     for (int array = 0; array < ARRAY_COUNT; array++) {
         uint64_t bytes = plan_array_bytes(plan, grid, array);
         arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
         if (bytes > *largest) *largest = bytes;
     }
-    uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan) * plan_words_per_plane(plan, grid) : 0;
-    uint64_t word_window = words * 2 + words / 4 + (sizeof(brick_state) + 4) * bricks;
+    uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan, grid) * plan_words_per_plane(plan, grid) : 0;
+    uint64_t word_window = signs + words + words / 4 + (sizeof(brick_state) + 4) * bricks;
     return arrays * windows + axes_bytes(grid) + word_window * (plan->words_whole ? 1 : windows) + cells + ranges +
            state + scratch + fixed * windows;
 }
@@ -103,7 +131,7 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
     tiles_shape(context, grid, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
-    uint64_t words = BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
+    uint64_t words = (plan->zeros ? 2ull : 1) * BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
     return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
 }
 
@@ -132,8 +160,8 @@ static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_
 static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
                             uint64_t budget) {
     uint64_t bytes;
-    plan->words_whole = true;
-    plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
+    plan->words_whole = !plan->zeros; /* which go with all samples or with windows of them */
+    if (plan->words_whole) plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
     return layers_fit(context, grid, plan, most, budget);
 }
 
@@ -142,76 +170,78 @@ static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
     return (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
 }
 
-static slab_plan plan_begin(const tc_grid *grid) {
-    return (slab_plan){.words_x = (uint32_t)((grid->dims[0] + 63) / 64),
+static slab_plan plan_begin(const tc_grid *grid, bool zeros) {
+    return (slab_plan){.zeros = zeros,
+                       .words_x = (uint32_t)((grid->dims[0] + 63) / 64),
                        .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
                        .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
 }
 
 /* The least bytes of everything but the mesh, and the bytes with all arrays whole; false where a buffer is too large.
  */
-static bool plan_least(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
-    slab_plan plan = plan_begin(grid);
+static bool plan_least(const tc_context *context, const tc_grid *grid, bool zeros, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid, zeros);
     plan.samples_whole = grid->cl_samples != NULL;
     return plan_fits(context, grid, &plan, 1, UINT64_MAX, bytes);
 }
 
-static bool plan_whole(const tc_context *context, const tc_grid *grid, uint64_t *bytes) {
-    slab_plan plan = plan_begin(grid);
+static bool plan_whole(const tc_context *context, const tc_grid *grid, bool zeros, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid, zeros);
     plan.samples_whole = plan.words_whole = true;
     plan.overlaps = !context->in_place;
     return plan_fits(context, grid, &plan, layers_most(grid, &plan), UINT64_MAX, bytes);
 }
 
-uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid) {
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool zeros) {
     uint64_t bytes;
-    plan_whole(context, grid, &bytes);
+    plan_whole(context, grid, zeros, &bytes);
     return (bytes + 2) / 3 * 4;
 }
 
 /* The mesh has half of the budget where the grid is not whole, a quarter or more where it is; emission goes on with a
  * row of bricks in it at a time: six vertices per sample, with normals, and ten triangles per cube at most. */
-uint64_t plan_budget(const tc_context *context, const tc_grid *grid) {
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid, bool zeros) {
     const uint64_t sample_bytes = 2 * EDGES_PER_SAMPLE * 12 + CUBE_TRIANGLES_MAX * 12;
-    const uint64_t row = plan_begin(grid).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
+    const uint64_t row = plan_begin(grid, zeros).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
     uint64_t least, whole, budget;
-    plan_least(context, grid, &least);
+    plan_least(context, grid, zeros, &least);
     budget = 2 * (least > row ? least : row);
-    if (!plan_whole(context, grid, &whole)) return budget;
-    const uint64_t from = plan_budget_whole(context, grid);
+    if (!plan_whole(context, grid, zeros, &whole)) return budget;
+    const uint64_t from = plan_budget_whole(context, grid, zeros);
     return whole + row > (from > budget ? from : budget) ? whole + row : budget;
 }
 
-static tc_status plan_refuse(const tc_context *context, const tc_grid *grid) {
+static tc_status plan_refuse(const tc_context *context, const tc_grid *grid, bool zeros) {
     uint64_t bytes;
-    if (!plan_least(context, grid, &bytes))
+    if (!plan_least(context, grid, zeros, &bytes))
         return (tc_status)fail(TC_ERROR_MEMORY,
                                "a layer of this grid needs larger buffers than %s has, %llu bytes each: use the "
                                "reference engine, or parts of the grid",
                                context->info.name, (unsigned long long)context->info.max_buffer_bytes);
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "a layer of this grid needs %llu bytes of device memory beside its mesh; allow %llu or more",
-                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid));
+                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid, zeros));
 }
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     const uint64_t budget = context_budget(context);
-    *plan = plan_begin(grid);
+    *plan = plan_begin(grid, others != NULL);
     if (layer_samples > scan_samples)
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
                                (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
     const uint32_t most = layers_most(grid, plan);
     plan->samples_whole = plan->words_whole = true;
     plan->overlaps = !context->in_place;
-    if (!plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
-        plan->samples_whole = grid->cl_samples != NULL;
-        uint32_t layers = windows_fit(context, grid, plan, most, budget / 2);
+    if ((others && !others->samples_whole) || !plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
+        plan->samples_whole = others ? others->samples_whole : grid->cl_samples != NULL;
+        const uint64_t part = others && plan->samples_whole ? budget / 4 * 3 : budget / 2;
+        uint32_t layers = windows_fit(context, grid, plan, most, part);
         if (layers == 0 && plan->overlaps) {
             plan->overlaps = false;
-            layers = windows_fit(context, grid, plan, most, budget / 2);
+            layers = windows_fit(context, grid, plan, most, part);
         }
-        if (layers == 0) return plan_refuse(context, grid);
+        if (layers == 0) return plan_refuse(context, grid, plan->zeros);
         plan_fits(context, grid, plan, layers, budget, &bytes);
     }
     plan->mesh_bytes = budget - bytes;

@@ -6,6 +6,10 @@
  * slab, and the other arrays that a grid may have, with one plane before and two after (gradients and missing cells
  * reach that far), sign words with one layer after. Devices with memory of their own hold two such windows, where that
  * fits: one is copied while kernels run over the other.
+ *
+ * Method snap has a plan of its own. Whether a sample is snapped depends on samples up to five steps away, one for each
+ * colour. So windows have two layers of bricks more on either side, of which those steps use up the outer part; and
+ * where buffers hold the whole grid, all of it is snapped at once.
  */
 #ifndef SLAB_PLAN_H
 #define SLAB_PLAN_H
@@ -16,8 +20,9 @@
 typedef struct slab_plan {
     uint32_t words_x, bricks_y, layer_count;
     uint32_t slab_layers, slab_count;
-    bool samples_whole, words_whole;             /* samples: with all other arrays of the grid */
-    bool overlaps;                               /* copies and kernels run at once: windows are double */
+    bool samples_whole, words_whole; /* samples: with all other arrays of the grid */
+    bool zeros;                      /* of method snap: words of zeros beside sign words, and windows reach further */
+    bool overlaps;                   /* copies and kernels run at once: windows are double */
     uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
     uint32_t scratch_words;                      /* per group */
     uint32_t work_items;                         /* for which tiles are shaped */
@@ -26,10 +31,11 @@ typedef struct slab_plan {
 
 /* The least budget with which a grid can be extracted whatever its samples are, normals included; and with which it can
  * be whole on the device, as tc_emit needs, without the mesh. Within the device's limit on buffers. */
-uint64_t plan_budget(const tc_context *context, const tc_grid *grid);
-uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid);
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid, bool zeros);
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool zeros);
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+/* others: the plan of the other methods, whose arrays the grid has on the device already; NULL: that one is made. */
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan);
 
 /* Shapes the tiles again where the context has changed to the other text of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
@@ -37,6 +43,10 @@ void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan
 /* Planes z0 <= z < z1 of a slab. */
 uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index);
 uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
+
+/* Planes of sign words that a slab's window holds, whole layers of bricks. */
+uint32_t slab_words_begin(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_words_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
 
 /* Planes of samples that a slab needs. */
 uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index);
@@ -49,7 +59,10 @@ uint32_t plan_window_count(const slab_plan *plan);
 uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array);
 uint32_t plan_window_layers(const slab_plan *plan);
 uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid); /* without padding to bricks */
-uint64_t plan_cell_planes(const slab_plan *plan);
+uint64_t plan_cell_planes(const slab_plan *plan, const tc_grid *grid);
 uint64_t plan_bricks_per_layer(const slab_plan *plan);
+
+/* From the sign words of a brick to its zeros, in bricks; 0 where there are none. */
+uint32_t plan_zero_bricks(const slab_plan *plan);
 
 #endif

@@ -12,9 +12,10 @@
 #include <string.h>
 
 /* The fields that all slabs share. */
-static slab base_of(const tc_grid *grid, inside_range inside, double isovalue) {
-    const slab_plan *plan = &grid->device->plan;
-    slab s = {.test = isovalue_test_of(inside, isovalue),
+static slab base_of(const tc_grid *grid, const slab_plan *plan, inside_range inside,
+                    const tc_extract_options *options) {
+    slab s = {.test = isovalue_test_of(inside, options->isovalue),
+              .snapping = {.threshold = (float)options->snap},
               .arrays = {.has_blanked_samples = grid->blanked_samples != NULL,
                          .has_blanked_cells = grid->blanked_cells != NULL},
               .nx = (uint32_t)grid->dims[0],
@@ -37,18 +38,22 @@ static uint64_t state_bytes(const run *r) {
     return 4ull * r->plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * r->plan->slab_tiles);
 }
 
-/* Sign words, the constant bricks before them. */
-static tc_status words_reserve(tc_context *context, device_buffer *words, uint64_t brick_count) {
+static tc_status brick_fill(tc_context *context, const device_buffer *words, uint64_t brick, cl_ulong word) {
     const size_t brick_bytes = 8 * BRICK_WORDS;
-    uint64_t bytes = brick_bytes * (UNIFORM_BRICKS + brick_count);
-    if (words->memory && bytes <= words->bytes) return TC_OK;
-    tc_status status = buffer_reserve(context, words, bytes, "sign words");
-    for (size_t sign = 0; sign < UNIFORM_BRICKS && !status; sign++) {
-        const cl_ulong word = sign == SIGN_INSIDE ? UINT64_MAX : 0;
-        cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, sign * brick_bytes,
-                                             brick_bytes, 0, NULL, NULL);
-        if (error) status = context_fail(context, "filling constant sign words", error);
-    }
+    cl_int error = cl->EnqueueFillBuffer(context->queue, words->memory, &word, sizeof word, brick * brick_bytes,
+                                         brick_bytes, 0, NULL, NULL);
+    return error ? context_fail(context, "filling constant sign words", error) : TC_OK;
+}
+
+/* Sign words, the constant bricks before them; then words of zeros, bricks without any before them. */
+static tc_status words_reserve(const run *r, device_buffer *words, uint64_t brick_count) {
+    const uint64_t zeros = plan_zero_bricks(r->plan), bricks = zeros + UNIFORM_BRICKS + brick_count;
+    const bool had = words->memory && 8 * BRICK_WORDS * bricks <= words->bytes;
+    tc_status status = buffer_reserve(r->context, words, 8 * BRICK_WORDS * bricks, "sign words");
+    for (uint64_t sign = 0; sign < UNIFORM_BRICKS && !status && !had; sign++)
+        status = brick_fill(r->context, words, sign, sign == SIGN_INSIDE ? UINT64_MAX : 0);
+    for (uint64_t sign = 0; sign < UNIFORM_BRICKS && !status && zeros; sign++)
+        status = brick_fill(r->context, words, zeros + sign, 0);
     return status;
 }
 
@@ -71,7 +76,7 @@ static tc_status word_buffers_reserve(run *r, word_buffers *w) {
                                    {&w->triangle_offsets, 2 * words, "triangle offsets"},
                                    {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
                                    {&w->active, 4 * bricks, "active bricks"}};
-    tc_status status = words_reserve(r->context, &w->words, bricks);
+    tc_status status = words_reserve(r, &w->words, bricks);
     return status ? status : buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
 }
 
@@ -89,7 +94,7 @@ static void windows_trim(run *r) {
 static tc_status workspace_reserve(run *r) {
     workspace *w = &r->context->work;
     const slab_plan *plan = r->plan;
-    uint64_t cells = plan_cell_planes(plan) * plan_words_per_plane(plan, r->grid);
+    uint64_t cells = plan_cell_planes(plan, r->grid) * plan_words_per_plane(plan, r->grid);
     const reservation buffers[] = {{&w->cells, r->grid->device->missing ? 8 * cells : 0, "present cells"},
                                    {&w->state, state_bytes(r), "the scan"},
                                    {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
@@ -105,7 +110,19 @@ static tc_status workspace_reserve(run *r) {
     return status;
 }
 
-void structured_reshape(tc_grid *grid) { slab_plan_reshape(grid->context, grid, &grid->device->plan); }
+void structured_reshape(tc_grid *grid) {
+    slab_plan_reshape(grid->context, grid, &grid->device->plan);
+    if (grid->device->snap_plan.layer_count) slab_plan_reshape(grid->context, grid, &grid->device->snap_plan);
+}
+
+static tc_status plan_provide(tc_grid *grid, tc_method method) {
+    struct device_grid *device = grid->device;
+    if (method != TC_METHOD_SNAP || device->snap_plan.layer_count) return TC_OK;
+    slab_plan plan;
+    tc_status status = slab_plan_make(grid->context, grid, &device->plan, &plan);
+    if (!status) device->snap_plan = plan;
+    return status;
+}
 
 kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     const kernel_kind kind = {.grid = (unsigned)grid->kind,
@@ -118,14 +135,16 @@ kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *optio
 }
 
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
+    const slab_plan *plan = plan_of_method(grid->device, options->method);
+    tc_status status = plan_provide(grid, options->method);
     *r = (run){.grid = grid,
                .context = grid->context,
-               .plan = &grid->device->plan,
+               .plan = plan,
                .method = options->method,
                .made = channels_asked(options),
-               .base = base_of(grid, inside, options->isovalue)};
+               .base = base_of(grid, plan, inside, options)};
     r->copies = r->context->queue;
-    tc_status status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
+    if (!status) status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();
     if (!status) status = workspace_reserve(r);
     if (!status) status = slab_store_allocate(r);
@@ -162,7 +181,9 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     word_buffers *w = slab_words(r, ref);
     slab s;
     slab_describe(r, ref, &s);
-    tc_status status = slab_mark_cells(r, ref, &s);
+    const bool snapped = r->plan->words_whole && slab_index > 0; /* with all of the grid */
+    tc_status status = r->plan->zeros && snapped ? TC_OK : slab_mark_cells(r, ref, &s);
+    if (!status && r->plan->zeros && !snapped) status = window_snap(r, ref, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),

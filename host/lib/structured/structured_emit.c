@@ -110,7 +110,7 @@ static tc_status cases_make(const run *r, void **out, uint64_t *bytes) {
 static tc_status cases_provide(run *r, device_buffer **out) {
     device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
     void *cases = NULL;
-    uint64_t bytes;
+    uint64_t bytes = 0;
     *out = buffer;
     if (buffer->memory) return TC_OK;
     tc_status status = cases_make(r, &cases, &bytes);
@@ -208,7 +208,9 @@ static tc_status step_emit(run *r, uint32_t n) {
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
-    const bool marked = r->plan->slab_count == 1; /* for kernel 1, and nothing has overwritten that */
+    const bool marked =
+        r->plan->slab_count == 1 || (r->plan->zeros && r->plan->words_whole); /* for kernel 1, and nothing
+                                                                                has overwritten that */
     tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->ref, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;

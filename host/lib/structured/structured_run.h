@@ -14,12 +14,13 @@
 
 /* Kernel 1's results kept on the host while the device holds only a window of them. */
 typedef struct slab_store {
-    uint8_t *words, *offsets, *triangle_offsets, *bricks, *active;
+    uint8_t *words, *zeros, *offsets, *triangle_offsets, *bricks, *active;
 } slab_store;
 
 /* What an OpenCL context adds to a grid. */
 struct device_grid {
     slab_plan plan;
+    slab_plan snap_plan;               /* for method snap, made when first needed: before, layer_count is 0 */
     device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plan.samples_whole */
     device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
     device_buffer ranges;              /* of all bricks, made at the first visit */
@@ -48,6 +49,10 @@ typedef struct run {
     double start_ms;       /* kernels are built by then */
 } run;
 
+static inline const slab_plan *plan_of_method(const struct device_grid *device, tc_method method) {
+    return method == TC_METHOD_SNAP ? &device->snap_plan : &device->plan;
+}
+
 /* A slab and the window that it is in: below plan_window_count. */
 typedef struct slab_ref {
     uint32_t slab_index, window;
@@ -65,6 +70,9 @@ void slab_describe(const run *r, slab_ref ref, slab *out);
 
 /* Marks the slab's present cells, where samples may be missing. */
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s);
+
+/* Makes samples of a window to vertices, before kernel 1 counts there (structured_snap.c). */
+tc_status window_snap(run *r, slab_ref ref, const slab *s);
 
 /* Moves kernel 1's results of a slab from or to the store, where windows are in use. */
 tc_status slab_save(run *r, slab_ref ref);

@@ -32,8 +32,8 @@ static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
 }
 
 /* Makes planes z0 <= z < z1 available: in place where the device can, else by a copy, only enqueued. */
-static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buffer *buffer, int array, uint64_t z0,
-                               uint64_t z1) {
+static tc_status array_provide(tc_grid *grid, const slab_plan *plan, cl_command_queue queue, device_buffer *buffer,
+                               int array, uint64_t z0, uint64_t z1) {
     tc_context *context = grid->context;
     if (!grid_array_data(grid, array)) return TC_OK;
     if (z1 > array_planes(grid, array)) z1 = array_planes(grid, array);
@@ -43,7 +43,7 @@ static tc_status array_provide(tc_grid *grid, cl_command_queue queue, device_buf
         uintptr_t before = (uintptr_t)start & (PAGE_BYTES - 1);
         return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
     }
-    uint64_t room = plan_array_bytes(&grid->device->plan, grid, array);
+    uint64_t room = plan_array_bytes(plan, grid, array);
     tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
@@ -55,7 +55,8 @@ static tc_status arrays_provide(tc_grid *grid) {
     cl_command_queue queue = grid->context->queue;
     tc_status status = TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
-        status = array_provide(grid, queue, &grid->device->arrays[array], array, 0, array_planes(grid, array));
+        status = array_provide(grid, &grid->device->plan, queue, &grid->device->arrays[array], array, 0,
+                               array_planes(grid, array));
     if (status || grid->context->in_place) return status;
     cl_int error = cl->Finish(queue);
     return error ? context_fail(grid->context, "copying a grid to the device", error) : TC_OK;
@@ -104,7 +105,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     grid->device = device;
     device->missing = grid->blanked_samples || grid->blanked_cells ||
                       (grid->has_nodata && value_bits(grid->type, grid->nodata, ignored));
-    tc_status status = slab_plan_make(grid->context, grid, &device->plan);
+    tc_status status = slab_plan_make(grid->context, grid, NULL, &device->plan);
     uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
@@ -138,11 +139,14 @@ word_buffers *slab_words(const run *r, slab_ref ref) {
     return &r->context->work.words[r->plan->words_whole ? 0 : ref.window];
 }
 
-/* One bit per cube whose corners are present, for the planes that kernels 1 and 2 look at. */
+/* One bit per cube whose corners are present, for the planes that kernels look at. */
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
-    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z;
+    const cl_uint end = r->plan->zeros  ? slab_words_end(r->plan, r->grid, ref.slab_index)
+                        : s->z1 < s->nz ? s->z1 + 1
+                                        : s->nz;
+    const cl_uint planes = end - s->arrays.cell_z;
     const kernel_argument arguments[] = {ARGUMENT(*s),
                                          ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
                                          ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory),
@@ -158,7 +162,7 @@ tc_status slab_load(run *r, slab_ref ref, bool emits) {
     if (r->plan->samples_whole) return TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
         if (emits || array != ARRAY_POINTS)
-            status = array_provide(r->grid, r->copies, slab_array(r, ref, array), array,
+            status = array_provide(r->grid, r->plan, r->copies, slab_array(r, ref, array), array,
                                    slab_samples_begin(r->plan, ref.slab_index),
                                    slab_samples_end(r->plan, r->grid, ref.slab_index));
     return status;
@@ -183,9 +187,9 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     *s = r->base;
     s->z0 = slab_begin(r->plan, slab_index);
     s->z1 = slab_end(r->plan, r->grid, slab_index);
-    s->results.word_z = r->plan->words_whole ? 0 : s->z0;
+    s->results.word_z = slab_words_begin(r->plan, slab_index);
     s->results.range_offset = (uint32_t)(s->results.word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    s->arrays.cell_z = s->z0 ? s->z0 - 1 : 0;
+    s->arrays.cell_z = r->plan->zeros ? s->results.word_z : s->z0 ? s->z0 - 1 : 0;
     s->arrays.sample_z = slab_samples_begin(r->plan, slab_index);
     s->results.head_offset = slab_index * STATE_WORDS;
     s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
@@ -193,6 +197,7 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
     s->tiling.tile_count = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows *
                            ((layers + s->tiling.tile_layers - 1) / s->tiling.tile_layers);
+    s->snapping.zero_bricks = plan_zero_bricks(r->plan);
     slab_offsets(r, slab_index, s);
 }
 
@@ -204,16 +209,19 @@ tc_status slab_store_allocate(run *r) {
     const size_t brick_bytes = sizeof(brick_state);
     slab_store *s = &r->store;
     s->words = malloc(8 * words);
+    s->zeros = r->plan->zeros ? malloc(8 * words) : NULL;
     s->offsets = malloc(8 * words);
     s->triangle_offsets = malloc(2 * words);
     s->bricks = malloc(brick_bytes * bricks);
     s->active = malloc(4 * bricks);
-    if (s->words && s->offsets && s->triangle_offsets && s->bricks && s->active) return TC_OK;
+    if (s->words && (s->zeros || !r->plan->zeros) && s->offsets && s->triangle_offsets && s->bricks && s->active)
+        return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to keep the sign words of all slabs");
 }
 
 void slab_store_release(slab_store *store) {
     free(store->words);
+    free(store->zeros);
     free(store->offsets);
     free(store->triangle_offsets);
     free(store->bricks);
@@ -232,30 +240,35 @@ static tc_status window_copy(run *r, device_buffer *buffer, uint64_t offset, uin
     return error ? context_fail(r->context, save ? "reading sign words back" : "restoring sign words", error) : TC_OK;
 }
 
-/* A slab's layers, and when they are restored the one after, which kernel 2 looks at too. */
+/* A slab's layers, and when they are restored the others of its window, which kernel 2 looks at too. */
 static tc_status slab_move(run *r, slab_ref ref, bool save) {
     if (r->plan->words_whole) return TC_OK;
     word_buffers *work = slab_words(r, ref);
     const uint32_t slab_index = ref.slab_index;
-    uint64_t layer0 = slab_begin(r->plan, slab_index) / BRICK_PLANES;
-    uint64_t layer1 = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
-    uint64_t layer_end = !save && layer1 < r->plan->layer_count ? layer1 + 1 : layer1;
-    uint64_t bricks = plan_bricks_per_layer(r->plan), constant = 8 * UNIFORM_BRICKS * BRICK_WORDS;
+    const uint64_t own = slab_begin(r->plan, slab_index) / BRICK_PLANES;
+    const uint64_t own_end = (slab_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
+    const uint64_t first = slab_words_begin(r->plan, slab_index) / BRICK_PLANES, begin = save ? own : first;
+    const uint64_t end =
+        save ? own_end : (slab_words_end(r->plan, r->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES;
+    const uint64_t bricks = plan_bricks_per_layer(r->plan), constant = 8 * UNIFORM_BRICKS * BRICK_WORDS;
+    const uint64_t zeros = constant + 8 * (uint64_t)BRICK_WORDS * plan_zero_bricks(r->plan);
     const struct {
         device_buffer *buffer;
-        uint64_t offset;
+        uint64_t offset; /* of the window's first layer */
         uint8_t *host;
-        uint64_t end, brick_bytes;
-    } arrays[] = {{&work->words, constant, r->store.words, layer_end, 8 * BRICK_WORDS},
-                  {&work->offsets, 0, r->store.offsets, layer_end, 8 * BRICK_WORDS},
-                  {&work->triangle_offsets, 0, r->store.triangle_offsets, layer1, 2 * BRICK_WORDS},
-                  {&work->bricks, 0, r->store.bricks, layer_end, sizeof(brick_state)},
-                  {&work->active, 0, r->store.active, layer1, 4}};
+        uint64_t begin, end, brick_bytes;
+    } arrays[] = {{&work->words, constant, r->store.words, begin, end, 8 * BRICK_WORDS},
+                  {&work->words, zeros, r->store.zeros, begin, r->plan->zeros ? end : begin, 8 * BRICK_WORDS},
+                  {&work->offsets, 0, r->store.offsets, begin, end, 8 * BRICK_WORDS},
+                  {&work->triangle_offsets, 0, r->store.triangle_offsets, own, own_end, 2 * BRICK_WORDS},
+                  {&work->bricks, 0, r->store.bricks, begin, end, sizeof(brick_state)},
+                  {&work->active, 0, r->store.active, own, own_end, 4}};
     tc_status status = TC_OK;
-    for (size_t n = 0; n < sizeof arrays / sizeof *arrays && !status; n++)
-        status =
-            window_copy(r, arrays[n].buffer, arrays[n].offset, arrays[n].host, layer0 * bricks * arrays[n].brick_bytes,
-                        (arrays[n].end - layer0) * bricks * arrays[n].brick_bytes, save);
+    for (size_t n = 0; n < sizeof arrays / sizeof *arrays && !status; n++) {
+        const uint64_t bytes = bricks * arrays[n].brick_bytes;
+        status = window_copy(r, arrays[n].buffer, arrays[n].offset + (arrays[n].begin - first) * bytes, arrays[n].host,
+                             arrays[n].begin * bytes, (arrays[n].end - arrays[n].begin) * bytes, save);
+    }
     return status;
 }
 

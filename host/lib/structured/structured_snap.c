@@ -1,0 +1,63 @@
+/*
+ * Method snap on a device: the kernels of snap.cl, before kernel 1 counts. They run over the window of sign words, the
+ * whole grid where it holds that.
+ */
+#include "structured/structured_run.h"
+
+#include "link.h"
+
+/* The window as one slab. */
+static slab window_of(const run *r, slab_ref ref, const slab *s) {
+    slab w = *s;
+    w.z0 = s->results.word_z;
+    w.z1 = slab_words_end(r->plan, r->grid, ref.slab_index);
+    const uint32_t layers = (w.z1 - w.z0 + BRICK_PLANES - 1) / BRICK_PLANES;
+    w.tiling.tile_count = (w.bricks_y + w.tiling.tile_rows - 1) / w.tiling.tile_rows *
+                          ((layers + w.tiling.tile_layers - 1) / w.tiling.tile_layers);
+    return w;
+}
+
+static tc_status samples_pass(const run *r, slab_ref ref, const slab *window) {
+    const workspace *work = &r->context->work;
+    const word_buffers *b = slab_words(r, ref);
+    tc_status status = TC_OK;
+    for (cl_uint colour = 0; colour < COLOURS && !status; colour++) {
+        const kernel_argument arguments[] = {ARGUMENT(*window),
+                                             ARGUMENT(colour),
+                                             ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
+                                             ARGUMENT(work->cells.memory),
+                                             ARGUMENT(b->words.memory),
+                                             ARGUMENT(b->bricks.memory),
+                                             ARGUMENT(b->active.memory),
+                                             ARGUMENT(work->state.memory),
+                                             ARGUMENT(b->offsets.memory)};
+        status = kernel_launch(r->context, r->kernels.snap[SNAP_PASS], "kernel snap_pass", arguments,
+                               sizeof arguments / sizeof *arguments);
+    }
+    return status;
+}
+
+tc_status window_snap(run *r, slab_ref ref, const slab *s) {
+    const workspace *work = &r->context->work;
+    const word_buffers *b = slab_words(r, ref);
+    const slab window = window_of(r, ref, s);
+    const kernel_argument sign[] = {ARGUMENT(window),
+                                    ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
+                                    ARGUMENT(r->grid->device->ranges.memory),
+                                    ARGUMENT(b->words.memory),
+                                    ARGUMENT(b->bricks.memory),
+                                    ARGUMENT(work->state.memory)};
+    const kernel_argument near[] = {ARGUMENT(window), ARGUMENT(b->bricks.memory), ARGUMENT(b->active.memory),
+                                    ARGUMENT(work->state.memory)};
+    const kernel_argument open[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->bricks.memory),
+                                    ARGUMENT(b->active.memory), ARGUMENT(work->state.memory)};
+    const kernel_argument close[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->active.memory),
+                                     ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
+    const sized_kernel *kernel = r->kernels.snap;
+    tc_status status = kernel_launch(r->context, kernel[SNAP_SIGN], "kernel snap_sign", sign, 6);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_NEAR], "kernel snap_near", near, 4);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_OPEN], "kernel snap_open", open, 5);
+    if (!status) status = samples_pass(r, ref, &window);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_CLOSE], "kernel snap_close", close, 5);
+    return status;
+}
