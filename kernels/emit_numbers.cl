@@ -150,12 +150,12 @@ inline_always void neighbour_row_number(uint *number, ulong crossed, uint first)
 
 /* Lists and numbers the samples of a row that are vertices. */
 inline_always uint snapped_list(const slab *s, corner c, uint y, uint z, ulong snapped, uint first, uint count,
-                                uint *number, grid_arrays in, row_results k1, brick_work *work) {
+                                uint *number, grid_arrays in, brick_work *work) {
     for (; snapped; snapped &= snapped - 1) {
         uint bit = lowest_bit(snapped);
         number[NUMBER_STEP * bit + 6] = first + count;
 #ifdef REAL
-        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, in, k1);
+        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, in);
 #endif
         count++;
     }
@@ -163,8 +163,7 @@ inline_always uint snapped_list(const slab *s, corner c, uint y, uint z, ulong s
 }
 
 /* Lists and numbers the vertices that the brick owns; returns their count. */
-inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, row_results k1,
-                              brick_work *work) {
+inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, brick_work *work) {
     uint count = 0;
     for (; mask; mask &= mask - 1) {
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
@@ -183,7 +182,7 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
             count = end;
         }
         if (ZEROS)
-            count = snapped_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], first, count, number, in, k1, work);
+            count = snapped_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], first, count, number, in, work);
     }
     return count;
 }

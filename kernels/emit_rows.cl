@@ -103,7 +103,7 @@ inline_always void table_make(const slab *s, corner brick, row_results k1, local
 #ifdef REAL
 
 /* All vertices of row n of a table, in order. */
-inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in, row_results k1,
+inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in,
                                 const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
     const corner first = edges_corner(brick);
@@ -114,7 +114,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, in, k1)
+            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, in)
                                            : edge_code(type, !(even >> bit & 1)) + row + bit;
             ulong from =
                 row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));
@@ -190,7 +190,7 @@ inline_always void row_emit(const slab *s, uint number, uint brick_row, grid_arr
     const uint n = brick_row % BRICK_ROWS + TABLE_ROWS_Y * (brick_row / BRICK_ROWS);
     const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + brick_row];
 #ifdef REAL
-    row_vertices(s, brick, y, z, n, in, k1, table, mesh);
+    row_vertices(s, brick, y, z, n, in, table, mesh);
 #endif
     row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }

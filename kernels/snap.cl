@@ -6,9 +6,10 @@
  * 1. snap_sign: the first stage of kernel 1 (sign.cl), over all bricks;
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
  * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
- * 4. snap_pass, once for each colour (link.h): samples of the colour that are near a crossing and regular points
- *    (regular.cl) become zeros. They do not see each other, so their order does not matter;
- * 5. snap_close: the zeros of the last colour, which wait elsewhere while others read the words, join the rest.
+ * 4. snap_wish: which samples are near enough to a crossing of theirs;
+ * 5. snap_pass, once for each colour (link.h): samples of the colour that wish it and are regular points (regular.cl)
+ *    become zeros. They do not see each other, so their order does not matter;
+ * 6. snap_close: the zeros of the last colour, which wait elsewhere while others read the words, join the rest.
  */
 #ifndef SNAP_CL
 #define SNAP_CL
@@ -138,6 +139,18 @@ inline_always void link_load(const slab *s, stored_words m, uint y, uint z, uint
     column_enter(s, m, y, z, w, 1, 1, high & above, 17, NONE, NONE, true, l);
 }
 
+/* On which borders of the grid samples are, by axis. */
+typedef struct borders {
+    lanes across[3];
+} borders;
+
+inline_always borders borders_of(const slab *s, uint y, uint z, uint w) {
+    borders b = {{~((lanes)has_before(w) & has_after(s, w)),
+                  lanes_select(LANE_NUMBERS + y == (lanes)0) | lanes_select(LANE_NUMBERS + (y + 1) == (lanes)s->ny),
+                  z == 0 || z + 1 == s->nz ? ~(lanes)0 : (lanes)0}};
+    return b;
+}
+
 /* The samples of a colour. */
 inline_always lanes samples_of(const slab *s, uint y, uint z, uint w, uint colour) {
     const lanes exist = lanes_select(LANE_NUMBERS + y < (lanes)s->ny) & word_valid(s, w), even = even_rows(s, y, z);
@@ -173,70 +186,101 @@ inline_always lanes cubes_around(const slab *s, global const ulong *cells, uint 
 #define LINK_STEP(x, y, z) {x, y, z},
 constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};
 
-/* Whether a sample is near enough to one of its crossings, those of the edges in the mask. */
-inline_always bool sample_wishes(const slab *s, ulong at, uint crossed, global const BITS *samples) {
+/* Whether the sample at index `at` is near enough to a crossing; border: bits of axes along which it may not move. */
+inline_always bool sample_wishes(const slab *s, ulong at, bool odd, uint border, global const BITS *samples) {
     const BITS sample = samples[at];
+    const bool inside = bits_inside(sample, &s->test);
+    const uint count = odd ? LINK_ODD : LINK_EVEN;
+    REAL steepness = 0;
 #pragma unroll 1
-    for (; crossed; crossed &= crossed - 1) {
-        const uint n = lowest_bit(crossed);
+    for (uint n = 0; n < count; n++) {
         const int step_x = link_steps[n][0], step_y = link_steps[n][1], step_z = link_steps[n][2];
+        if ((border & 1 && step_x) || (border & 2 && step_y) || (border & 4 && step_z)) continue;
         const BITS other = samples[(long)at + step_x + (step_y + step_z * (long)s->ny) * (long)s->nx];
-        REAL steepness = 0;
-        if (crossing_is_nearer(s, sample, other, n >= LINK_ODD, &steepness)) return true;
+        if (bits_inside(other, &s->test) != inside && crossing_is_nearer(s, sample, other, false, &steepness))
+            return true;
     }
     return false;
 }
 
-/* The samples of the colour in LANES rows that become zeros. */
-inline_always lanes rows_snap(const slab *s, stored_words m, uint y, uint z, uint w, uint colour, bool odd,
-                              global const BITS *samples, global const ulong *cells) {
-    lanes wanted = samples_of(s, y, z, w, colour);
-    if (!lanes_any(wanted)) return 0;
+/* Which samples of LANES rows have a crossing along which they may move. */
+inline_always lanes rows_crossed(const slab *s, stored_words m, uint y, uint z, uint w, const borders *b) {
+    const lanes sign = rows_beside(s, m, y, z, w, 0, false), even = even_rows(s, y, z);
     link_signs l;
-    lanes opposite[LINK_EVEN], any = 0;
-    ulong snapped[LANES];
-    const uint count = odd ? LINK_ODD : LINK_EVEN;
-    const lanes sign = rows_beside(s, m, y, z, w, 0, false);
-    const lanes border[3] = {~((lanes)has_before(w) & has_after(s, w)),
-                             lanes_select(LANE_NUMBERS + y == (lanes)0) |
-                                 lanes_select(LANE_NUMBERS + (y + 1) == (lanes)s->ny),
-                             z == 0 || z + 1 == s->nz ? ~(lanes)0 : (lanes)0};
-    link_load(s, m, y, z, w, odd, &l);
+    lanes crossed_axis = 0, crossed_across = 0;
+    link_load(s, m, y, z, w, false, &l);
 #pragma unroll
-    for (uint n = 0; n < count; n++) { /* a sample on a border moves within it only */
-        const lanes stays = (n < 2    ? border[0]
-                             : n < 4  ? border[1]
-                             : n < 6  ? border[2]
-                             : n < 10 ? border[0] | border[1]
-                             : n < 14 ? border[0] | border[2]
-                                      : border[1] | border[2]);
-        opposite[n] = ((sign & l.minus[n]) | (~sign & l.plus[n])) & ~stays;
-        any |= opposite[n];
+    for (uint n = 0; n < LINK_EVEN; n++) {
+        const lanes *c = b->across;
+        const lanes stays = n < 2    ? c[0]
+                            : n < 4  ? c[1]
+                            : n < 6  ? c[2]
+                            : n < 10 ? c[0] | c[1]
+                            : n < 14 ? c[0] | c[2]
+                                     : c[1] | c[2];
+        const lanes opposite = ((sign & l.minus[n]) | (~sign & l.plus[n])) & ~stays;
+        if (n < LINK_ODD)
+            crossed_axis |= opposite;
+        else
+            crossed_across |= opposite;
     }
-    wanted &= any;
-#if MISSING
-    if (lanes_any(wanted)) wanted &= cubes_around(s, cells, y, z, w);
-#endif
-    if (!lanes_any(wanted)) return 0;
-    wanted = points_regular(&l, border, wanted, odd);
-    for (uint lane = 0; lane < LANES; lane++) {
-        snapped[lane] = 0;
-        for (ulong rest = lane_of(&wanted, lane); rest; rest &= rest - 1) {
-            const uint bit = lowest_bit(rest);
-            uint crossed_edges = 0;
-#pragma unroll
-            for (uint n = 0; n < count; n++) crossed_edges |= (uint)(lane_of(&opposite[n], lane) >> bit & 1) << n;
-            if (sample_wishes(s, row_start(s, y + lane, z) + 64ul * w + bit, crossed_edges, samples))
-                snapped[lane] |= 1ul << bit;
-        }
-    }
-    return lanes_of(snapped);
+    return crossed_axis | (crossed_across & even);
 }
 
-/* last: where zeros of the last colour wait, a word for each row of the bricks near the surface. */
-kernel void snap_pass(slab s, uint colour, global const BITS *samples, global const ulong *cells, global ulong *words,
+/* wishes: a word for each row of the bricks near the surface. */
+kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
                       global brick_state *bricks, global const uint *near, global const uint *state,
-                      global ulong *last) {
+                      global ulong *wishes) {
+    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
+    const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
+    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
+        const uint number = near[n], w = number % s.words_x, y0 = number / s.words_x % s.bricks_y * BRICK_ROWS;
+        const uint z0 = s.results.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES;
+        for (uint row = ITEM_ROW; row < BRICK_WORDS; row += LANES * BRICK_ITEMS) {
+            const uint y = y0 + row % BRICK_ROWS, z = z0 + row / BRICK_ROWS;
+            ulong wish[LANES];
+            lanes crossed_any = 0;
+            const borders b = borders_of(&s, y, z, w);
+            if (y < s.ny && z < s.z1) {
+                crossed_any = rows_crossed(&s, m, y, z, w, &b) & word_valid(&s, w);
+                crossed_any &= lanes_select(LANE_NUMBERS + y < (lanes)s.ny);
+#if MISSING
+                if (lanes_any(crossed_any)) crossed_any &= cubes_around(&s, cells, y, z, w);
+#endif
+            }
+            for (uint lane = 0; lane < LANES; lane++) {
+                wish[lane] = 0;
+                for (ulong rest = lane_of(&crossed_any, lane); rest; rest &= rest - 1) {
+                    const uint bit = lowest_bit(rest);
+                    const uint border = (uint)(lane_of(&b.across[0], lane) >> bit & 1) |
+                                        (uint)(lane_of(&b.across[1], lane) >> bit & 1) << 1 |
+                                        (uint)(lane_of(&b.across[2], lane) >> bit & 1) << 2;
+                    const bool odd = (s.parity + bit + y + lane + z) & 1;
+                    if (sample_wishes(&s, row_start(&s, y + lane, z) + 64ul * w + bit, odd, border, samples))
+                        wish[lane] |= 1ul << bit;
+                }
+            }
+            lanes_store(lanes_of(wish), wishes + BRICK_WORDS * (ulong)number + row);
+        }
+    }
+}
+
+#endif
+
+/* ------------------------------------------------------------------------------------------------------------ passes
+ */
+
+/* The samples of the colour in LANES rows that become zeros. */
+inline_always lanes rows_snap(const slab *s, stored_words m, uint y, uint z, uint w, lanes wanted, bool odd) {
+    link_signs l;
+    const borders b = borders_of(s, y, z, w);
+    link_load(s, m, y, z, w, odd, &l);
+    return points_regular(&l, b.across, wanted, odd);
+}
+
+/* Those of the last colour replace the wishes. */
+kernel void snap_pass(slab s, uint colour, global ulong *words, global brick_state *bricks, global const uint *near,
+                      global const uint *state, global ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
@@ -245,14 +289,14 @@ kernel void snap_pass(slab s, uint colour, global const BITS *samples, global co
         for (uint row = ITEM_ROW; row < BRICK_WORDS; row += LANES * BRICK_ITEMS) {
             const uint y = y0 + row % BRICK_ROWS, z = z0 + row / BRICK_ROWS;
             const ulong index = BRICK_WORDS * (ulong)number + row;
-            lanes zeros = 0;
-            if (y < s.ny && z < s.z1)
-                zeros = colour == COLOUR_ODD ? rows_snap(&s, m, y, z, w, colour, true, samples, cells)
-                                             : rows_snap(&s, m, y, z, w, colour, false, samples, cells);
+            lanes wanted = lanes_load(wishes + index) & samples_of(&s, y, z, w, colour);
+            if (lanes_any(wanted))
+                wanted = colour == COLOUR_ODD ? rows_snap(&s, m, y, z, w, wanted, true)
+                                              : rows_snap(&s, m, y, z, w, wanted, false);
             if (colour == COLOUR_ODD)
-                lanes_store(zeros, last + index);
-            else if (lanes_any(zeros))
-                lanes_add(zeros, m.words + BRICK_WORDS * (ulong)s.snapping.zero_bricks + index);
+                lanes_store(wanted, wishes + index);
+            else if (lanes_any(wanted))
+                lanes_add(wanted, m.words + BRICK_WORDS * (ulong)s.snapping.zero_bricks + index);
         }
     }
 }
@@ -267,7 +311,5 @@ kernel void snap_close(slab s, global ulong *words, global const uint *near, glo
             words[index] |= last[index];
         }
 }
-
-#endif
 
 #endif

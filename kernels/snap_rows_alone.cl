@@ -18,6 +18,7 @@ inline_always lanes rows_beside(const slab *s, stored_words m, uint y, uint z, u
     return here;
 }
 
+inline_always lanes lanes_load(global const ulong *at) { return vload8(0, at); }
 inline_always void lanes_store(lanes x, global ulong *out) { vstore8(x, 0, out); }
 inline_always void lanes_add(lanes x, global ulong *out) { vstore8(vload8(0, out) | x, 0, out); }
 

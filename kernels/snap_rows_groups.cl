@@ -13,6 +13,7 @@ inline_always lanes rows_beside(const slab *s, stored_words m, uint y, uint z, u
     return *row_stored(s, m, y + step_y, z, w, zeros);
 }
 
+inline_always lanes lanes_load(global const ulong *at) { return *at; }
 inline_always void lanes_store(lanes x, global ulong *out) { *out = x; }
 inline_always void lanes_add(lanes x, global ulong *out) { *out |= x; }
 

@@ -12,23 +12,12 @@
 #define LINK_STEP(x, y, z) {x, y, z},
 constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};
 
-inline_always uint colour_of(const slab *s, uint x, uint y, uint z) {
-    const uint odd_j = (y + (uint)s->first[1]) & 1, odd_k = (z + (uint)s->first[2]) & 1;
-    return (s->parity + x + y + z) & 1 ? (uint)COLOUR_ODD : COLOUR_EVEN(odd_j, odd_k);
-}
-
-inline_always bool sample_snapped(const slab *s, uint x, uint y, uint z, row_results k1) {
-    const uint number = brick_index(s, y, z, x / 64);
-    global const ulong *words = brick_words(number, k1.bricks[number].sign, k1.words);
-    return zeros_of(s, words)[row_in_brick(s, y, z)] >> (x & 63) & 1;
-}
-
-/* The edge of the vertex of sample (x, y, z), counted from `first`: the one with the nearest crossing, of those that
- * were crossed when samples of its colour were snapped, and along which it may move. */
-inline_always uint snapped_edge(const slab *s, corner first, uint x, uint y, uint z, grid_arrays in, row_results k1) {
-    const uint colour = colour_of(s, x, y, z), count = colour == COLOUR_ODD ? LINK_ODD : LINK_EVEN;
+/* The edge of the vertex of sample (x, y, z), counted from `first`: the one with the nearest crossing, of those along
+ * which it may move. */
+inline_always uint snapped_edge(const slab *s, corner first, uint x, uint y, uint z, grid_arrays in) {
     const bool border_x = x == 0 || x + 1 == s->nx, border_y = y == 0 || y + 1 == s->ny;
     const bool border_z = z == 0 || z + 1 == s->nz;
+    const uint count = (s->parity + x + y + z) & 1 ? LINK_ODD : LINK_EVEN;
     const ulong at = row_start(s, y, z) + x;
     const BITS sample = in.samples[at];
     REAL steepness = 0;
@@ -38,13 +27,8 @@ inline_always uint snapped_edge(const slab *s, corner first, uint x, uint y, uin
         const int step_x = link_steps[n][0], step_y = link_steps[n][1], step_z = link_steps[n][2];
         if ((border_x && step_x) || (border_y && step_y) || (border_z && step_z)) continue;
         const BITS other = in.samples[(long)at + step_x + (step_y + step_z * (long)s->ny) * (long)s->nx];
-        REAL steeper = steepness;
         if (bits_inside(other, &s->test) == bits_inside(sample, &s->test)) continue;
-        if (!crossing_is_nearer(s, sample, other, n >= LINK_ODD, &steeper)) continue;
-        if (colour_of(s, x + step_x, y + step_y, z + step_z) < colour &&
-            sample_snapped(s, x + step_x, y + step_y, z + step_z, k1))
-            continue;
-        steepness = steeper, nearest = n;
+        if (crossing_is_nearer(s, sample, other, n >= LINK_ODD, &steepness)) nearest = n;
     }
     const int step_x = link_steps[nearest][0], step_y = link_steps[nearest][1], step_z = link_steps[nearest][2];
     const int forth = step_x + 2 * step_y + 4 * step_z > 0 ? 1 : -1; /* to higher sample indices */

@@ -18,7 +18,7 @@
 
 void tc_extract_options_init(tc_extract_options *options) {
     if (!options) return;
-    *options = (tc_extract_options){.struct_size = sizeof *options, .snap = 0.4};
+    *options = (tc_extract_options){.struct_size = sizeof *options, .snap = 0.5};
 }
 
 tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *options) {

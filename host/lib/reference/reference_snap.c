@@ -68,7 +68,7 @@ typedef struct surroundings {
     const uint32_t *joined;
     uint32_t here;              /* in the grid */
     uint32_t plus, minus, zero; /* inside, outside, on the surface */
-    uint32_t crossed;           /* edges that have a crossing along which the sample may move */
+    uint32_t crossed;           /* edges that have a crossing, and along which the sample may move */
 } surroundings;
 
 static unsigned colour_of(const reference *r, const int64_t p[3]) {
@@ -84,9 +84,8 @@ static void step_from(const int64_t p[3], int n, int64_t out[3]) {
     for (int axis = 0; axis < 3; axis++) out[axis] = p[axis] + link_steps[n][axis];
 }
 
-/* As it is when samples of the sample's colour are snapped: of snapped ones only those of earlier colours count. */
 static surroundings surroundings_of(const reference *r, const links *l, const int64_t p[3]) {
-    const unsigned odd = cube_parity(r, p), colour = colour_of(r, p);
+    const unsigned odd = cube_parity(r, p);
     surroundings s = {.joined = l ? l->joined[odd] : NULL};
     for (int n = 0; n < (odd ? LINK_ODD : LINK_EVEN); n++) {
         int64_t q[3];
@@ -97,10 +96,10 @@ static surroundings surroundings_of(const reference *r, const links *l, const in
             moves = moves && (!at_border(r, p, axis) || link_steps[n][axis] == 0); /* a border keeps its samples */
         }
         if (!in_grid) continue;
-        const bool zero = sample_is(r, q, SNAPPED) && colour_of(r, q) < colour, inside = sample_is(r, q, INSIDE);
+        const bool zero = sample_is(r, q, SNAPPED), inside = sample_is(r, q, INSIDE);
         s.here |= 1u << n;
         *(zero ? &s.zero : inside ? &s.plus : &s.minus) |= 1u << n;
-        if (!zero && moves && inside != sample_is(r, p, INSIDE)) s.crossed |= 1u << n;
+        if (moves && inside != sample_is(r, p, INSIDE)) s.crossed |= 1u << n;
     }
     return s;
 }

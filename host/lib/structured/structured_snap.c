@@ -22,14 +22,9 @@ static tc_status samples_pass(const run *r, slab_ref ref, const slab *window) {
     const word_buffers *b = slab_words(r, ref);
     tc_status status = TC_OK;
     for (cl_uint colour = 0; colour < COLOURS && !status; colour++) {
-        const kernel_argument arguments[] = {ARGUMENT(*window),
-                                             ARGUMENT(colour),
-                                             ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
-                                             ARGUMENT(work->cells.memory),
-                                             ARGUMENT(b->words.memory),
-                                             ARGUMENT(b->bricks.memory),
-                                             ARGUMENT(b->active.memory),
-                                             ARGUMENT(work->state.memory),
+        const kernel_argument arguments[] = {ARGUMENT(*window),          ARGUMENT(colour),
+                                             ARGUMENT(b->words.memory),  ARGUMENT(b->bricks.memory),
+                                             ARGUMENT(b->active.memory), ARGUMENT(work->state.memory),
                                              ARGUMENT(b->offsets.memory)};
         status = kernel_launch(r->context, r->kernels.snap[SNAP_PASS], "kernel snap_pass", arguments,
                                sizeof arguments / sizeof *arguments);
@@ -51,12 +46,21 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
                                     ARGUMENT(work->state.memory)};
     const kernel_argument open[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->bricks.memory),
                                     ARGUMENT(b->active.memory), ARGUMENT(work->state.memory)};
+    const kernel_argument wish[] = {ARGUMENT(window),
+                                    ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
+                                    ARGUMENT(work->cells.memory),
+                                    ARGUMENT(b->words.memory),
+                                    ARGUMENT(b->bricks.memory),
+                                    ARGUMENT(b->active.memory),
+                                    ARGUMENT(work->state.memory),
+                                    ARGUMENT(b->offsets.memory)};
     const kernel_argument close[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->active.memory),
                                      ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
     const sized_kernel *kernel = r->kernels.snap;
     tc_status status = kernel_launch(r->context, kernel[SNAP_SIGN], "kernel snap_sign", sign, 6);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_NEAR], "kernel snap_near", near, 4);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_OPEN], "kernel snap_open", open, 5);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_WISH], "kernel snap_wish", wish, 8);
     if (!status) status = samples_pass(r, ref, &window);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_CLOSE], "kernel snap_close", close, 5);
     return status;
