@@ -46,6 +46,7 @@ typedef struct brick_work {
 #ifdef REAL
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
+    long link_offsets[LINK_EVEN];
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
     float positions[3 * BATCH_EDGES];
 #endif
@@ -57,6 +58,7 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
             NUMBER_STEP * NUMBER_INDEX(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
+    if (ZEROS) link_offsets(s, work->link_offsets);
 #endif
 }
 
@@ -155,7 +157,7 @@ inline_always uint snapped_list(const slab *s, corner c, uint y, uint z, ulong s
         uint bit = lowest_bit(snapped);
         number[NUMBER_STEP * bit + 6] = first + count;
 #ifdef REAL
-        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, in);
+        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, work->link_offsets, in);
 #endif
         count++;
     }

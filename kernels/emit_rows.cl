@@ -114,7 +114,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, in)
+            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, NULL, in)
                                            : edge_code(type, !(even >> bit & 1)) + row + bit;
             ulong from =
                 row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));

@@ -18,18 +18,72 @@ inline_always REAL difference_of(REAL a, REAL b) {
     return difference < 0 ? -difference : difference;
 }
 
-/* Whether the crossing lies at most s->snapping.threshold of the edge from the sample, and nearer than *steepness
- * tells, which it replaces. A crossing just at the threshold is the inside sample's. across: the edge is a diagonal. */
-inline_always bool crossing_is_nearer(const slab *s, BITS sample, BITS other, bool across, REAL *steepness) {
+/* One over the length of an edge across a face. */
+#define ACROSS ((REAL)0.70710678f)
+
+/* Whether the crossing on an edge whose samples differ by twice the difference lies at most s->snapping.threshold of it
+ * from the sample. One just at the threshold is the inside sample's. */
+inline_always bool near_enough(const slab *s, BITS sample, REAL difference) {
+    const REAL half_of = (REAL)0.5f, reach = (REAL)s->snapping.threshold * difference;
+    const REAL distance = difference_of(half_of * ISOVALUE(&s->test), half_of * SAMPLE_VALUE(sample));
+    return bits_inside(sample, &s->test) ? distance <= reach : distance < reach;
+}
+
+#define LINK_STEP(x, y, z) {x, y, z},
+constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};
+
+/* From a sample to those of its link, in the sample buffer. */
+inline_always long link_offset(const slab *s, uint n) {
+    return link_steps[n][0] + (link_steps[n][1] + link_steps[n][2] * (long)s->ny) * (long)s->nx;
+}
+
+inline_always void link_offsets(const slab *s, long offsets[LINK_EVEN]) {
+    for (uint n = 0; n < LINK_EVEN; n++) offsets[n] = link_offset(s, n);
+}
+
+/* The index in its link of the nearest crossing of a sample on no border of the grid; LINK_EVEN: none is near enough.
+ * Edges that are not crossed need no test: their samples are too near to each other in value. */
+inline_always uint nearest_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
+    const BITS sample = *at;
     const REAL half_of = (REAL)0.5f, here = half_of * SAMPLE_VALUE(sample);
-    REAL distance = difference_of(half_of * ISOVALUE(&s->test), here);
-    REAL difference = difference_of(half_of * SAMPLE_VALUE(other), here);
-    REAL steep = across ? difference * (REAL)0.70710678f : difference; /* over the root of 2, its length */
-    const REAL reach = (REAL)s->snapping.threshold * difference;
-    const bool near_enough = bits_inside(sample, &s->test) ? distance <= reach : distance < reach;
-    if (!near_enough || steep <= *steepness) return false;
-    *steepness = steep;
-    return true;
+    const REAL away = bits_inside(sample, &s->test) ? (REAL)-1 : (REAL)1;
+    REAL along = 0, across = 0;
+    uint nearest = LINK_EVEN, nearest_across = LINK_EVEN;
+#pragma unroll
+    for (uint n = 0; n < LINK_ODD; n++) {
+        const REAL difference = away * (half_of * SAMPLE_VALUE(at[offsets[n]]) - here);
+        nearest = difference > along ? n : nearest, along = difference > along ? difference : along;
+    }
+    if (!near_enough(s, sample, along)) nearest = LINK_EVEN, along = 0;
+    if (odd) return nearest;
+#pragma unroll
+    for (uint n = LINK_ODD; n < LINK_EVEN; n++) {
+        const REAL difference = away * (half_of * SAMPLE_VALUE(at[offsets[n]]) - here);
+        nearest_across = difference > across ? n : nearest_across, across = difference > across ? difference : across;
+    }
+    return near_enough(s, sample, across) && across * ACROSS > along ? nearest_across : nearest;
+}
+
+/* The same for any sample: on a border it moves within that only. */
+inline_always uint nearest_on_border(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
+    const bool border_x = x == 0 || x + 1 == s->nx, border_y = y == 0 || y + 1 == s->ny;
+    const bool border_z = z == 0 || z + 1 == s->nz;
+    const uint count = (s->parity + x + y + z) & 1 ? LINK_ODD : LINK_EVEN;
+    const REAL half_of = (REAL)0.5f;
+    global const BITS *at = samples + row_start(s, y, z) + x;
+    uint nearest = LINK_EVEN;
+    REAL steepness = 0;
+#pragma unroll 1
+    for (uint n = 0; n < count; n++) {
+        if ((border_x && link_steps[n][0]) || (border_y && link_steps[n][1]) || (border_z && link_steps[n][2]))
+            continue;
+        const BITS other = at[link_offset(s, n)];
+        const REAL difference = difference_of(half_of * SAMPLE_VALUE(other), half_of * SAMPLE_VALUE(*at));
+        const REAL steep = n < LINK_ODD ? difference : difference * ACROSS;
+        if (bits_inside(other, &s->test) == bits_inside(*at, &s->test)) continue;
+        if (near_enough(s, *at, difference) && steep > steepness) steepness = steep, nearest = n;
+    }
+    return nearest;
 }
 
 #endif

@@ -7,9 +7,9 @@
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
  * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
  * 4. snap_wish: which samples are near enough to a crossing of theirs;
- * 5. snap_pass, once for each colour (link.h): samples of the colour that wish it and are regular points (regular.cl)
- *    become zeros. They do not see each other, so their order does not matter;
- * 6. snap_close: the zeros of the last colour, which wait elsewhere while others read the words, join the rest.
+ * 5. snap_even, once for each colour of even samples (link.h), then snap_odd: samples of the colour that wish it and
+ * are regular points (regular.cl) become zeros. They do not see each other, so their order does not matter;
+ * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
  */
 #ifndef SNAP_CL
 #define SNAP_CL
@@ -17,8 +17,7 @@
 #include "cells.cl"
 #include "count.cl"
 #include "nearest.cl"
-#include "regular.cl"
-#include "snap_rows.cl"
+#include "snap_link.cl"
 
 kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ranges, global ulong *words,
                       global brick_state *bricks, global uint *state) {
@@ -67,6 +66,17 @@ kernel void snap_near(slab s, global const brick_state *bricks, global uint *nea
 #define BRICKS_FURTHER ((uint)get_num_groups(0) * GROUP_BRICKS)
 #define ITEM_ROW       ((uint)get_local_id(0) % BRICK_ITEMS)
 
+/* The first sample of a brick of the window. */
+typedef struct brick_place {
+    uint w, y, z;
+} brick_place;
+
+inline_always brick_place brick_place_of(const slab *s, uint number) {
+    brick_place p = {number % s->words_x, number / s->words_x % s->bricks_y * BRICK_ROWS,
+                     s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
+    return p;
+}
+
 kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
                       global const uint *state) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
@@ -86,129 +96,35 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- links
- */
-
-inline_always void link_enter(link_signs *l, uint n, lanes sign, lanes zero, lanes exists) {
-    l->plus[n] = sign & ~zero & exists;
-    l->minus[n] = ~sign & ~zero & exists;
-    l->zero[n] = zero & exists;
-}
-
-inline_always lanes shifted_up(lanes word, lanes before) { return word << 1 | before >> 63; }
-inline_always lanes shifted_down(lanes word, lanes after) { return word >> 1 | after << 63; }
-
-/* Samples of a row that have one before them and one after them in x. */
-inline_always ulong has_before(uint w) { return w ? ~0ul : ~1ul; }
-inline_always ulong has_after(const slab *s, uint w) { return w + 1 < s->words_x ? ~0ul : word_valid(s, w) >> 1; }
-
-/* Enters the samples a step away in y and z: in the column itself as sample n, at lower and at higher x as samples
- * `before` and `after`. */
-inline_always void column_enter(const slab *s, stored_words m, uint y, uint z, uint w, int step_y, int step_z,
-                                lanes exists, uint n, uint before, uint after, bool zeros, link_signs *l) {
-    const uint plane = z + step_z;
-    const lanes sign = rows_beside(s, m, y, plane, w, step_y, false);
-    const lanes zero = zeros ? rows_beside(s, m, y, plane, w, step_y, true) : (lanes)0;
-    if (n < LINK_EVEN) link_enter(l, n, sign, zero, exists);
-    if (before >= LINK_EVEN) return;
-    const lanes sign_low = rows_beside(s, m, y, plane, w - 1, step_y, false);
-    const lanes sign_high = rows_beside(s, m, y, plane, w + 1, step_y, false);
-    const lanes zero_low = zeros ? rows_beside(s, m, y, plane, w - 1, step_y, true) : (lanes)0;
-    const lanes zero_high = zeros ? rows_beside(s, m, y, plane, w + 1, step_y, true) : (lanes)0;
-    link_enter(l, before, shifted_up(sign, sign_low), shifted_up(zero, zero_low), exists & has_before(w));
-    link_enter(l, after, shifted_down(sign, sign_high), shifted_down(zero, zero_high), exists & has_after(s, w));
-}
-
-#define NONE LINK_EVEN
-
-/* The link of every sample of the rows: an odd or an even one. Of an even one, samples along the axes are odd and no
- * zeros yet. */
-inline_always void link_load(const slab *s, stored_words m, uint y, uint z, uint w, bool odd, link_signs *l) {
-    const lanes low = lanes_select(LANE_NUMBERS + y > (lanes)0),
-                high = lanes_select(LANE_NUMBERS + (y + 1) < (lanes)s->ny);
-    const lanes all = ~(lanes)0, below = z > s->results.word_z ? all : (lanes)0, above = z + 1 < s->z1 ? all : (lanes)0;
-    column_enter(s, m, y, z, w, 0, 0, all, NONE, 0, 1, odd, l);
-    column_enter(s, m, y, z, w, -1, 0, low, 2, odd ? NONE : 6, 7, true, l);
-    column_enter(s, m, y, z, w, 1, 0, high, 3, odd ? NONE : 8, 9, true, l);
-    column_enter(s, m, y, z, w, 0, -1, below, 4, odd ? NONE : 10, 11, true, l);
-    column_enter(s, m, y, z, w, 0, 1, above, 5, odd ? NONE : 12, 13, true, l);
-    if (odd) return;
-    column_enter(s, m, y, z, w, -1, -1, low & below, 14, NONE, NONE, true, l);
-    column_enter(s, m, y, z, w, 1, -1, high & below, 15, NONE, NONE, true, l);
-    column_enter(s, m, y, z, w, -1, 1, low & above, 16, NONE, NONE, true, l);
-    column_enter(s, m, y, z, w, 1, 1, high & above, 17, NONE, NONE, true, l);
-}
-
-/* On which borders of the grid samples are, by axis. */
-typedef struct borders {
-    lanes across[3];
-} borders;
-
-inline_always borders borders_of(const slab *s, uint y, uint z, uint w) {
-    borders b = {{~((lanes)has_before(w) & has_after(s, w)),
-                  lanes_select(LANE_NUMBERS + y == (lanes)0) | lanes_select(LANE_NUMBERS + (y + 1) == (lanes)s->ny),
-                  z == 0 || z + 1 == s->nz ? ~(lanes)0 : (lanes)0}};
-    return b;
-}
-
-/* The samples of a colour. */
-inline_always lanes samples_of(const slab *s, uint y, uint z, uint w, uint colour) {
-    const lanes exist = lanes_select(LANE_NUMBERS + y < (lanes)s->ny) & word_valid(s, w), even = even_rows(s, y, z);
-    if (colour == COLOUR_ODD) return exist & ~even;
-    const uint odd_k = (z + (uint)s->first[2]) & 1, odd_j = (colour >> 1) & 1;
-    const lanes rows = lanes_select(((LANE_NUMBERS + (y + (uint)s->first[1])) & 1ul) == (lanes)odd_j);
-    return COLOUR_EVEN(odd_j, odd_k) == colour ? exist & even & rows : (lanes)0;
-}
-
 #if MISSING
-/* Samples of which all cubes in the grid are present. */
-inline_always lanes cubes_around(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
+/* Samples of a set that is not spread of which all cubes in the grid are present. */
+inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_set r) {
     lanes present = ~(lanes)0;
 #pragma unroll 1
     for (uint n = 0; n < 4; n++) {
         const uint back_y = n & 1, back_z = n >> 1;
-        if (z < back_z || z - back_z + 1 >= s->nz) continue;
-        const lanes beside = LANE_NUMBERS + (ulong)y - (ulong)back_y; /* wraps below 0 */
+        if (r.z < back_z || r.z - back_z + 1 >= s->nz) continue;
+        const lanes beside = r.at_y - (ulong)back_y; /* wraps below 0 */
         const lanes outside = lanes_select(beside + 1ul >= (lanes)s->ny) | lanes_select(beside + 1ul == (lanes)0ul);
-        const lanes word = cells_rows(s, cells, y - back_y, z - back_z, w) | outside;
-        const lanes low = (w ? cells_rows(s, cells, y - back_y, z - back_z, w - 1) : (lanes)~0ul) | outside;
-        present &= (word | ~(lanes)has_after(s, w)) & shifted_up(word, low);
+        const lanes word = cells_rows(s, cells, r.y - back_y, r.z - back_z, r.w) | outside;
+        const lanes low = (r.w ? cells_rows(s, cells, r.y - back_y, r.z - back_z, r.w - 1) : (lanes)~0ul) | outside;
+        present &= (word | ~(lanes)has_after(s, r.w)) & shifted_up(word, low);
     }
     return present;
 }
 #endif
 
-/* ------------------------------------------------------------------------------------------------------------ passes
+/* ------------------------------------------------------------------------------------------------------------ wishes
  */
 
 #ifdef REAL
 
-#define LINK_STEP(x, y, z) {x, y, z},
-constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};
-
-/* Whether the sample at index `at` is near enough to a crossing; border: bits of axes along which it may not move. */
-inline_always bool sample_wishes(const slab *s, ulong at, bool odd, uint border, global const BITS *samples) {
-    const BITS sample = samples[at];
-    const bool inside = bits_inside(sample, &s->test);
-    const uint count = odd ? LINK_ODD : LINK_EVEN;
-    REAL steepness = 0;
-#pragma unroll 1
-    for (uint n = 0; n < count; n++) {
-        const int step_x = link_steps[n][0], step_y = link_steps[n][1], step_z = link_steps[n][2];
-        if ((border & 1 && step_x) || (border & 2 && step_y) || (border & 4 && step_z)) continue;
-        const BITS other = samples[(long)at + step_x + (step_y + step_z * (long)s->ny) * (long)s->nx];
-        if (bits_inside(other, &s->test) != inside && crossing_is_nearer(s, sample, other, false, &steepness))
-            return true;
-    }
-    return false;
-}
-
-/* Which samples of LANES rows have a crossing along which they may move. */
-inline_always lanes rows_crossed(const slab *s, stored_words m, uint y, uint z, uint w, const borders *b) {
-    const lanes sign = rows_beside(s, m, y, z, w, 0, false), even = even_rows(s, y, z);
+/* Which samples of a plane's rows have a crossing along which they may move. */
+inline_always lanes rows_crossed(const slab *s, stored_words m, row_set r, const borders *b) {
+    const lanes sign = words_beside(s, m, r, false, 0, 0, 0, false);
     link_signs l;
-    lanes crossed_axis = 0, crossed_across = 0;
-    link_load(s, m, y, z, w, false, &l);
+    lanes crossed_along = 0, crossed_across = 0;
+    link_load(s, m, r, false, false, false, &l);
 #pragma unroll
     for (uint n = 0; n < LINK_EVEN; n++) {
         const lanes *c = b->across;
@@ -220,11 +136,34 @@ inline_always lanes rows_crossed(const slab *s, stored_words m, uint y, uint z, 
                                      : c[1] | c[2];
         const lanes opposite = ((sign & l.minus[n]) | (~sign & l.plus[n])) & ~stays;
         if (n < LINK_ODD)
-            crossed_axis |= opposite;
+            crossed_along |= opposite;
         else
             crossed_across |= opposite;
     }
-    return crossed_axis | (crossed_across & even);
+    return (crossed_along | (crossed_across & samples_even(s, r))) & samples_valid(s, r);
+}
+
+/* Those of the samples in the word that are near enough to a crossing; odd or even ones, on no border. */
+inline_always ulong inner_wishes(const slab *s, const long *offsets, ulong start, ulong rest, bool odd,
+                                 global const BITS *samples) {
+    ulong wishes = 0;
+    for (; rest; rest &= rest - 1) {
+        const uint bit = lowest_bit(rest);
+        if (nearest_inside(s, samples + start + bit, offsets, odd) != LINK_EVEN) wishes |= 1ul << bit;
+    }
+    return wishes;
+}
+
+inline_always ulong row_wishes(const slab *s, const long *offsets, uint y, uint z, uint w, ulong crossed_any,
+                               ulong even, ulong border, global const BITS *samples) {
+    const ulong start = row_start(s, y, z) + 64ul * w, inner = crossed_any & ~border;
+    ulong wishes = inner_wishes(s, offsets, start, inner & even, false, samples) |
+                   inner_wishes(s, offsets, start, inner & ~even, true, samples);
+    for (ulong rest = crossed_any & border; rest; rest &= rest - 1) {
+        const uint bit = lowest_bit(rest);
+        if (nearest_on_border(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
+    }
+    return wishes;
 }
 
 /* wishes: a word for each row of the bricks near the surface. */
@@ -233,34 +172,26 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
                       global ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
+    long offsets[LINK_EVEN];
+    link_offsets(&s, offsets);
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
-        const uint number = near[n], w = number % s.words_x, y0 = number / s.words_x % s.bricks_y * BRICK_ROWS;
-        const uint z0 = s.results.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES;
-        for (uint row = ITEM_ROW; row < BRICK_WORDS; row += LANES * BRICK_ITEMS) {
-            const uint y = y0 + row % BRICK_ROWS, z = z0 + row / BRICK_ROWS;
-            ulong wish[LANES];
+        const brick_place p = brick_place_of(&s, near[n]);
+        for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
+            const row_set r = set_of_plane(p.y, p.z, p.w, set);
+            const borders b = borders_of(&s, r);
+            const lanes border = b.across[0] | b.across[1] | b.across[2], even = samples_even(&s, r);
             lanes crossed_any = 0;
-            const borders b = borders_of(&s, y, z, w);
-            if (y < s.ny && z < s.z1) {
-                crossed_any = rows_crossed(&s, m, y, z, w, &b) & word_valid(&s, w);
-                crossed_any &= lanes_select(LANE_NUMBERS + y < (lanes)s.ny);
+            ulong wish[LANES];
+            if (r.y < s.ny && r.z < s.z1) {
+                crossed_any = rows_crossed(&s, m, r, &b);
 #if MISSING
-                if (lanes_any(crossed_any)) crossed_any &= cubes_around(&s, cells, y, z, w);
+                if (lanes_any(crossed_any)) crossed_any &= cubes_around(&s, cells, r);
 #endif
             }
-            for (uint lane = 0; lane < LANES; lane++) {
-                wish[lane] = 0;
-                for (ulong rest = lane_of(&crossed_any, lane); rest; rest &= rest - 1) {
-                    const uint bit = lowest_bit(rest);
-                    const uint border = (uint)(lane_of(&b.across[0], lane) >> bit & 1) |
-                                        (uint)(lane_of(&b.across[1], lane) >> bit & 1) << 1 |
-                                        (uint)(lane_of(&b.across[2], lane) >> bit & 1) << 2;
-                    const bool odd = (s.parity + bit + y + lane + z) & 1;
-                    if (sample_wishes(&s, row_start(&s, y + lane, z) + 64ul * w + bit, odd, border, samples))
-                        wish[lane] |= 1ul << bit;
-                }
-            }
-            lanes_store(lanes_of(wish), wishes + BRICK_WORDS * (ulong)number + row);
+            for (uint lane = 0; lane < LANES; lane++)
+                wish[lane] = row_wishes(&s, offsets, r.y + lane, r.z, r.w, lane_of(&crossed_any, lane),
+                                        lane_of(&even, lane), lane_of(&border, lane), samples);
+            set_store(lanes_of(wish), wishes + BRICK_WORDS * (ulong)near[n], r);
         }
     }
 }
@@ -270,33 +201,46 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
 /* ------------------------------------------------------------------------------------------------------------ passes
  */
 
-/* The samples of the colour in LANES rows that become zeros. */
-inline_always lanes rows_snap(const slab *s, stored_words m, uint y, uint z, uint w, lanes wanted, bool odd) {
+/* Of the samples in a set those that are regular points. */
+inline_always lanes set_snap(const slab *s, stored_words m, row_set r, bool spread, lanes wanted, bool odd) {
     link_signs l;
-    const borders b = borders_of(s, y, z, w);
-    link_load(s, m, y, z, w, odd, &l);
+    const borders b = borders_of(s, r);
+    if (!lanes_any(wanted)) return 0;
+    link_load(s, m, r, spread, odd, true, &l);
     return points_regular(&l, b.across, wanted, odd);
 }
 
-/* Those of the last colour replace the wishes. */
-kernel void snap_pass(slab s, uint colour, global ulong *words, global brick_state *bricks, global const uint *near,
-                      global const uint *state, global ulong *wishes) {
+kernel void snap_even(slab s, uint colour, global ulong *words, global brick_state *bricks, global const uint *near,
+                      global const uint *state, global const ulong *wishes) {
+    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS], odd_j = colour >> 1;
+    const uint odd_k = COLOUR_EVEN(odd_j, 0) == colour ? 0 : 1;
+    const uint odd_y = (odd_j ^ (uint)s.first[1]) & 1, odd_z = (odd_k ^ (uint)s.first[2]) & 1;
+    const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
+    global ulong *zeros = m.words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
+    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
+        const ulong index = BRICK_WORDS * (ulong)near[n];
+        const brick_place p = brick_place_of(&s, near[n]);
+        for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
+            const row_set r = set_spread(p.y, p.z, p.w, set, odd_y, odd_z);
+            lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
+            wanted = set_snap(&s, m, r, true, wanted, false);
+            if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
+        }
+    }
+}
+
+/* What becomes of the odd samples replaces the wishes. */
+kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
+                     global const uint *state, global ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
-        const uint number = near[n], w = number % s.words_x, y0 = number / s.words_x % s.bricks_y * BRICK_ROWS;
-        const uint z0 = s.results.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES;
-        for (uint row = ITEM_ROW; row < BRICK_WORDS; row += LANES * BRICK_ITEMS) {
-            const uint y = y0 + row % BRICK_ROWS, z = z0 + row / BRICK_ROWS;
-            const ulong index = BRICK_WORDS * (ulong)number + row;
-            lanes wanted = lanes_load(wishes + index) & samples_of(&s, y, z, w, colour);
-            if (lanes_any(wanted))
-                wanted = colour == COLOUR_ODD ? rows_snap(&s, m, y, z, w, wanted, true)
-                                              : rows_snap(&s, m, y, z, w, wanted, false);
-            if (colour == COLOUR_ODD)
-                lanes_store(wanted, wishes + index);
-            else if (lanes_any(wanted))
-                lanes_add(wanted, m.words + BRICK_WORDS * (ulong)s.snapping.zero_bricks + index);
+        const ulong index = BRICK_WORDS * (ulong)near[n];
+        const brick_place p = brick_place_of(&s, near[n]);
+        for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
+            const row_set r = set_of_plane(p.y, p.z, p.w, set);
+            const lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
+            set_store(set_snap(&s, m, r, false, wanted, true), wishes + index, r);
         }
     }
 }

@@ -1,5 +1,6 @@
 /*
- * snap_rows.cl - method snap: words of rows, and of the rows beside them
+ * snap_rows.cl - method snap: LANES rows of samples that are looked at together, their words and those of rows beside
+ * them
  */
 #ifndef SNAP_ROWS_CL
 #define SNAP_ROWS_CL
@@ -18,6 +19,13 @@ inline_always global const ulong *row_stored(const slab *s, stored_words m, uint
     global const ulong *words = brick_words(number, m.bricks[number].sign, m.words);
     return (zeros ? zeros_of(s, words) : words) + row_in_brick(s, y, z);
 }
+
+/* Rows of a brick. In sets that are not spread: from (y, z) on, one after another in y. In spread ones, of even samples
+ * of one colour: every second one of a plane from (y, z) on, then those of the plane after the next. */
+typedef struct row_set {
+    uint y, z, w;
+    lanes at_y, at_z; /* where each row is */
+} row_set;
 
 #if WORK_ITEMS == 1
 #include "snap_rows_alone.cl"

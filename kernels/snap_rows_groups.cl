@@ -1,24 +1,39 @@
 /*
- * snap_rows_groups.cl - words of a row, and of the rows beside it, where work-items take a row each
+ * snap_rows_groups.cl - for groups: each work-item takes a row of a brick
  */
 #ifndef SNAP_ROWS_GROUPS_CL
 #define SNAP_ROWS_GROUPS_CL
 
 #include "snap_rows.cl"
 
-/* The word at w of row y, or of the row before it or after it for step_y -1 or 1. 0 outside the grid. */
-inline_always lanes rows_beside(const slab *s, stored_words m, uint y, uint z, uint w, int step_y, bool zeros) {
-    if (w >= s->words_x || z < s->results.word_z || z >= s->z1) return 0; /* w wraps below 0, y and z too */
-    if (y + step_y >= s->ny) return 0;
-    return *row_stored(s, m, y + step_y, z, w, zeros);
+#define SETS_OF_PLANES BRICK_WORDS
+#define SETS_SPREAD    8
+
+inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
+    const uint y = y0 + set % BRICK_ROWS, z = z0 + set / BRICK_ROWS;
+    row_set r = {y, z, w, y, z};
+    return r;
 }
 
-inline_always lanes lanes_load(global const ulong *at) { return *at; }
-inline_always void lanes_store(lanes x, global ulong *out) { *out = x; }
-inline_always void lanes_add(lanes x, global ulong *out) { *out |= x; }
+inline_always row_set set_spread(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
+    const uint y = y0 + odd_y + 2 * (set % 4), z = z0 + odd_z + 2 * (set / 4);
+    row_set r = {y, z, w, y, z};
+    return r;
+}
+
+inline_always lanes words_beside(const slab *s, stored_words m, row_set r, bool spread, int step_y, int step_z,
+                                 int step_w, bool zeros) {
+    const uint w = r.w + step_w, z = r.z + step_z, y = r.y + step_y; /* wrap below 0 */
+    const bool stored = w < s->words_x && y < s->ny && z >= s->results.word_z && z < s->z1;
+    return stored ? *row_stored(s, m, y, z, w, zeros) : 0;
+}
+
+inline_always uint set_row(row_set r) { return r.z % BRICK_PLANES * BRICK_ROWS + r.y % BRICK_ROWS; }
+inline_always lanes set_load(global const ulong *brick, row_set r, bool spread) { return brick[set_row(r)]; }
+inline_always void set_store(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] = x; }
+inline_always void set_add(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] |= x; }
 
 inline_always ulong lane_of(const lanes *x, uint n) { return *x; }
-
 inline_always lanes lanes_of(const ulong *x) { return *x; }
 
 #endif

@@ -22,7 +22,7 @@ typedef struct device_buffer {
     host_block block; /* its memory, on devices that work in the host's memory */
 } device_buffer;
 
-enum { KERNELS_MOST = 6, PROGRAM_OPTIONS_BYTES = 512 };
+enum { KERNELS_MOST = 7, PROGRAM_OPTIONS_BYTES = 512 };
 
 /* A program of kernels, built with certain options. */
 typedef struct program {

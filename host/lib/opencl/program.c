@@ -99,7 +99,7 @@ static const program_text programs[PROGRAM_COUNT] = {
     [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
                           {[TEXT_ALONE] = kernel_classify_alone, [TEXT_GROUPS] = kernel_classify_groups}},
     [PROGRAM_EMIT] = {{"emit"}, {[TEXT_ALONE] = kernel_emit_alone, [TEXT_GROUPS] = kernel_emit_groups}},
-    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_wish", "snap_pass", "snap_close"},
+    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_wish", "snap_even", "snap_odd", "snap_close"},
                       {[TEXT_ALONE] = kernel_snap_alone, [TEXT_GROUPS] = kernel_snap_groups}},
     [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
                          {[TEXT_ALONE] = kernel_complex_alone, [TEXT_GROUPS] = kernel_complex_groups}},

@@ -17,17 +17,15 @@ static slab window_of(const run *r, slab_ref ref, const slab *s) {
     return w;
 }
 
-static tc_status samples_pass(const run *r, slab_ref ref, const slab *window) {
-    const workspace *work = &r->context->work;
+static tc_status even_pass(const run *r, slab_ref ref, const slab *window) {
     const word_buffers *b = slab_words(r, ref);
     tc_status status = TC_OK;
-    for (cl_uint colour = 0; colour < COLOURS && !status; colour++) {
+    for (cl_uint colour = 0; colour < COLOUR_ODD && !status; colour++) {
         const kernel_argument arguments[] = {ARGUMENT(*window),          ARGUMENT(colour),
                                              ARGUMENT(b->words.memory),  ARGUMENT(b->bricks.memory),
-                                             ARGUMENT(b->active.memory), ARGUMENT(work->state.memory),
+                                             ARGUMENT(b->active.memory), ARGUMENT(r->context->work.state.memory),
                                              ARGUMENT(b->offsets.memory)};
-        status = kernel_launch(r->context, r->kernels.snap[SNAP_PASS], "kernel snap_pass", arguments,
-                               sizeof arguments / sizeof *arguments);
+        status = kernel_launch(r->context, r->kernels.snap[SNAP_PASS_EVEN], "kernel snap_even", arguments, 7);
     }
     return status;
 }
@@ -54,6 +52,9 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
                                     ARGUMENT(b->active.memory),
                                     ARGUMENT(work->state.memory),
                                     ARGUMENT(b->offsets.memory)};
+    const kernel_argument odd[] = {
+        ARGUMENT(window),           ARGUMENT(b->words.memory),    ARGUMENT(b->bricks.memory),
+        ARGUMENT(b->active.memory), ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
     const kernel_argument close[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->active.memory),
                                      ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
     const sized_kernel *kernel = r->kernels.snap;
@@ -61,7 +62,8 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
     if (!status) status = kernel_launch(r->context, kernel[SNAP_NEAR], "kernel snap_near", near, 4);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_OPEN], "kernel snap_open", open, 5);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_WISH], "kernel snap_wish", wish, 8);
-    if (!status) status = samples_pass(r, ref, &window);
+    if (!status) status = even_pass(r, ref, &window);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_PASS_ODD], "kernel snap_odd", odd, 6);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_CLOSE], "kernel snap_close", close, 5);
     return status;
 }
