@@ -64,6 +64,24 @@ inline_always uint nearest_inside(const slab *s, global const BITS *at, const lo
     return near_enough(s, sample, across) && across * ACROSS > along ? nearest_across : nearest;
 }
 
+/* Whether such a sample is near enough to a crossing. */
+inline_always bool wishes_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
+    const REAL half_of = (REAL)0.5f, here = SAMPLE_VALUE(*at);
+    REAL least = here, most = here;
+#pragma unroll
+    for (uint n = 0; n < LINK_ODD; n++) {
+        const REAL other = SAMPLE_VALUE(at[offsets[n]]);
+        least = other < least ? other : least, most = other > most ? other : most;
+    }
+#pragma unroll
+    for (uint n = LINK_ODD; n < LINK_EVEN && !odd; n++) {
+        const REAL other = SAMPLE_VALUE(at[offsets[n]]);
+        least = other < least ? other : least, most = other > most ? other : most;
+    }
+    const REAL farthest = bits_inside(*at, &s->test) ? least : most;
+    return near_enough(s, *at, difference_of(half_of * farthest, half_of * here));
+}
+
 /* The same for any sample: on a border it moves within that only. */
 inline_always uint nearest_on_border(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
     const bool border_x = x == 0 || x + 1 == s->nx, border_y = y == 0 || y + 1 == s->ny;
@@ -84,6 +102,16 @@ inline_always uint nearest_on_border(const slab *s, uint x, uint y, uint z, glob
         if (near_enough(s, *at, difference) && steep > steepness) steepness = steep, nearest = n;
     }
     return nearest;
+}
+
+/* Which of the samples of a row on the grid's border are near enough to a crossing. */
+inline_always ulong border_wishes(const slab *s, uint y, uint z, uint w, ulong rest, global const BITS *samples) {
+    ulong wishes = 0;
+    for (; rest; rest &= rest - 1) {
+        const uint bit = lowest_bit(rest);
+        if (nearest_on_border(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
+    }
+    return wishes;
 }
 
 #endif

@@ -116,19 +116,18 @@ inline_always lanes joined_odd(const lanes set[LINK_EVEN], uint n) {
  * sample of the set and adds what is joined. */
 inline_always lanes connected(const lanes set[LINK_EVEN], lanes wanted, bool odd) {
     const uint count = odd ? LINK_ODD : LINK_EVEN;
-    lanes seen[LINK_EVEN], any = 0, added, missed = 0;
+    lanes seen[LINK_EVEN], any = 0, added, missed;
 #pragma unroll
-    for (uint n = 0; n < count; n++) seen[n] = set[n] & ~any & wanted, any |= set[n];
+    for (uint n = 0; n < count; n++) seen[n] = set[n] & ~any, any |= set[n];
     do {
-        added = 0;
+        added = missed = 0;
 #pragma unroll
         for (uint n = 0; n < count; n++) {
-            const lanes more = set[n] & ~seen[n] & (odd ? joined_odd(seen, n) : joined_even(seen, n));
-            seen[n] |= more, added |= more;
+            const lanes left = set[n] & ~seen[n], more = left & (odd ? joined_odd(seen, n) : joined_even(seen, n));
+            seen[n] |= more, added |= more, missed |= left & ~more;
         }
-    } while (lanes_any(added));
-#pragma unroll
-    for (uint n = 0; n < count; n++) missed |= set[n] & ~seen[n];
+        missed &= wanted;
+    } while (lanes_any(missed) && lanes_any(added));
     return any & ~missed & wanted;
 }
 

@@ -35,12 +35,10 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
 /* ------------------------------------------------------------------------------------------------------------ bricks
  */
 
-inline_always uint brick_count_of(const slab *s) {
-    return (s->z1 - s->results.word_z + BRICK_PLANES - 1) / BRICK_PLANES * s->bricks_y * s->words_x;
-}
+inline_always uint brick_count_of(const slab *s) { return window_layers(s) * s->bricks_y * s->words_x; }
 
 inline_always bool brick_near(const slab *s, uint number, global const brick_state *bricks) {
-    const uint sign = bricks[number].sign, layers = brick_count_of(s) / s->words_x / s->bricks_y;
+    const uint sign = bricks[number].sign, layers = window_layers(s);
     const int w = (int)(number % s->words_x), row = (int)(number / s->words_x % s->bricks_y),
               layer = (int)(number / s->words_x / s->bricks_y);
     if (sign == SIGN_MIXED) return true;
@@ -65,17 +63,6 @@ kernel void snap_near(slab s, global const brick_state *bricks, global uint *nea
 #define FIRST_BRICK    ((uint)get_group_id(0) * GROUP_BRICKS + (uint)get_local_id(0) / BRICK_ITEMS)
 #define BRICKS_FURTHER ((uint)get_num_groups(0) * GROUP_BRICKS)
 #define ITEM_ROW       ((uint)get_local_id(0) % BRICK_ITEMS)
-
-/* The first sample of a brick of the window. */
-typedef struct brick_place {
-    uint w, y, z;
-} brick_place;
-
-inline_always brick_place brick_place_of(const slab *s, uint number) {
-    brick_place p = {number % s->words_x, number / s->words_x % s->bricks_y * BRICK_ROWS,
-                     s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
-    return p;
-}
 
 kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
                       global const uint *state) {
@@ -120,11 +107,11 @@ inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_s
 #ifdef REAL
 
 /* Which samples of a plane's rows have a crossing along which they may move. */
-inline_always lanes rows_crossed(const slab *s, stored_words m, row_set r, const borders *b) {
-    const lanes sign = words_beside(s, m, r, false, 0, 0, 0, false);
+inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r, const borders *b) {
+    const lanes sign = words_beside(s, a, r, false, 0, 0, 0, false);
     link_signs l;
     lanes crossed_along = 0, crossed_across = 0;
-    link_load(s, m, r, false, false, false, &l);
+    link_load(s, a, r, false, false, false, &l);
 #pragma unroll
     for (uint n = 0; n < LINK_EVEN; n++) {
         const lanes *c = b->across;
@@ -143,56 +130,37 @@ inline_always lanes rows_crossed(const slab *s, stored_words m, row_set r, const
     return (crossed_along | (crossed_across & samples_even(s, r))) & samples_valid(s, r);
 }
 
-/* Those of the samples in the word that are near enough to a crossing; odd or even ones, on no border. */
-inline_always ulong inner_wishes(const slab *s, const long *offsets, ulong start, ulong rest, bool odd,
-                                 global const BITS *samples) {
-    ulong wishes = 0;
-    for (; rest; rest &= rest - 1) {
-        const uint bit = lowest_bit(rest);
-        if (nearest_inside(s, samples + start + bit, offsets, odd) != LINK_EVEN) wishes |= 1ul << bit;
-    }
-    return wishes;
-}
-
-inline_always ulong row_wishes(const slab *s, const long *offsets, uint y, uint z, uint w, ulong crossed_any,
-                               ulong even, ulong border, global const BITS *samples) {
-    const ulong start = row_start(s, y, z) + 64ul * w, inner = crossed_any & ~border;
-    ulong wishes = inner_wishes(s, offsets, start, inner & even, false, samples) |
-                   inner_wishes(s, offsets, start, inner & ~even, true, samples);
-    for (ulong rest = crossed_any & border; rest; rest &= rest - 1) {
-        const uint bit = lowest_bit(rest);
-        if (nearest_on_border(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
-    }
-    return wishes;
-}
+#if WORK_ITEMS == 1
+#include "snap_wish_alone.cl"
+#else
+#include "snap_wish_groups.cl"
+#endif
 
 /* wishes: a word for each row of the bricks near the surface. */
-kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
-                      global brick_state *bricks, global const uint *near, global const uint *state,
+kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
+                      global const brick_state *bricks, global const uint *near, global const uint *state,
                       global ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
-    const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
-    long offsets[LINK_EVEN];
-    link_offsets(&s, offsets);
+    wish_room room;
+    brick_around a;
+    words += UNIFORM_BRICKS * BRICK_WORDS;
+    link_offsets(&s, room.offsets);
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
         const brick_place p = brick_place_of(&s, near[n]);
+        around_make(&s, words, bricks, near[n], &a);
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
             const row_set r = set_of_plane(p.y, p.z, p.w, set);
             const borders b = borders_of(&s, r);
-            const lanes border = b.across[0] | b.across[1] | b.across[2], even = samples_even(&s, r);
             lanes crossed_any = 0;
-            ulong wish[LANES];
             if (r.y < s.ny && r.z < s.z1) {
-                crossed_any = rows_crossed(&s, m, r, &b);
+                crossed_any = rows_crossed(&s, &a, r, &b);
 #if MISSING
                 if (lanes_any(crossed_any)) crossed_any &= cubes_around(&s, cells, r);
 #endif
             }
-            for (uint lane = 0; lane < LANES; lane++)
-                wish[lane] = row_wishes(&s, offsets, r.y + lane, r.z, r.w, lane_of(&crossed_any, lane),
-                                        lane_of(&even, lane), lane_of(&border, lane), samples);
-            set_store(lanes_of(wish), wishes + BRICK_WORDS * (ulong)near[n], r);
+            wishes_enter(&s, r, crossed_any, b.across[0] | b.across[1] | b.across[2], samples, &room);
         }
+        wishes_store(&s, p, samples, wishes + BRICK_WORDS * (ulong)near[n], &room);
     }
 }
 
@@ -202,28 +170,30 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
  */
 
 /* Of the samples in a set those that are regular points. */
-inline_always lanes set_snap(const slab *s, stored_words m, row_set r, bool spread, lanes wanted, bool odd) {
+inline_always lanes set_snap(const slab *s, const brick_around *a, row_set r, bool spread, lanes wanted, bool odd) {
     link_signs l;
     const borders b = borders_of(s, r);
     if (!lanes_any(wanted)) return 0;
-    link_load(s, m, r, spread, odd, true, &l);
+    link_load(s, a, r, spread, odd, true, &l);
     return points_regular(&l, b.across, wanted, odd);
 }
 
-kernel void snap_even(slab s, uint colour, global ulong *words, global brick_state *bricks, global const uint *near,
-                      global const uint *state, global const ulong *wishes) {
+kernel void snap_even(slab s, uint colour, global ulong *words, global const brick_state *bricks,
+                      global const uint *near, global const uint *state, global const ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS], odd_j = colour >> 1;
     const uint odd_k = COLOUR_EVEN(odd_j, 0) == colour ? 0 : 1;
     const uint odd_y = (odd_j ^ (uint)s.first[1]) & 1, odd_z = (odd_k ^ (uint)s.first[2]) & 1;
-    const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
-    global ulong *zeros = m.words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
+    brick_around a;
+    words += UNIFORM_BRICKS * BRICK_WORDS;
+    global ulong *zeros = words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
+        around_make(&s, words, bricks, near[n], &a);
         for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
             const row_set r = set_spread(p.y, p.z, p.w, set, odd_y, odd_z);
             lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
-            wanted = set_snap(&s, m, r, true, wanted, false);
+            wanted = set_snap(&s, &a, r, true, wanted, false);
             if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
         }
     }
@@ -233,14 +203,16 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global brick_sta
 kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
                      global const uint *state, global ulong *wishes) {
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
-    const stored_words m = {words + UNIFORM_BRICKS * BRICK_WORDS, bricks};
+    brick_around a;
+    words += UNIFORM_BRICKS * BRICK_WORDS;
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
+        around_make(&s, words, bricks, near[n], &a);
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
             const row_set r = set_of_plane(p.y, p.z, p.w, set);
             const lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
-            set_store(set_snap(&s, m, r, false, wanted, true), wishes + index, r);
+            set_store(set_snap(&s, &a, r, false, wanted, true), wishes + index, r);
         }
     }
 }

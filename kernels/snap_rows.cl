@@ -7,17 +7,19 @@
 
 #include "words.cl"
 
-/* Sign words, and what is known of bricks. */
-typedef struct stored_words {
-    global ulong *words;
-    global brick_state *bricks;
-} stored_words;
+inline_always uint window_layers(const slab *s) {
+    return (s->z1 - s->results.word_z + BRICK_PLANES - 1) / BRICK_PLANES;
+}
 
-/* The word of a row, of signs or of zeros; those of the next rows of its brick follow it. */
-inline_always global const ulong *row_stored(const slab *s, stored_words m, uint y, uint z, uint w, bool zeros) {
-    const uint number = brick_index(s, y, z, w);
-    global const ulong *words = brick_words(number, m.bricks[number].sign, m.words);
-    return (zeros ? zeros_of(s, words) : words) + row_in_brick(s, y, z);
+/* The first sample of a brick of the window. */
+typedef struct brick_place {
+    uint w, y, z;
+} brick_place;
+
+inline_always brick_place brick_place_of(const slab *s, uint number) {
+    brick_place p = {number % s->words_x, number / s->words_x % s->bricks_y * BRICK_ROWS,
+                     s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
+    return p;
 }
 
 /* Rows of a brick. In sets that are not spread: from (y, z) on, one after another in y. In spread ones, of even samples

@@ -22,35 +22,52 @@ inline_always row_set set_spread(uint y0, uint z0, uint w, uint set, uint odd_y,
     return r;
 }
 
-inline_always bool plane_stored(const slab *s, uint z) { return z >= s->results.word_z && z < s->z1; }
+/* The words of a brick and of the 26 around it, by step in z, y and x, plus 1. */
+typedef struct brick_around {
+    global const ulong *words[3][3][3];
+} brick_around;
 
-inline_always ulong word_stored(const slab *s, stored_words m, uint y, uint z, uint w, bool zeros) {
-    return y < s->ny ? *row_stored(s, m, y, z, w, zeros) : 0; /* y wraps below 0 */
+inline_always void around_make(const slab *s, global const ulong *words, global const brick_state *bricks, uint number,
+                               brick_around *a) {
+    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y;
+    const uint layer = number / s->words_x / s->bricks_y, layers = window_layers(s);
+    for (uint n = 0; n < 27; n++) {
+        const uint x = w + n % 3 - 1, y = row + n / 3 % 3 - 1, z = layer + n / 9 - 1; /* wrap below 0 */
+        const bool exists = x < s->words_x && y < s->bricks_y && z < layers;
+        const uint other = exists ? (z * s->bricks_y + y) * s->words_x + x : 0;
+        a->words[n / 9][n / 3 % 3][n % 3] = brick_words(other, exists ? bricks[other].sign : (uint)SIGN_OUTSIDE, words);
+    }
 }
 
-/* Rows y, y + 2, y + 4, y + 6 of a plane; y is a step from a row of the brick. */
-inline_always ulong4 rows_second(const slab *s, stored_words m, uint y0, uint y, uint z, uint w, bool zeros) {
-    if (!plane_stored(s, z)) return 0;
-    const lanes all = vload8(0, row_stored(s, m, y0, z, w, zeros));
-    if (y == y0) return all.even;
-    if (y == y0 + 1) return all.odd;
-    if (y == y0 + 2) return (ulong4)(all.even.s123, word_stored(s, m, y0 + BRICK_ROWS, z, w, zeros));
-    return (ulong4)(word_stored(s, m, y, z, w, zeros), all.odd.s012);
+/* The plane of words a step from the brick's, of the brick in the middle or the one before or after it in y. */
+inline_always global const ulong *plane_beside(const slab *s, const brick_around *a, int plane, int step_y, int step_w,
+                                               bool zeros) {
+    const int step_z = plane < 0 ? -1 : plane >= BRICK_PLANES ? 1 : 0;
+    global const ulong *words = a->words[1 + step_z][1 + step_y][1 + step_w] + BRICK_ROWS * (plane & 3);
+    return zeros ? zeros_of(s, words) : words;
+}
+
+/* Rows y, y + 2, y + 4, y + 6 of a plane, for y from -1 to 2. */
+inline_always ulong4 rows_second(const slab *s, const brick_around *a, int y, int plane, int step_w, bool zeros) {
+    const lanes all = vload8(0, plane_beside(s, a, plane, 0, step_w, zeros));
+    if (y == 0) return all.even;
+    if (y == 1) return all.odd;
+    if (y == 2) return (ulong4)(all.even.s123, *plane_beside(s, a, plane, 1, step_w, zeros));
+    return (ulong4)(plane_beside(s, a, plane, -1, step_w, zeros)[BRICK_ROWS - 1], all.odd.s012);
 }
 
 /* Words at w + step_w of the rows a step from those of the set, 0 where there are none; words of a constant brick go on
  * outside the grid. */
-inline_always lanes words_beside(const slab *s, stored_words m, row_set r, bool spread, int step_y, int step_z,
+inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool spread, int step_y, int step_z,
                                  int step_w, bool zeros) {
-    const uint w = r.w + step_w, z = r.z + step_z, y0 = r.y / BRICK_ROWS * BRICK_ROWS;
-    if (w >= s->words_x) return 0; /* w wraps below 0 */
-    if (spread)
-        return (lanes)(rows_second(s, m, y0, r.y + step_y, z, w, zeros),
-                       rows_second(s, m, y0, r.y + step_y, z + 2, w, zeros));
-    if (!plane_stored(s, z)) return 0;
-    const lanes here = vload8(0, row_stored(s, m, r.y, z, w, zeros));
-    if (step_y < 0) return (lanes)(word_stored(s, m, r.y - 1, z, w, zeros), here.s0123, here.s456);
-    if (step_y > 0) return lanes_next_row(here, word_stored(s, m, r.y + BRICK_ROWS, z, w, zeros));
+    const int plane = (int)(r.z % BRICK_PLANES) + step_z;
+    if (spread) {
+        const int y = (int)(r.y & 1) + step_y;
+        return (lanes)(rows_second(s, a, y, plane, step_w, zeros), rows_second(s, a, y, plane + 2, step_w, zeros));
+    }
+    const lanes here = vload8(0, plane_beside(s, a, plane, 0, step_w, zeros));
+    if (step_y < 0) return (lanes)(plane_beside(s, a, plane, -1, step_w, zeros)[BRICK_ROWS - 1], here.s0123, here.s456);
+    if (step_y > 0) return lanes_next_row(here, *plane_beside(s, a, plane, 1, step_w, zeros));
     return here;
 }
 
@@ -76,9 +93,5 @@ inline_always void set_add(lanes x, global ulong *brick, row_set r) {
         vstore8(vload8(z, brick) | wide, z, brick);
     }
 }
-
-/* Lane n of a value in memory. */
-inline_always ulong lane_of(const lanes *x, uint n) { return ((const ulong *)x)[n]; }
-inline_always lanes lanes_of(const ulong *x) { return vload8(0, x); }
 
 #endif

@@ -21,19 +21,30 @@ inline_always row_set set_spread(uint y0, uint z0, uint w, uint set, uint odd_y,
     return r;
 }
 
-inline_always lanes words_beside(const slab *s, stored_words m, row_set r, bool spread, int step_y, int step_z,
+/* Sign words, and what is known of bricks. */
+typedef struct brick_around {
+    global const ulong *words;
+    global const brick_state *bricks;
+} brick_around;
+
+inline_always void around_make(const slab *s, global const ulong *words, global const brick_state *bricks, uint number,
+                               brick_around *a) {
+    a->words = words, a->bricks = bricks;
+}
+
+/* The word at w + step_w of the row a step from that of the set, 0 where there is none. */
+inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool spread, int step_y, int step_z,
                                  int step_w, bool zeros) {
     const uint w = r.w + step_w, z = r.z + step_z, y = r.y + step_y; /* wrap below 0 */
-    const bool stored = w < s->words_x && y < s->ny && z >= s->results.word_z && z < s->z1;
-    return stored ? *row_stored(s, m, y, z, w, zeros) : 0;
+    if (w >= s->words_x || y >= s->ny || z < s->results.word_z || z >= s->z1) return 0;
+    const uint number = brick_index(s, y, z, w);
+    global const ulong *words = brick_words(number, a->bricks[number].sign, a->words);
+    return (zeros ? zeros_of(s, words) : words)[row_in_brick(s, y, z)];
 }
 
 inline_always uint set_row(row_set r) { return r.z % BRICK_PLANES * BRICK_ROWS + r.y % BRICK_ROWS; }
 inline_always lanes set_load(global const ulong *brick, row_set r, bool spread) { return brick[set_row(r)]; }
 inline_always void set_store(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] = x; }
 inline_always void set_add(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] |= x; }
-
-inline_always ulong lane_of(const lanes *x, uint n) { return *x; }
-inline_always lanes lanes_of(const ulong *x) { return *x; }
 
 #endif
