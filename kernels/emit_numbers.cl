@@ -132,6 +132,7 @@ inline_always void crossings_store(const slab *s, corner c, const brick_signs *s
         crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &edges);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
+        if (ZEROS) triangles_count(&r, &active); /* leaves those that emit */
         for (uint type = 0; type < VERTEX_TYPES; type++) vstore8(edges.type[type], 0, work->crossed[n][type]);
         vstore8(active, 0, work->active[n]);
     }

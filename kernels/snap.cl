@@ -16,8 +16,7 @@
 
 #include "cells.cl"
 #include "count.cl"
-#include "nearest.cl"
-#include "snap_link.cl"
+#include "snap_crossed.cl"
 
 kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ranges, global ulong *words,
                       global brick_state *bricks, global uint *state) {
@@ -83,52 +82,7 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
     }
 }
 
-#if MISSING
-/* Samples of a set that is not spread of which all cubes in the grid are present. */
-inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_set r) {
-    lanes present = ~(lanes)0;
-#pragma unroll 1
-    for (uint n = 0; n < 4; n++) {
-        const uint back_y = n & 1, back_z = n >> 1;
-        if (r.z < back_z || r.z - back_z + 1 >= s->nz) continue;
-        const lanes beside = r.at_y - (ulong)back_y; /* wraps below 0 */
-        const lanes outside = lanes_select(beside + 1ul >= (lanes)s->ny) | lanes_select(beside + 1ul == (lanes)0ul);
-        const lanes word = cells_rows(s, cells, r.y - back_y, r.z - back_z, r.w) | outside;
-        const lanes low = (r.w ? cells_rows(s, cells, r.y - back_y, r.z - back_z, r.w - 1) : (lanes)~0ul) | outside;
-        present &= (word | ~(lanes)has_after(s, r.w)) & shifted_up(word, low);
-    }
-    return present;
-}
-#endif
-
-/* ------------------------------------------------------------------------------------------------------------ wishes
- */
-
 #ifdef REAL
-
-/* Which samples of a plane's rows have a crossing along which they may move. */
-inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r, const borders *b) {
-    const lanes sign = words_beside(s, a, r, false, 0, 0, 0, false);
-    link_signs l;
-    lanes crossed_along = 0, crossed_across = 0;
-    link_load(s, a, r, false, false, false, &l);
-#pragma unroll
-    for (uint n = 0; n < LINK_EVEN; n++) {
-        const lanes *c = b->across;
-        const lanes stays = n < 2    ? c[0]
-                            : n < 4  ? c[1]
-                            : n < 6  ? c[2]
-                            : n < 10 ? c[0] | c[1]
-                            : n < 14 ? c[0] | c[2]
-                                     : c[1] | c[2];
-        const lanes opposite = ((sign & l.minus[n]) | (~sign & l.plus[n])) & ~stays;
-        if (n < LINK_ODD)
-            crossed_along |= opposite;
-        else
-            crossed_across |= opposite;
-    }
-    return (crossed_along | (crossed_across & samples_even(s, r))) & samples_valid(s, r);
-}
 
 #if WORK_ITEMS == 1
 #include "snap_wish_alone.cl"
@@ -144,24 +98,12 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
     wish_room room;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    link_offsets(&s, room.offsets);
+    wishes_begin(&s, &room);
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
-        const brick_place p = brick_place_of(&s, near[n]);
         around_make(&s, words, bricks, near[n], &a);
-        for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
-            const row_set r = set_of_plane(p.y, p.z, p.w, set);
-            const borders b = borders_of(&s, r);
-            lanes crossed_any = 0;
-            if (r.y < s.ny && r.z < s.z1) {
-                crossed_any = rows_crossed(&s, &a, r, &b);
-#if MISSING
-                if (lanes_any(crossed_any)) crossed_any &= cubes_around(&s, cells, r);
-#endif
-            }
-            wishes_enter(&s, r, crossed_any, b.across[0] | b.across[1] | b.across[2], samples, &room);
-        }
-        wishes_store(&s, p, samples, wishes + BRICK_WORDS * (ulong)near[n], &room);
+        wishes_make(&s, &a, brick_place_of(&s, near[n]), near[n], samples, cells, wishes, &room);
     }
+    wishes_end(&s, samples, wishes, &room);
 }
 
 #endif
