@@ -46,11 +46,13 @@ int final_surface_drop_degenerate(final_surface *shown, surface_report *s) {
     s->dropped_count += c->dropped_count;
     s->nonmanifold_edges += c->nonmanifold_edges;
     if (status || !c->dropped_count) return status;
-    shown->positions = gather(c, m->positions, 3);
-    if (m->normals && shown->positions) shown->normals = gather(c, m->normals, 3);
-    if (!shown->positions || (m->normals && !shown->normals)) return STATUS_FAILED;
-    m->positions = shown->positions;
-    m->normals = shown->normals;
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) {
+        const float *values = mesh_values(m, channel);
+        if (!values) continue;
+        shown->values[channel] = gather(c, values, (size_t)mesh_channels[channel].components);
+        if (!shown->values[channel]) return STATUS_FAILED;
+        mesh_values_set(m, channel, shown->values[channel]);
+    }
     m->triangles = c->triangles;
     m->vertex_count = c->vertex_count;
     m->triangle_count = c->triangle_count;
@@ -79,8 +81,7 @@ int final_surface_carry(const final_surface *shown, carried_fields *fields) {
 
 void final_surface_release(final_surface *shown) {
     collapsed_mesh_release(&shown->collapsed);
-    free(shown->positions);
-    free(shown->normals);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) free(shown->values[channel]);
     free(shown->own_parts);
     *shown = (final_surface){0};
 }

@@ -15,7 +15,7 @@ typedef struct final_surface {
     int part_count;
 
     collapsed_mesh collapsed; /* from here on: only where triangles were dropped */
-    float *positions, *normals;
+    float *values[CHANNEL_COUNT];
     mesh_part *own_parts;
 } final_surface;
 

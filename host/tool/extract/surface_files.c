@@ -77,7 +77,7 @@ static int check_files(const options *o, const dataset *d, const typed_isovalue 
 }
 
 int surface_files_check(const options *o, const dataset *d) {
-    const mesh_field some = {.name = "", .components = 1};
+    const vertex_array some = {.name = "", .components = 1};
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (!o->output) return 0;
