@@ -37,7 +37,7 @@ uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool 
 /* others: the plan of the other methods, whose arrays the grid has on the device already; NULL: that one is made. */
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan);
 
-/* Shapes the tiles again where the context has changed to the other text of the kernels. */
+/* Shapes the tiles again where the context has changed to the other variant of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
 /* Planes z0 <= z < z1 of a slab. */
