@@ -1,11 +1,11 @@
 /*
  * slab_plan.h - how a grid is cut into slabs and tiles so that counts and buffers fit the device
  *
- * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
- * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a
- * slab, and the other arrays that a grid may have, with one plane before and two after (gradients and missing cells
- * reach that far), sign words with one layer after. Devices with memory of their own hold two such windows, where that
- * fits: one is copied while kernels run over the other.
+ * A slab has whole layers of bricks, one after the other. Its counts fit the 30 bits of a scan word whatever the
+ * samples are. Where memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a
+ * window: the samples of a slab, and the other arrays that a grid may have, with one plane before and two after
+ * (gradients and missing cells reach that far), sign words with one layer after. Devices with memory of their own hold
+ * two such windows, where that fits: one is copied while kernels run over the other.
  *
  * Method snap has a plan of its own. Whether a sample is snapped depends on samples up to five steps away, one for each
  * colour. So windows have two layers of bricks more on either side, of which those steps use up the outer part; and

@@ -1,8 +1,7 @@
 /*
  * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
- * after the other, each a run of whole layers, or of rows of bricks where a layer is too large. On devices that share
- * the host's memory a window lies in the mesh itself; else what a step has emitted is read back while the next step
- * runs.
+ * after the other, each of whole layers, or of strips where a layer is too large. On devices that share the host's
+ * memory a window lies in the mesh itself; else what a step has emitted is read back while the next step runs.
  */
 #include "structured/structured_emission.h"
 
@@ -200,8 +199,8 @@ static void step_describe(const run *r, const emit_step *step, slab *s) {
     slab_describe(r, step->ref, s);
     s->mesh.vertex_base = (uint32_t)step->slab_vertex;
     s->mesh.vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->results.head_offset + STATE_VERTICES]);
-    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
-    s->mesh.brick_last = s->mesh.brick_first + (step->row1 - step->row0) * r->plan->words_x;
+    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->strip0 * r->plan->words_x;
+    s->mesh.brick_last = s->mesh.brick_first + (step->strip1 - step->strip0) * r->plan->words_x;
 }
 
 static tc_status step_emit(run *r, uint32_t n) {
