@@ -144,7 +144,7 @@ MUTANTS = [
             "LZMA: dictionaries of any size"),
            ("code == LZMA_STREAM_END && !stream.avail_out", "code == LZMA_STREAM_END || code == LZMA_OK",
             "LZMA: damaged blocks")),
-    *group("host/read/vtk_xml/vtk_xml.c",
+    *group("host/read/vtk_xml/vtk_xml_load.c",
            ("status = vtk_xml_note_taken(&r->doc, &v, v.bytes);", "", "copies of shared data are not counted", {**LIMITS, "nth": 1}),
            ("if (!status && v.in_place) status = vtk_xml_note_taken(&r->doc, &v, v.bytes);", "",
             "shared doubles are not counted", LIMITS)),
