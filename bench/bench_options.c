@@ -1,6 +1,7 @@
 /* bench_options.c - one table of options for parsing and --help */
 #include "bench_options.h"
 
+#include "choice.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "sample_types.h"
@@ -62,16 +63,18 @@ static int take_dims(const char *text, bench_options *o) {
 }
 
 #define TYPE_BEHIND_BLANK(type, name, ...) " " #name
-#define TYPE_BEHIND_COMMA(type, name, ...) ", " #name
+
+static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
+
+static const char *method_choices(int n) { return tc_method_name((tc_method)n); }
+
+static const char *grid_choices(int n) { return n < BENCH_GRIDS ? bench_grid_names[n] : NULL; }
 
 static int take_type(const char *text, bench_options *o) {
     if (o->type_count == LIST_MAX) return list_full("--type");
-    for (int type = 0; tc_type_name((tc_type)type); type++)
-        if (strcmp(text, tc_type_name((tc_type)type)) == 0) {
-            o->types[o->type_count++] = (tc_type)type;
-            return 0;
-        }
-    return fail(STATUS_USAGE, "--type: '%s' is none of %s", text, &SAMPLE_TYPES(TYPE_BEHIND_COMMA)[2]);
+    int type, status = choice_find("--type", text, type_choices, &type);
+    if (!status) o->types[o->type_count++] = (tc_type)type;
+    return status;
 }
 
 static int parse_isovalue(const char *name, const char *text, double *value) {
@@ -93,21 +96,15 @@ static int take_second(const char *text, bench_options *o) {
 }
 
 static int take_method(const char *text, bench_options *o) {
-    for (int method = 0; tc_method_name((tc_method)method); method++)
-        if (strcmp(text, tc_method_name((tc_method)method)) == 0) {
-            o->method = (tc_method)method;
-            return 0;
-        }
-    return fail(STATUS_USAGE, "--method: '%s' is neither tetra nor hybrid", text);
+    int method, status = choice_find("--method", text, method_choices, &method);
+    if (!status) o->method = (tc_method)method;
+    return status;
 }
 
 static int take_grid(const char *text, bench_options *o) {
-    for (int grid = 0; grid < BENCH_GRIDS; grid++)
-        if (strcmp(text, bench_grid_names[grid]) == 0) {
-            o->grid = (bench_grid)grid;
-            return 0;
-        }
-    return fail(STATUS_USAGE, "--grid: '%s' is none of uniform, rectilinear, curvilinear, tetrahedra, hexahedra", text);
+    int grid, status = choice_find("--grid", text, grid_choices, &grid);
+    if (!status) o->grid = (bench_grid)grid;
+    return status;
 }
 
 static int take_repeat(const char *text, bench_options *o) {

@@ -1,10 +1,10 @@
 /*
  * common.cl - what all kernels begin with
  *
- * There are two texts of the kernels. One is for groups of work-items: plain OpenCL C 1.2, with vectors of 2, 3, 4, 8
- * and 16 elements, which every compiler takes and which can be translated to SPIR-V. The other is for a work-item alone
+ * There are two variants of the kernels. One is for groups of work-items: plain OpenCL C 1.2, vectors of 2, 3, 4, 8 and
+ * 16 elements, which every compiler takes and which can be translated to SPIR-V. The other is for a work-item alone
  * in its group, for CPUs: extensions.cl holds what it needs beyond OpenCL C. Files named _groups or _alone, and others
- * that say so, belong to one text, the rest to both. host/lib/opencl/text.c chooses the text for a device.
+ * that say so, belong to one variant, the rest to both. host/lib/opencl/variant.c chooses that of a device.
  *
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
  * WORK_ITEMS, of a group; MISSING; METHOD, a name in methods.h.

@@ -1,13 +1,13 @@
 /*
- * extensions.cl - what the text for a work-item alone takes from compilers beyond OpenCL C 1.2: vectors of 64 elements,
- * built-in functions, hints. Compilers built on Clang know it; see host/lib/opencl/text.c
+ * extensions.cl - what the variant for a work-item alone takes from compilers beyond OpenCL C 1.2: vectors of 64
+ * elements, built-in functions, hints. Compilers built on Clang know it; see host/lib/opencl/variant.c
  */
 #ifndef EXTENSIONS_CL
 #define EXTENSIONS_CL
 
 #include "common.cl"
 
-/* With AVX-512 masks of comparisons are integers in registers of their own. Tests define NO_AVX512, to try the text for
+/* With AVX-512 masks of comparisons are integers in registers of their own. Tests define NO_AVX512, to try code for
  * processors without. */
 #if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(NO_AVX512)
 #define MASK_REGISTERS

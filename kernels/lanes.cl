@@ -1,6 +1,6 @@
 /*
  * lanes.cl - the type `lanes` of bit-sliced code: one 64-bit word for each of LANES rows of 64 cubes, eight rows in the
- * text for a work-item alone, one in that for groups
+ * variant for a work-item alone, one in that for groups
  */
 #ifndef LANES_CL
 #define LANES_CL

@@ -38,11 +38,11 @@ def versions(results):
 
 
 def drivers(results):
-    """A line for every driver and text of the kernels; none where nothing has been tried."""
+    """A line for every driver and variant of the kernels; none where nothing has been tried."""
     found = [line for result in results for line in result.get("drivers", [])]
     if not found:
         return []
-    lines = ["", "Every driver, in each text of the kernels that it takes; the hash is that of all cases' hashes:", "",
+    lines = ["", "Every driver, in each variant of the kernels that it takes; the hash is that of all cases' hashes:", "",
              "| driver | version | system | text | cases | hash |", "| --- | --- | --- | --- | --: | --- |"]
     return lines + [f"| {line['driver']} | {line['version']} | {line['system']} | {line['text']} | {line['cases']} | "
                     f"{line['hash'] if line['outcome'] == 'same bytes' else 'failed'} |" for line in found]

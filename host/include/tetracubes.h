@@ -558,9 +558,9 @@ TC_API void tc_expert_options_init(tc_expert_options *options);
  *
  * The verdict is kept in the cache, for device, driver, versions and kernels, beside the programs that the trial has
  * built. Later contexts find both, of other processes and without a callback too. After a verdict that is not good the
- * library tries the other text of the kernels (one work-item per group, or many) where work_items is 0. Where that is
- * not good either, the call fails with TC_ERROR_DEVICE or TC_ERROR_WRONG_RESULT and says what was found. tc_emit that
- * meets such kernels fails; count again after that. A caller's cl_context is tried on that device of tc_device_get
+ * library tries the other variant of the kernels (one work-item per group, or many) where work_items is 0. Where that
+ * is not good either, the call fails with TC_ERROR_DEVICE or TC_ERROR_WRONG_RESULT and says what was found. tc_emit
+ * that meets such kernels fails; count again after that. A caller's cl_context is tried on that device of tc_device_get
  * which it has; where it has none of them, but a part of one, it is used untried.
  *
  * tc_trial_run is what the child process calls. It does what the job says: it opens the device, builds the kernels,

@@ -1,4 +1,4 @@
-/* context_create.h - contexts for trials */
+/* context_create.h - what context_create.c has for trial_job.c beside the public calls: contexts for trials */
 #ifndef CONTEXT_CREATE_H
 #define CONTEXT_CREATE_H
 

@@ -33,7 +33,8 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
-/* At the start of a call: vets kernels that are not known to be good; may switch to the other text of the kernels. */
+/* At the start of a call: vets kernels that are not known to be good; may switch to the other variant of the kernels.
+ */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!surface_needs_kernels(grid, options)) return TC_OK;
     if (options->method == TC_METHOD_SNAP && !device_makes_vertices(grid->context, grid->type))

@@ -1,35 +1,50 @@
 /* mesh_compare.c - comparison of bits, not of numbers: NaN equals itself, -0 differs from 0 */
 #include "mesh_compare.h"
 
+#include "vertex_values.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Index of the first of count triples that differs; count where none does. */
-static uint64_t first_difference(const void *a, const void *b, uint64_t count) {
-    enum { TRIPLE = 12 };
-    if (count == 0 || memcmp(a, b, count * TRIPLE) == 0) return count;
+/* Index of the first of count tuples, each of so many bytes, that differs; count where none does. */
+static uint64_t first_difference(const void *a, const void *b, uint64_t count, size_t tuple) {
+    if (count == 0 || memcmp(a, b, count * tuple) == 0) return count;
     uint64_t n = 0;
-    while (memcmp((const char *)a + n * TRIPLE, (const char *)b + n * TRIPLE, TRIPLE) == 0) n++;
+    while (memcmp((const char *)a + n * tuple, (const char *)b + n * tuple, tuple) == 0) n++;
     return n;
 }
 
-static int same_vectors(const char *what, const float *device, const float *reference, uint64_t count, char *text,
-                        size_t bytes) {
-    if (!device != !reference) {
-        snprintf(text, bytes, "only one engine made %ss", what);
+enum { TUPLE_TEXT_BYTES = 160 }; /* nine numbers */
+
+static const char *tuple_text(const float *values, int components, char text[TUPLE_TEXT_BYTES]) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int c = 0; c < components && used < TUPLE_TEXT_BYTES; c++)
+        used += (size_t)snprintf(text + used, TUPLE_TEXT_BYTES - used, " %.9g", (double)values[c]);
+    return text;
+}
+
+static int same_values(const tc_mesh_data *device, const tc_mesh_data *reference, int channel, char *text,
+                       size_t bytes) {
+    const mesh_channel *c = &mesh_channels[channel];
+    const float *d = mesh_values(device, channel), *r = mesh_values(reference, channel);
+    const size_t components = (size_t)c->components;
+    if (!d != !r) {
+        snprintf(text, bytes, "only one engine made %s", c->name);
         return 0;
     }
-    uint64_t n = device ? first_difference(device, reference, count) : count;
-    if (n == count) return 1;
-    const float *d = device + 3 * n, *r = reference + 3 * n;
-    snprintf(text, bytes, "%s %" PRIu64 " is %.9g %.9g %.9g on the device, %.9g %.9g %.9g in the reference", what, n,
-             (double)d[0], (double)d[1], (double)d[2], (double)r[0], (double)r[1], (double)r[2]);
+    uint64_t n = d ? first_difference(d, r, device->vertex_count, components * sizeof *d) : device->vertex_count;
+    if (n == device->vertex_count) return 1;
+    char of_device[TUPLE_TEXT_BYTES], of_reference[TUPLE_TEXT_BYTES];
+    snprintf(text, bytes, "%s %" PRIu64 " is%s on the device,%s in the reference", c->one, n,
+             tuple_text(d + components * n, c->components, of_device),
+             tuple_text(r + components * n, c->components, of_reference));
     return 0;
 }
 
 static int same_triangles(const uint32_t *device, const uint32_t *reference, uint64_t count, char *text, size_t bytes) {
-    uint64_t n = first_difference(device, reference, count);
+    uint64_t n = first_difference(device, reference, count, 3 * sizeof *device);
     if (n == count) return 1;
     const uint32_t *d = device + 3 * n, *r = reference + 3 * n;
     snprintf(text, bytes,
@@ -50,7 +65,7 @@ int meshes_are_same(const tc_mesh_data *device, const tc_mesh_data *reference, c
                  reference->triangle_count, reference->active_cell_count);
         return 0;
     }
-    return same_vectors("vertex", device->positions, reference->positions, device->vertex_count, text, bytes) &&
-           same_vectors("normal", device->normals, reference->normals, device->vertex_count, text, bytes) &&
-           same_triangles(device->triangles, reference->triangles, device->triangle_count, text, bytes);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++)
+        if (!same_values(device, reference, channel, text, bytes)) return 0;
+    return same_triangles(device->triangles, reference->triangles, device->triangle_count, text, bytes);
 }

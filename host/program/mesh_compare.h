@@ -4,7 +4,7 @@
 
 #include "tetracubes.h"
 
-/* Nonzero where counts, positions, normals and triangles are the same bytes. Else `text`, of so many bytes, says what
+/* Nonzero where counts, channels and triangles are the same bytes. Else `text`, of so many bytes, says what
  * differs first. */
 int meshes_are_same(const tc_mesh_data *device, const tc_mesh_data *reference, char *text, size_t bytes);
 

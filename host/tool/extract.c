@@ -15,7 +15,7 @@
 #include "commands.h"
 #include "exit_status.h"
 #include "extract/surface_check.h"
-#include "extract/surface_figures.h"
+#include "extract/surface_totals.h"
 #include "extract/surface_files.h"
 #include "extract/surface_notices.h"
 #include "failure.h"
@@ -172,19 +172,20 @@ static int judge_surface(surface_job *w) {
     int status = surface_tell_empty(&j->data, &j->field, s);
     if (status) return status;
     precision_tell_mesh(s);
-    if (j->o->output) surface_files_tell_numbers(j->o, j->blocks.count, s);
-    s->coarse_vertices = s->mesh_numbers.lost > s->file_numbers.lost ? s->mesh_numbers.lost : s->file_numbers.lost;
+    if (j->o->output) surface_files_tell_precision(j->o, j->blocks.count, s);
+    s->coarse_vertices =
+        s->coarse_in_mesh.lost > s->coarse_in_file.lost ? s->coarse_in_mesh.lost : s->coarse_in_file.lost;
     if (!s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
-    final_surface_tell_dropped(s);
+    result_mesh_tell_dropped(s);
     return !status && j->o->check ? surface_judge(&j->blocks, s, &w->is_good) : status;
 }
 
-static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, const final_surface *mesh,
+static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, const result_mesh *mesh,
                       int is_last) {
     job *j = w->j;
     double begin = now_ms();
     int status = carried_fields_interpolate(&j->carried, &j->main, blocks, &w->how, made);
-    if (!status) status = final_surface_carry(mesh, &j->carried);
+    if (!status) status = result_mesh_carry(mesh, &j->carried);
     if (!status && is_last) carried_fields_tell(&j->carried);
     if (!status) status = surface_files_write(j->o, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
     j->report.write_ms += now_ms() - begin;
@@ -192,15 +193,15 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
 }
 
 /* The mesh that the engine has made is verified, counted, checked and written. */
-static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, final_surface *mesh, int is_last) {
+static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, result_mesh *mesh, int is_last) {
     job *j = w->j;
     surface_report *s = w->s;
     const surface_source source = {&j->main, &j->blocks, blocks, &w->how, made};
     int status = j->o->verify ? surface_verify(&j->reference, blocks, &w->how, made, s) : 0;
-    if (!status && j->o->drop_degenerate) status = final_surface_drop_degenerate(mesh, s);
+    if (!status && j->o->drop_degenerate) status = result_mesh_drop_degenerate(mesh, s);
     if (status) return status;
-    surface_add_mesh(j->o, &source, mesh, s);
-    status = precision_count_mesh(&source, j->o->check, &s->mesh_numbers);
+    surface_totals_add(j->o, &source, mesh, s);
+    status = precision_count_mesh(&source, j->o->check, &s->coarse_in_mesh);
     if (!status) status = surface_files_count_coarse(j->o, &source, mesh, s);
     if (!status && j->o->check) status = surface_check(&mesh->mesh, s);
     if (!status && is_last) status = judge_surface(w);
@@ -212,15 +213,15 @@ static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *m
 static int make_mesh(surface_job *w, block_range blocks, int is_last) {
     job *j = w->j;
     tc_mesh_data made;
-    final_surface mesh;
+    result_mesh mesh;
     double begin = now_ms();
     int status = engine_extract(&j->main, blocks, &w->how, &made);
     if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, blocks, &w->how, &made);
     if (status) return status;
     add_device_start(j, begin, made.timings.total_ms + made.timings.readback_ms);
-    final_surface_begin(&j->main, blocks, &made, &mesh);
+    result_mesh_begin(&j->main, blocks, &made, &mesh);
     status = finish_mesh(w, blocks, &made, &mesh, is_last);
-    final_surface_release(&mesh);
+    result_mesh_release(&mesh);
     return status;
 }
 

@@ -25,8 +25,8 @@ typedef struct shown_part {
 typedef struct shown_mesh {
     const tc_mesh_data *mesh;
     int soup; /* every triangle has vertices of its own: vertex v of the file is corner v of the triangles */
-    const mesh_field *fields;
-    int field_count; /* 0 where the format takes none */
+    const vertex_array *arrays; /* beside the positions: those that the format takes */
+    int array_count;
     const shown_part *parts;
     int part_count; /* at least 1 */
     int is_moved;   /* some offset is not 0: coordinates are doubles where the format has them */
@@ -37,6 +37,13 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are 
 #define WRITER(name, ...) void name##_write(output *o, const shown_mesh *s);
 MESH_FORMATS(WRITER)
 #undef WRITER
+
+/* Whether some of the arrays has that role. */
+static inline int shows_role(const shown_mesh *s, vertex_role role) {
+    int n = 0;
+    while (n < s->array_count && s->arrays[n].role != role) n++;
+    return n < s->array_count;
+}
 
 /* The vertex of the mesh that vertex v of the file shows. */
 static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) { return s->soup ? s->mesh->triangles[v] : v; }

@@ -9,35 +9,30 @@
 #define MESH_WRITE_H
 
 #include "tetracubes.h"
+#include "vertex_values.h"
 
 /*
  * The table of formats that are written (host/README.md says what a new one needs). ROW is applied to each:
  *
- *     ROW(name, label, has_fields, has_doubles, has_normals, counts)
+ *     ROW(name, label, roles, has_doubles, counts)
  *
  *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
- *     has_doubles  of coordinates; fields and normals are those of vertices
+ *     roles        of values that vertices have beside their positions
+ *     has_doubles  of coordinates
  *     counts       what the format counts in 32 bits, vertices or triangles
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", 1, 1, 1, vertices)                                                                                 \
-    ROW(vtp, "VTP", 1, 1, 1, vertices)                                                                                 \
-    ROW(stl, "STL", 0, 0, 0, triangles)                                                                                \
-    ROW(obj, "OBJ", 0, 1, 1, vertices)
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices)                                                               \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, vertices)                                                               \
+    ROW(stl, "STL", 0, 0, triangles)                                                                                   \
+    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
 /* clang-format on */
 
-/* Values at the vertices, for PLY and VTP. In PLY each component is a property: NAME, or NAME_0, NAME_1, ...;
- * characters other than letters and digits become '_'. In both formats '_' is appended to a name that another field has
- * already, or an array that the writer makes itself (x, nx, Points, Normals, ...). */
-typedef struct mesh_field {
-    const char *name;
-    int components;
-    const float *values; /* tuple by tuple */
-} mesh_field;
+enum { HAS_DATA = 1 << ROLE_DATA, HAS_NORMALS = 1 << ROLE_NORMALS };
 
 /* One block's part of a mesh: consecutive vertices, and consecutive triangles that use no others. */
 typedef struct mesh_part {
@@ -46,9 +41,9 @@ typedef struct mesh_part {
 } mesh_part;
 
 typedef struct mesh_write_options {
-    const char *format; /* a name of MESH_FORMATS, in any case; NULL: the file's ending */
-    int soup;           /* nonzero: three vertices of its own for every triangle (STL has no other form) */
-    const mesh_field *fields;
+    const char *format;         /* a name of MESH_FORMATS, in any case; NULL: the file's ending */
+    int soup;                   /* nonzero: three vertices of its own for every triangle (STL has no other form) */
+    const vertex_array *fields; /* beside the channels of the mesh */
     int field_count;
     const mesh_part
         *parts; /* in the order of vertices; together all of them. part_count 0: one, with the mesh's origin */
@@ -66,15 +61,21 @@ int mesh_write_check(const char *path, const mesh_write_options *options);
 /* Whether the format has coordinates in double precision. */
 int mesh_write_has_doubles(const char *path, const mesh_write_options *options);
 
-/* Whether the format is known and has no normals of vertices. */
-int mesh_write_lacks_normals(const char *path, const mesh_write_options *options);
+/* Whether the format is known and has no values of that role. */
+int mesh_write_lacks(const char *path, const mesh_write_options *options, vertex_role role);
 
 /* Whether the file would hold coordinates relative to the mesh's origin, as its format has float32 alone. */
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
-/* Writes positions (in double precision where they differ from those of the mesh by an offset), normals (where the mesh
- * has them and the format takes them: PLY, OBJ, VTP) and triangles, whose indices must be below vertex_count. Returns 0
- * or STATUS_FAILED / STATUS_USAGE with its message (failure.h). */
+/*
+ * Writes positions (in double precision where they differ from those of the mesh by an offset), the other channels that
+ * the mesh has, as far as the format takes their roles, the fields, and triangles, whose indices must be below
+ * vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its message (failure.h).
+ *
+ * Values that have a name of their own in the format, like normals, get that. In PLY each component of others is a
+ * property: NAME, or NAME_0, NAME_1, ...; characters other than letters and digits become '_'. In PLY and VTP '_' is
+ * appended to a name that is taken already, by values before or by the format (x, nx, Points, ...).
+ */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */

@@ -16,6 +16,8 @@ enum {
     FACE_MOST = 2 + 3 * (1 + 10 + 2 + 10),
 };
 
+static const char *const keywords[ROLE_COUNT] = {[ROLE_POSITIONS] = "v", [ROLE_NORMALS] = "vn"};
+
 /* What the lines of vectors are made of. */
 typedef struct vector_lines {
     const shown_mesh *shown;
@@ -68,7 +70,7 @@ static char *put_corner(char *to, uint32_t index, int with_normal) {
 
 static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
-    int with_normals = s->mesh->normals != NULL;
+    int with_normals = shows_role(s, ROLE_NORMALS);
     char *at = (char *)to;
     for (uint64_t t = first; t < end; t++) {
         *at++ = 'f';
@@ -79,8 +81,8 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
     return (unsigned char *)at;
 }
 
-static void write_vectors(output *o, const shown_mesh *s, const char *keyword, const float *vectors) {
-    const vector_lines lines = {s, keyword, vectors};
+static void write_vectors(output *o, const shown_mesh *s, vertex_role role, const float *vectors) {
+    const vector_lines lines = {s, keywords[role], vectors};
     output_records(o, file_vertex_count(s), VECTOR_MOST, encode_vectors, &lines);
 }
 
@@ -92,7 +94,7 @@ void obj_write(output *o, const shown_mesh *s) {
     if (s->is_moved)
         output_records(o, file_vertex_count(s), VECTOR_MOST, encode_positions, s);
     else
-        write_vectors(o, s, "v", s->mesh->positions);
-    if (s->mesh->normals) write_vectors(o, s, "vn", s->mesh->normals);
+        write_vectors(o, s, ROLE_POSITIONS, s->mesh->positions);
+    for (int n = 0; n < s->array_count; n++) write_vectors(o, s, s->arrays[n].role, s->arrays[n].values);
     output_records(o, s->mesh->triangle_count, FACE_MOST, encode_faces, s);
 }

@@ -1,14 +1,14 @@
 /*
  * ply.c - PLY 1.0, binary little-endian (Turk, Stanford, 1994)
  *
- *     vertex  float x y z [nx ny nz] [fields]    12 or 24 bytes, 4 for each value of a field; x y z as double, 12 more
- *                                                bytes, where the mesh lies far from zero
+ *     vertex  float x y z [nx ny nz] [fields]    4 bytes each; x y z as double, 12 more bytes, where the mesh lies far
+ *                                                from zero
  *     face    list uchar uint vertex_indices     13 bytes
  *
  * Indices are uint, as int would end at 2^31. Readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
  * either.
  *
- * Vertices without normals and fields lie in the mesh as they lie in the file.
+ * Vertices with positions alone lie in the mesh as they lie in the file.
  */
 #include "file_text.h"
 #include "formats.h"
@@ -23,26 +23,30 @@ enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4, NAME_BYTES = 128, NAME_KEPT
 
 typedef char property_name[NAME_BYTES];
 
+/* The properties that the format knows; others are called like their array. */
+static const char *const known[ROLE_COUNT][3] = {
+    [ROLE_POSITIONS] = {"x", "y", "z"}, [ROLE_NORMALS] = {"nx", "ny", "nz"}};
+
 static int is_taken(const char *name, const property_name *names, size_t count) {
-    static const char *const own[] = {"x", "y", "z", "nx", "ny", "nz"};
-    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-        if (strcmp(name, own[i]) == 0) return 1;
+    for (int role = 0; role < ROLE_COUNT; role++)
+        for (int c = 0; c < 3; c++)
+            if (known[role][c] && strcmp(name, known[role][c]) == 0) return 1;
     for (size_t i = 0; i < count; i++)
         if (strcmp(name, names[i]) == 0) return 1;
     return 0;
 }
 
-/* Makes names[count] of the field's name: letters, digits and '_', other than every name before it. */
-static void name_property(const mesh_field *field, int component, property_name *names, size_t count) {
+/* Makes names[count] of the array's name: letters, digits and '_', other than every name before it. */
+static void name_property(const vertex_array *array, int component, property_name *names, size_t count) {
     char *name = names[count];
     size_t length = 0;
-    for (const char *c = field->name; *c && length < NAME_KEPT; c++) {
+    for (const char *c = array->name; *c && length < NAME_KEPT; c++) {
         int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
         name[length++] = (char)(is_word ? *c : '_');
     }
     name[length] = 0;
     if (!length) length = (size_t)sprintf(name, "field");
-    if (field->components > 1) length += (size_t)sprintf(name + length, "_%d", component);
+    if (array->components > 1) length += (size_t)sprintf(name + length, "_%d", component);
     while (is_taken(name, names, count) && length < NAME_BYTES - 1) {
         name[length++] = '_';
         name[length] = 0;
@@ -51,7 +55,7 @@ static void name_property(const mesh_field *field, int component, property_name 
 
 static int value_count(const shown_mesh *s) {
     int count = 0;
-    for (int i = 0; i < s->field_count; i++) count += s->fields[i].components;
+    for (int i = 0; i < s->array_count; i++) count += s->arrays[i].components;
     return count;
 }
 
@@ -59,10 +63,11 @@ static void add_properties(file_text *header, const shown_mesh *s) {
     property_name *names = malloc(((size_t)value_count(s) + 1) * sizeof *names);
     size_t count = 0;
     if (!names) header->has_failed = 1;
-    for (int i = 0; i < s->field_count && names; i++)
-        for (int c = 0; c < s->fields[i].components; c++) {
-            name_property(&s->fields[i], c, names, count);
-            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, names[count++]);
+    for (int i = 0; i < s->array_count && names; i++)
+        for (int c = 0; c < s->arrays[i].components; c++) {
+            const char *const *own = known[s->arrays[i].role];
+            if (!own[0]) name_property(&s->arrays[i], c, names, count);
+            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, own[0] ? own[c] : names[count++]);
         }
     free(names);
 }
@@ -71,9 +76,8 @@ static void make_header(const shown_mesh *s, file_text *header) {
     const char *type = stored_types[s->is_moved ? TC_F64 : TC_F32].ply;
     text_add(header,
              "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
-             "property %s x\nproperty %s y\nproperty %s z\n%s",
-             (unsigned long long)file_vertex_count(s), type, type, type,
-             s->mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "");
+             "property %s x\nproperty %s y\nproperty %s z\n",
+             (unsigned long long)file_vertex_count(s), type, type, type);
     add_properties(header, s);
     text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
              (unsigned long long)s->mesh->triangle_count);
@@ -90,14 +94,12 @@ static unsigned char *put_position(const shown_mesh *s, uint64_t vertex, unsigne
 
 static unsigned char *encode_vertices(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
-    const float *normals = s->mesh->normals;
     for (uint64_t v = first; v < end; v++) {
         uint64_t vertex = source_vertex(s, v);
         to = put_position(s, vertex, to);
-        if (normals) to = put_bytes(to, normals + 3 * vertex, VECTOR_BYTES);
-        for (int i = 0; i < s->field_count; i++) {
-            size_t components = (size_t)s->fields[i].components;
-            to = put_bytes(to, s->fields[i].values + components * vertex, components * sizeof(float));
+        for (int i = 0; i < s->array_count; i++) {
+            size_t components = (size_t)s->arrays[i].components;
+            to = put_bytes(to, s->arrays[i].values + components * vertex, components * sizeof(float));
         }
     }
     return to;
@@ -117,8 +119,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
 void ply_write(output *o, const shown_mesh *s) {
     file_text header = {0};
     make_header(s, &header);
-    size_t vertex_bytes =
-        position_bytes(s) + (s->mesh->normals ? VECTOR_BYTES : 0) + (size_t)value_count(s) * sizeof(float);
+    size_t vertex_bytes = position_bytes(s) + (size_t)value_count(s) * sizeof(float);
     uint64_t vertex_count = file_vertex_count(s), face_count = s->mesh->triangle_count;
     if (header.has_failed) {
         o->error = ENOMEM;

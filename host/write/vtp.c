@@ -1,5 +1,5 @@
 /*
- * vtp.c - VTK XML PolyData (.vtp): points, normals and fields of the points, triangles
+ * vtp.c - VTK XML PolyData (.vtp): points and their values, triangles
  *
  * Source: "VTK XML Formats" in VTK's file format documentation. Arrays lie as raw appended data, one after the other;
  * connectivity and offsets are Int32 where that is enough, else Int64. Arrays that lie in the mesh as they should lie
@@ -11,18 +11,20 @@
 #include <errno.h>
 #include <stdlib.h>
 
-/* Values of the vertices, and the mesh that says in which order they are shown. */
-typedef struct shown_values {
+/* The attributes of points that the format knows; other arrays have names of their own. */
+static const char *const attributes[ROLE_COUNT] = {[ROLE_NORMALS] = "Normals"};
+
+/* An array, and the mesh that says in which order it is shown. */
+typedef struct shown_array {
     const shown_mesh *shown;
-    const float *values;
-    int components;
-} shown_values;
+    vertex_array array;
+} shown_array;
 
 static unsigned char *encode_values(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
-    const shown_values *s = source;
-    size_t components = (size_t)s->components;
+    const shown_array *s = source;
+    size_t components = (size_t)s->array.components;
     for (uint64_t v = first; v < end; v++)
-        to = put_bytes(to, s->values + components * source_vertex(s->shown, v), components * sizeof(float));
+        to = put_bytes(to, s->array.values + components * source_vertex(s->shown, v), components * sizeof(float));
     return to;
 }
 
@@ -51,33 +53,40 @@ static unsigned char *encode_ends(const void *source, uint64_t first, uint64_t e
     return to;
 }
 
-static vtk_array array_of(const char *name, const shown_values *values) {
-    int is_plain = !values->shown->soup;
-    return (vtk_array){.name = name,
+static vtk_array file_array(const shown_array *s) {
+    int is_plain = !s->shown->soup;
+    const char *attribute = attributes[s->array.role];
+    return (vtk_array){.name = attribute ? attribute : s->array.name,
                        .type = TC_F32,
-                       .components = values->components,
-                       .record_count = file_vertex_count(values->shown),
-                       .record_bytes = (size_t)values->components * sizeof(float),
+                       .components = s->array.components,
+                       .record_count = file_vertex_count(s->shown),
+                       .record_bytes = (size_t)s->array.components * sizeof(float),
                        .encode = is_plain ? NULL : encode_values,
-                       .source = is_plain ? (const void *)values->values : values};
+                       .source = is_plain ? (const void *)s->array.values : s};
 }
 
-static void add_values(vtk_file *f, const char *name, const shown_values *values) {
-    const vtk_array array = array_of(name, values);
-    vtk_array_add(f, &array);
-}
-
-static void add_fields(vtk_file *f, const shown_mesh *s, shown_values *fields) {
-    const char *own[] = {"Points", "connectivity", "offsets", s->mesh->normals ? "Normals" : NULL, NULL};
-    for (int i = 0; i < s->field_count; i++) {
-        fields[i] = (shown_values){s, s->fields[i].values, s->fields[i].components};
-        const vtk_array array = array_of(s->fields[i].name, &fields[i]);
+static void add_arrays(vtk_file *f, const shown_mesh *s, shown_array *shown) {
+    static const char *const own[] = {"Points", "connectivity", "offsets", NULL};
+    text_add(&f->text, "      <PointData");
+    for (int role = 0; role < ROLE_COUNT; role++)
+        if (attributes[role] && shows_role(s, role))
+            text_add(&f->text, " %s=\"%s\"", attributes[role], attributes[role]);
+    text_add(&f->text, ">\n");
+    for (int i = 0; i < s->array_count; i++) {
+        shown[i] = (shown_array){s, s->arrays[i]};
+        const vtk_array array = file_array(&shown[i]);
         vtk_field_add(f, &array, own);
     }
+    text_add(&f->text, "      </PointData>\n");
 }
 
-/* In double precision. */
-static void add_positions(vtk_file *f, const shown_mesh *s) {
+/* points: the positions as they are in the mesh; moved ones are in double precision. */
+static void add_positions(vtk_file *f, const shown_mesh *s, const shown_array *points) {
+    const vtk_array plain = file_array(points);
+    if (!s->is_moved) {
+        vtk_array_add(f, &plain);
+        return;
+    }
     vtk_array_add(f, &(vtk_array){.name = "Points",
                                   .type = TC_F64,
                                   .components = 3,
@@ -107,27 +116,22 @@ static void add_triangles(vtk_file *f, const shown_mesh *s) {
 
 void vtp_write(output *o, const shown_mesh *s) {
     vtk_file f = {.o = o};
-    shown_values *fields = malloc(((size_t)s->field_count + 1) * sizeof *fields);
-    shown_values points = {s, s->mesh->positions, 3}, normals = {s, s->mesh->normals, 3};
-    if (!fields) {
+    shown_array *arrays = malloc(((size_t)s->array_count + 1) * sizeof *arrays);
+    const shown_array points = {s, {"Points", 3, s->mesh->positions, ROLE_POSITIONS}};
+    if (!arrays) {
         o->error = ENOMEM;
         return;
     }
     text_add(&f.text,
              "    <Piece NumberOfPoints=\"%llu\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-             "NumberOfPolys=\"%llu\">\n      <PointData%s>\n",
-             (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count,
-             s->mesh->normals ? " Normals=\"Normals\"" : "");
-    if (s->mesh->normals) add_values(&f, "Normals", &normals);
-    add_fields(&f, s, fields);
-    text_add(&f.text, "      </PointData>\n      <Points>\n");
-    if (s->is_moved)
-        add_positions(&f, s);
-    else
-        add_values(&f, "Points", &points);
+             "NumberOfPolys=\"%llu\">\n",
+             (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count);
+    add_arrays(&f, s, arrays);
+    text_add(&f.text, "      <Points>\n");
+    add_positions(&f, s, &points);
     text_add(&f.text, "      </Points>\n      <Polys>\n");
     add_triangles(&f, s);
     text_add(&f.text, "      </Polys>\n    </Piece>\n");
     vtk_file_write(&f, "PolyData");
-    free(fields);
+    free(arrays);
 }

@@ -18,14 +18,12 @@ enum counted { COUNTS_vertices, COUNTS_triangles };
 typedef struct format {
     const char *name;
     void (*write)(output *o, const shown_mesh *s);
-    int has_fields;
+    int roles;       /* bits, HAS_... */
     int has_doubles; /* for coordinates */
-    int has_normals; /* of vertices */
     enum counted counted;
 } format;
 
-#define FORMAT(name, label, has_fields, has_doubles, has_normals, counts)                                              \
-    {#name, name##_write, has_fields, has_doubles, has_normals, COUNTS_##counts},
+#define FORMAT(name, label, roles, has_doubles, counts) {#name, name##_write, roles, has_doubles, COUNTS_##counts},
 static const format formats[] = {MESH_FORMATS(FORMAT)};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
@@ -44,7 +42,9 @@ static int is_any(const format *f) {
     return 1;
 }
 
-static int has_fields(const format *f) { return f->has_fields; }
+static int has_role(const format *f, vertex_role role) { return f->roles >> role & 1; }
+
+static int has_data(const format *f) { return has_role(f, ROLE_DATA); }
 
 /* Makes "ply, vtp, stl or obj" of the formats that are meant, with `before` in front of each name. */
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
@@ -71,9 +71,9 @@ static int check_fields(const char *path, const mesh_write_options *options, con
     int64_t values = 0;
     char list[LIST_BYTES];
     if (!options || !options->field_count) return 0;
-    if (!f->has_fields)
+    if (!has_data(f))
         return fail(STATUS_USAGE, "%s: %s holds no fields on vertices; write %s", path, f->name,
-                    list_formats(has_fields, "", list));
+                    list_formats(has_data, "", list));
     for (int i = 0; i < options->field_count; i++) values += options->fields[i].components;
     if (values <= FIELD_VALUES_MOST) return 0;
     return fail(STATUS_USAGE, "%s: %lld values per vertex are more than the %d that are written; name fewer fields",
@@ -126,9 +126,9 @@ int mesh_write_has_doubles(const char *path, const mesh_write_options *options) 
     return !choose_format(path, options, &f) && f->has_doubles;
 }
 
-int mesh_write_lacks_normals(const char *path, const mesh_write_options *options) {
+int mesh_write_lacks(const char *path, const mesh_write_options *options, vertex_role role) {
     const format *f;
-    return !choose_format(path, options, &f) && !f->has_normals;
+    return !choose_format(path, options, &f) && !has_role(f, role);
 }
 
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
@@ -160,23 +160,38 @@ static int set_offsets(shown_mesh *s, const mesh_write_options *options, const f
     return 0;
 }
 
+/* Fills s->arrays: channels, then fields. *arrays, from malloc, is the caller's to free, also after a failure. */
+static int set_arrays(shown_mesh *s, const mesh_write_options *options, const format *f, vertex_array **arrays) {
+    const int field_count = options ? options->field_count : 0;
+    vertex_array *to = *arrays = calloc(CHANNEL_COUNT + (size_t)field_count, sizeof *to);
+    if (!to) return fail(STATUS_FAILED, "out of memory for the values of the vertices");
+    for (int n = 0; n < CHANNEL_COUNT; n++) {
+        const mesh_channel *c = &mesh_channels[n];
+        const float *values = mesh_values(s->mesh, n);
+        if (values && has_role(f, c->role)) *to++ = (vertex_array){c->name, c->components, values, c->role};
+    }
+    for (int n = 0; n < field_count; n++) *to++ = options->fields[n];
+    s->arrays = *arrays;
+    s->array_count = (int)(to - *arrays);
+    return 0;
+}
+
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
     shown_part *parts = NULL;
+    vertex_array *arrays = NULL;
     shown_mesh shown = {.mesh = mesh, .soup = options && options->soup};
-    if (options) {
-        shown.fields = options->fields;
-        shown.field_count = options->field_count;
-    }
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);
+    if (!status) status = set_arrays(&shown, options, f, &arrays);
     if (!status) status = output_open(&o, path);
     if (!status) {
         f->write(&o, &shown);
         status = options && options->group ? output_wait(&o, options->group) : output_close(&o);
     }
     free(parts);
+    free(arrays);
     return status;
 }

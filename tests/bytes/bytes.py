@@ -39,7 +39,7 @@ def runs_list(folder):
     """Name, tier and environment of every run."""
     runs = [(f"installed, {n} thread(s)", "whole", threads(n)) for n in ("1", "2", "16")]
     runs.append(("installed, small grids", "small", {}))
-    runs.append(("installed, text for other processors", "sample",
+    runs.append(("installed, variant for other processors", "sample",
                  {"POCL_EXTRA_BUILD_FLAGS": "-DNO_AVX512", "TETRACUBES_CACHE_DIR": ""}))
     second = second_find(os.path.join(folder, "second"))
     if second:

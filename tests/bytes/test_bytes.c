@@ -12,7 +12,7 @@
  * to fail; TEXT: only cases that have it in their names. Prints a line "case NAME: HASH" for each; a difference names
  * case and variant. Seeds are fixed.
  * test_bytes driver [TEXT [WORK_ITEMS]]: all cases of small grids once, for the table of drivers; WORK_ITEMS: which of
- * the two texts of the kernels, left out what the device gets. Prints what the device is, too.
+ * the two variants of the kernels, left out what the device gets. Prints what the device is, too.
  */
 #include "cases.h"
 

@@ -155,7 +155,7 @@ class Planted(TrialCase):
 
 
 class Texts(TrialCase):
-    def test_other_text(self):
+    def test_other_variant(self):
         """A driver that fails with the kernels for one work-item gets those for groups."""
         expected = self.mesh("--engine", "reference")
         for fault in (f"crash build abort {ALONE}", f"crash launch exit {ALONE}", f"crash build refuse {ALONE}"):

@@ -205,8 +205,8 @@ static void test_numbers(void) {
 /* ------------------------------------------------------------------------------------------------------------ sharing
  */
 
-/* So many pieces of points with one array in common, of doubles or packed. */
-static void write_shared(bytes *file, int pieces, int points, const bytes *data, int is_packed) {
+/* So many pieces of points with one array in common. */
+static void write_shared(bytes *file, int pieces, int points, const bytes *data, const char *type, int is_packed) {
     bytes_text(file,
                "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>"
                "<UnstructuredGrid>",
@@ -215,7 +215,7 @@ static void write_shared(bytes *file, int pieces, int points, const bytes *data,
         bytes_text(file,
                    "<Piece NumberOfPoints=\"%d\" NumberOfCells=\"0\"><Points><DataArray type=\"%s\" "
                    "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece>",
-                   points, is_packed ? "Float32" : "Float64");
+                   points, type);
     bytes_text(file, "</UnstructuredGrid><AppendedData encoding=\"raw\">");
     while ((file->size + 1) % 8) bytes_text(file, " ");
     bytes_text(file, "_");
@@ -229,18 +229,21 @@ static void test_sharing(void) {
     bytes plain = {0}, packed = {0}, stream = gzipped(zeros, FLOATS * sizeof(float), AS_ZLIB), file = {0};
     bytes_put(&plain, DOUBLES * sizeof(double), 8, 0);
     bytes_add(&plain, zeros, DOUBLES * sizeof(double));
-    write_shared(&file, 3, DOUBLES / 3, &plain, 0);
+    write_shared(&file, 3, DOUBLES / 3, &plain, "Float64", 0);
     check_file("doubles shared by three pieces", file_write("shared.vtu", file.data, file.size), NULL);
     file.size = 0;
-    write_shared(&file, 400, DOUBLES / 3, &plain, 0);
+    write_shared(&file, 400, DOUBLES / 3, &plain, "Float64", 0);
     check_file("doubles shared by 400 pieces", file_write("shared.vtu", file.data, file.size), "share the same data");
+    file.size = 0;
+    write_shared(&file, 400, DOUBLES / 3, &plain, "Int64", 0);
+    check_file("integers shared by 400 pieces", file_write("shared.vtu", file.data, file.size), "share the same data");
     file.size = 0;
     bytes_put(&packed, 1, 8, 0); /* blocks, bytes of each, of the last, packed */
     bytes_put(&packed, FLOATS * sizeof(float), 8, 0);
     bytes_put(&packed, 0, 8, 0);
     bytes_put(&packed, stream.size, 8, 0);
     bytes_add(&packed, stream.data, stream.size);
-    write_shared(&file, 40, FLOATS / 3, &packed, 1);
+    write_shared(&file, 40, FLOATS / 3, &packed, "Float32", 1);
     check_file("a packed array shared by 40 pieces", file_write("shared.vtu", file.data, file.size),
                "share the same data");
     free(zeros);

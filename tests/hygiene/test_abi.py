@@ -105,7 +105,8 @@ def exported(library):
 def misuse_faults(arguments, text):
     """Functions and fields that no table of test_misuse names."""
     here = arguments.source / "tests" / "hygiene"
-    tables = "".join((here / name).read_text(encoding="utf-8") for name in ("test_misuse.c", "misuse_calls.h"))
+    tables = "".join((here / name).read_text(encoding="utf-8")
+                     for name in ("test_misuse.c", "misuse_places.h", "misuse_calls.h"))
     faults = [f"test_misuse.c never calls {name}" for name in parse_functions(text) if f"{name}(" not in tables]
     faults += [f"test_misuse.c has no place for {name}" for name in parse_functions(text)
                if name not in NO_STATUS and not re.search(rf"(?:AT|SIZED|OPTIONS_OF_\w+)\({name}\b", tables)]

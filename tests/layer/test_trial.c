@@ -1,6 +1,6 @@
 /*
  * test_trial.c - the library asks for trials of kernels and heeds their verdicts: a callback that is called once per
- * kind of kernels, verdicts kept across contexts, the other text where one is bad, sentences where none is left
+ * kind of kernels, verdicts kept across contexts, the other variant where one is bad, sentences where none is left
  *
  * The layer makes PoCL a driver that nobody knows. The callback does no trial, it says what the test wants it to say;
  * what a real one does, tests/drivers/test_trials.py shows.
@@ -76,8 +76,8 @@ static void expect_asked(const script *s, int device, int alone, int groups, con
            s->asked_groups);
 }
 
-/* An unknown driver gets the text for groups where its platform is unknown; PoCL's, of whatever version, that for one
- * work-item first. */
+/* An unknown driver gets the variant for groups where its platform is unknown; PoCL's, of whatever version, that for
+ * one work-item first. */
 static void test_good(void) {
     script s = {TC_VERDICT_GOOD, TC_VERDICT_GOOD, TC_VERDICT_GOOD, 0, 0, 0, ""};
     EXPECT(extract_try(&s, 0) == TC_OK, "%s", tc_message());
@@ -100,14 +100,14 @@ static void test_cancel_and_none(void) {
     script none = {TC_VERDICT_NONE, TC_VERDICT_NONE, TC_VERDICT_NONE, 0, 0, 0, ""};
     EXPECT_REFUSED(extract_try(&cancels, 0), TC_ERROR_CANCELLED, "a trial that is cancelled");
     EXPECT_REFUSED(extract_try(&stops, 0), TC_ERROR_DEVICE, "a trial that is stopped");
-    expect_asked(&stops, 0, 1, 1, "a stopped trial, of either text");
+    expect_asked(&stops, 0, 1, 1, "a stopped trial, of either variant");
     EXPECT(extract_try(&none, 0) == TC_OK, "without a trial: %s", tc_message());
     expect_asked(&none, 0, 1, 0, "no trial");
     EXPECT(extract_try(&none, 0) == TC_OK, "without a trial: %s", tc_message());
     expect_asked(&none, 0, 2, 0, "no trial is no verdict");
 }
 
-static void test_other_text(void) {
+static void test_other_variant(void) {
     for (tc_verdict bad = TC_VERDICT_WRONG_RESULT; bad <= TC_VERDICT_HUNG; bad++) {
         char name[sizeof folder + 16];
         snprintf(name, sizeof name, "%s/%d", folder, (int)bad);
@@ -118,17 +118,17 @@ static void test_other_text(void) {
         EXPECT_REFUSED(extract_try(&s, 1), wanted, "one work-item is what the caller wants");
         EXPECT(strstr(tc_message(), "as the test wants") && strstr(tc_message(), name), "message: %s", tc_message());
         expect_asked(&s, 1, 1, 0, "one work-item is what the caller wants");
-        EXPECT(extract_try(&s, 0) == TC_OK, "with the other text: %s", tc_message());
-        expect_asked(&s, 1, 1, 1, "the other text");
+        EXPECT(extract_try(&s, 0) == TC_OK, "with the other variant: %s", tc_message());
+        expect_asked(&s, 1, 1, 1, "the other variant");
         EXPECT(extract_try(NULL, 0) == TC_OK, "a context without a callback: %s", tc_message());
         EXPECT(extract_try(&none, 0) == TC_OK, "what is kept: %s", tc_message());
         expect_asked(&none, 0, 0, 0, "what is kept");
     }
     setenv("TETRACUBES_CACHE_DIR", "", 1);
     script none = {TC_VERDICT_GOOD, TC_VERDICT_CRASHED, TC_VERDICT_HUNG, 0, 0, 0, ""};
-    EXPECT_REFUSED(extract_try(&none, 0), TC_ERROR_DEVICE, "no text is left");
+    EXPECT_REFUSED(extract_try(&none, 0), TC_ERROR_DEVICE, "no variant is left");
     EXPECT(strstr(tc_message(), "driver 9.") && strstr(tc_message(), "hangs"), "message: %s", tc_message());
-    expect_asked(&none, 1, 1, 1, "no text is left");
+    expect_asked(&none, 1, 1, 1, "no variant is left");
     script closed = {TC_VERDICT_CRASHED, TC_VERDICT_GOOD, TC_VERDICT_GOOD, 0, 0, 0, ""};
     EXPECT_REFUSED(extract_try(&closed, 0), TC_ERROR_DEVICE, "a device that cannot be opened");
     expect_asked(&closed, 1, 0, 0, "a device that cannot be opened");
@@ -191,7 +191,7 @@ int main(void) {
     test_good();
     setenv("TETRACUBES_CACHE_DIR", "", 1);
     test_within_a_call();
-    test_other_text();
+    test_other_variant();
     folder_remove();
     folder_make("trial");
     setenv("TETRACUBES_CACHE_DIR", folder, 1);

@@ -116,7 +116,7 @@ FILES = {
     "host/lib/convert/cell_split.c": ["test_tetrahedralize", "test_polyhedra"],
     "host/lib/convert/polyhedron.c": ["test_polyhedra"],
     "host/lib/convert/tetrahedralize.c": ["test_tetrahedralize", "test_polyhedra"],
-    "host/lib/convert/complex_make.c": ["test_tetrahedralize", "test_polyhedra"],
+    "host/lib/convert/tetrahedralize_passes.c": ["test_tetrahedralize", "test_polyhedra"],
     "host/lib/convert/tetrahedralize_grid.c": ["test_tetrahedralize", "test_complex, reference"],
     "host/lib/grid/coordinates.c": ["test_curvilinear, reference"],
     "host/lib/grid/grid.c": ["test_api, reference", "test_random, reference", "test_curvilinear, reference"],

@@ -239,7 +239,7 @@ MUTANTS = [
            ("&& to <= cells->offsets[cells->cell_count]", "", "cells beyond the connectivity are taken"),
            ("if (unusable_corner(cells, corners, type->corner_count) < type->corner_count) return CELL_BAD;", "",
             "coordinates that are no numbers are taken")),
-    *group("host/lib/convert/complex_make.c",
+    *group("host/lib/convert/tetrahedralize_passes.c",
            ("count += p->tallies[n].tetrahedra;", "count += n + 1 < p->block_count ? p->tallies[n].tetrahedra : 0;",
             "the last block's tetrahedra are not counted"),
            ("p->complex->cells + p->starts[n]", "p->complex->cells", "cells of tetrahedra: blocks begin at 0"),

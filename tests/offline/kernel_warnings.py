@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """kernel_warnings.py quick|long TEXTS - no compiler has anything to say of the kernels, whatever the processor
 
-What a driver's compiler thinks of kernels it may print where users see it. So every program of both texts (TEXTS is
+What a driver's compiler thinks of kernels it may print where users see it. So every program of both variants (TEXTS is
 kernel_texts, which writes them) is compiled by every clang there is, with -Wall, for processors with and without
-AVX-512. And the text for groups has to be plain OpenCL C: nothing stands in it that only some compilers know. quick:
+AVX-512. And the variant for groups has to be plain OpenCL C: nothing stands in it that only some compilers know. quick:
 some of the programs.
 
-Each file says what it needs: it compiles by itself too, as editors see it, with the text that it belongs to. Exit status
+Each file says what it needs: it compiles by itself too, as editors see it, with the variant that it belongs to. Exit status
 77 where there is no clang.
 """
 import concurrent.futures
@@ -27,7 +27,7 @@ SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybri
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
 
-# Work-items of a group, of which one has the other text; quick: all processors for it, where most can differ.
+# Work-items of a group, of which one has the other variant; quick: all processors for it, where most can differ.
 ALONE, GROUPS = "1", "32"
 
 # What is no OpenCL C 1.2. Attributes are hints here, which others pass over.

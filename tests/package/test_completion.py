@@ -103,6 +103,19 @@ def test_zsh(script, known):
     expect(any(line.startswith("-o[") and line.endswith(":FILE:_files") for line in extract), f"zsh, -o: {extract}")
 
 
+def test_help(script):
+    """An option that takes one of several names has all of them in its help, as they are in the lists of the library."""
+    text = script.read_text(encoding="utf-8")
+    choices = set(re.findall(r"'(--[-\w]+)=?\[.*?\]:\w+:\(([^)]+)\)'", text))
+    expect({name for name, _ in choices} >= {"--method", "--type", "--format", "--engine", "--endian", "--blocks"},
+           f"options with names to choose from: {choices}")
+    shown = run(TOOL, "extract", "--help").stdout + run(TOOL, "generate", "--help").stdout
+    for name, names in choices:
+        told = "".join(re.findall(rf"^ +{name} .*\n(?: {{20,}}.*\n)*", shown, re.MULTILINE))
+        for one in names.split():
+            expect(re.search(rf"\b{one}\b", told), f"the help of {name} lacks {one}: {told}")
+
+
 def main():
     known = commands()
     with tempfile.TemporaryDirectory(prefix="tetracubes-completion-") as folder:
@@ -113,6 +126,7 @@ def main():
             (Path(folder) / name).touch()
         test_bash(scripts["bash"], known)
         test_zsh(scripts["zsh"], known)
+        test_help(scripts["zsh"])
         if shutil.which("shellcheck"):
             done = run("shellcheck", "-s", "bash", scripts["bash"])
             expect(done.returncode == 0, f"shellcheck: {done.stdout}")

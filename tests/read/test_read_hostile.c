@@ -23,7 +23,8 @@ static void test_texts(const text_case *cases, size_t count) {
 #define NRRD_222 NRRD_U8 "sizes: 2 2 2\n"
 #define EIGHT    "12345678"
 
-static void test_nrrd(void) {
+/* Fields that are needed, and their values. */
+static void test_nrrd_header(void) {
     static const text_case cases[] = {
         {"a.nrrd", "NRRD0009\n\n", "NRRD0005", STATUS_INPUT},
         {"a.nrrd", "something else\n\n", "NRRD0005", STATUS_INPUT},
@@ -52,6 +53,13 @@ static void test_nrrd(void) {
         {"a.nrrd", NRRD_U8 "sizes: 4294967296 2147483648 1\n\n" EIGHT, "2^60", STATUS_INPUT},
         {"a.nrrd", NRRD_U8 "sizes: 99999999999999999999 1 1\n\n" EIGHT, "3 values", STATUS_INPUT},
         {"a.nrrd", NRRD_U8 "sizes: 1000000 1000000 1000\n\n" EIGHT, "asks for", STATUS_INPUT},
+    };
+    test_texts(cases, sizeof cases / sizeof *cases);
+}
+
+/* World space, and what axes are. */
+static void test_nrrd_axes(void) {
+    static const text_case cases[] = {
         {"a.nrrd", NRRD_222 "spacings: 1 1 0\n\n" EIGHT, "spacing along axis 3", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "spacings: inf 1 1\n\n" EIGHT, "spacing along axis 1", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "spacings: 1 1\n\n" EIGHT, "3 values", STATUS_INPUT},
@@ -72,6 +80,13 @@ static void test_nrrd(void) {
          NRRD_222 "kinds: scalar space space\nsizes: 1 4 2\n\n"
                   "1234567",
          "asks for 8", STATUS_INPUT},
+    };
+    test_texts(cases, sizeof cases / sizeof *cases);
+}
+
+/* Where data begin. */
+static void test_nrrd_skips(void) {
+    static const text_case cases[] = {
         {"a.nrrd", NRRD_222 "byte skip: 1\n\n" EIGHT, "asks for 8", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "byte skip: 9223372036854775807\n\n" EIGHT, "behind", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "byte skip: -2\n\n" EIGHT, "8 and 1 behind", STATUS_INPUT},
@@ -82,6 +97,13 @@ static void test_nrrd(void) {
         {"a.nrrd", NRRD_222 "encoding: gzip\nbyte skip: -9223372036854775808\n\n" EIGHT, "cannot hold", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: ascii\nbyte skip: -1\n\n1 2 3 4 5 6 7 8", "no sense", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: hex\nbyte skip: -1\n\n0102030405060708", "no sense", STATUS_INPUT},
+    };
+    test_texts(cases, sizeof cases / sizeof *cases);
+}
+
+/* Data that are too short, damaged, or of other values. */
+static void test_nrrd_data(void) {
+    static const text_case cases[] = {
         {"a.nrrd", NRRD_222 "encoding: hex\n\n010203040506070", "15 hexadecimal", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: hex\n\n010203040506070 ", "has 15 hexadecimal", STATUS_INPUT},
         {"a.nrrd", NRRD_222 "encoding: hex\n\n01020304050607g8", "no hexadecimal digit", STATUS_INPUT},
@@ -451,7 +473,10 @@ static void test_bytes(void) {
 
 int main(void) {
     folder_make("read-hostile");
-    test_nrrd();
+    test_nrrd_header();
+    test_nrrd_axes();
+    test_nrrd_skips();
+    test_nrrd_data();
     test_data_files();
     test_metaimage();
     test_nifti();

@@ -3,7 +3,7 @@
  *
  * Proves: values are the same for all types of samples and of fields, one component and several, both methods, uniform,
  * rectilinear and curvilinear grids, with and without missing samples and cells, and complexes; whole and in slabs; in
- * both texts of the kernels; after an extraction, a count, a call for another surface, and with nothing before. Room
+ * both variants of the kernels; after an extraction, a count, a call for another surface, and with nothing before. Room
  * for more or fewer values is refused, and nothing is written then.
  */
 #include "engines.h"

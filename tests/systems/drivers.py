@@ -2,7 +2,7 @@
 """drivers.py TEST_BYTES [--out FILE] [--folder FOLDER] [--rusticl FOLDER] [--only NAME] [--cases quick]
 
 The same bytes from every driver of OpenCL on this machine. Each that is installed runs test_bytes' cases (all types of
-samples, both methods, all kinds of grids, small) in each text of the kernels that it takes: for a work-item alone, with
+samples, both methods, all kinds of grids, small) in each variant of the kernels that it takes: for a work-item alone, with
 and without AVX-512, and for groups. Every mesh is compared with the reference's there; here the hashes of all drivers
 are compared, case by case. A driver that is not installed is told; status 77 where there is none.
 

@@ -42,7 +42,7 @@ static char *write_and_read(const char *name, const tc_mesh_data *mesh, const me
     return text;
 }
 
-static void test_vtp_fields(const tc_mesh_data *mesh, const mesh_field *fields, int soup) {
+static void test_vtp_fields(const tc_mesh_data *mesh, const vertex_array *fields, int soup) {
     static const char *const names[] = {"pressure", "a&lt;b&gt; &quot;c&quot; &amp; \xc3\xa4_", "momentum"};
     mesh_write_options options = {.soup = soup, .fields = fields, .field_count = 3};
     size_t bytes;
@@ -69,7 +69,7 @@ static void test_vtp_fields(const tc_mesh_data *mesh, const mesh_field *fields, 
     free(text);
 }
 
-static void test_ply_fields(const tc_mesh_data *mesh, const mesh_field *fields, int soup) {
+static void test_ply_fields(const tc_mesh_data *mesh, const vertex_array *fields, int soup) {
     mesh_write_options options = {.soup = soup, .fields = fields, .field_count = 3};
     uint64_t count = soup ? 3 * mesh->triangle_count : mesh->vertex_count;
     const char *end = "property list uchar uint vertex_indices\nend_header\n";
@@ -109,7 +109,11 @@ static void test_ply_fields(const tc_mesh_data *mesh, const mesh_field *fields, 
 static void test_ply_names(void) {
     tc_mesh_data mesh = make_mesh(1, 0, 0);
     float values[4] = {1, 2, 3, 4};
-    mesh_field fields[] = {{"x", 1, values}, {"nx", 1, values}, {"", 1, values}, {"x", 1, values}, {"a b", 2, values}};
+    vertex_array fields[] = {{"x", 1, values, ROLE_DATA},
+                             {"nx", 1, values, ROLE_DATA},
+                             {"", 1, values, ROLE_DATA},
+                             {"x", 1, values, ROLE_DATA},
+                             {"a b", 2, values, ROLE_DATA}};
     mesh_write_options options = {.fields = fields, .field_count = 5};
     size_t bytes;
     char *text = write_and_read("names.ply", &mesh, &options, &bytes);
@@ -126,8 +130,9 @@ static void test_fields(void) {
         for (int with_normals = 0; with_normals < 2; with_normals++) {
             tc_mesh_data mesh = make_mesh(sizes[i][0], sizes[i][1], with_normals);
             float *values[3] = {make_values(sizes[i][0]), make_values(sizes[i][0]), make_values(3 * sizes[i][0])};
-            mesh_field fields[3] = {
-                {"pressure", 1, values[0]}, {"a<b> \"c\" & \xc3\xa4\xff", 1, values[1]}, {"momentum", 3, values[2]}};
+            vertex_array fields[3] = {{"pressure", 1, values[0], ROLE_DATA},
+                                      {"a<b> \"c\" & \xc3\xa4\xff", 1, values[1], ROLE_DATA},
+                                      {"momentum", 3, values[2], ROLE_DATA}};
             for (int soup = 0; soup < 2; soup++) {
                 test_vtp_fields(&mesh, fields, soup);
                 test_ply_fields(&mesh, fields, soup);
@@ -138,7 +143,7 @@ static void test_fields(void) {
 }
 
 static void test_refusals(void) {
-    mesh_field field = {"f", 1, (float[]){0}}, wide = {"f", 1 << 20, (float[]){0}};
+    vertex_array field = {"f", 1, (float[]){0}, ROLE_DATA}, wide = {"f", 1 << 20, (float[]){0}, ROLE_DATA};
     mesh_write_options with = {.fields = &field, .field_count = 1}, too_many = {.fields = &wide, .field_count = 1};
     EXPECT(mesh_write_check("a.stl", &with) == STATUS_USAGE && strstr(failure_text(), "ply or vtp"), "STL: %s",
            failure_text());

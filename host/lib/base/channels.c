@@ -1,12 +1,14 @@
 #include "base/channels.h"
 
-#define CHANNEL_NAME(name, many, one) many,
-#define CHANNEL_ITEM(name, many, one) one,
-const char *const channel_names[CHANNEL_COUNT] = {CHANNELS(CHANNEL_NAME)};
-const char *const channel_items[CHANNEL_COUNT] = {CHANNELS(CHANNEL_ITEM)};
+#define CHANNEL_HAS_ROOM(NAME, member, one, components, role, is_asked)                                                \
+    _Static_assert((components) * sizeof(float) == CHANNEL_BYTES, "windows of " #member " have other offsets");
+CHANNELS(CHANNEL_HAS_ROOM)
 
 channel_set channels_asked(const tc_extract_options *options) {
-    return POSITIONS_ALONE | (channel_set)(options->normals != 0) << CHANNEL_NORMALS;
+    channel_set asked = 0;
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++)
+        asked |= (channel_set)channel_is_asked(options, channel) << channel;
+    return asked;
 }
 
 bool channel_in(channel_set set, int channel) { return set >> channel & 1; }

@@ -41,16 +41,15 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
     tc_status status = struct_clear(data, sizeof *data, "tc_mesh_get: data");
     if (status) return status;
     if (!mesh) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_mesh_get needs a mesh");
-    const tc_mesh_data found = {.struct_size = sizeof found,
-                                .vertex_count = mesh->vertex_count,
-                                .triangle_count = mesh->triangle_count,
-                                .active_cell_count = mesh->active_cell_count,
-                                .positions = channel_values(mesh, CHANNEL_POSITIONS),
-                                .normals = channel_values(mesh, CHANNEL_NORMALS),
-                                .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
-                                .slab_count = mesh->slab_count,
-                                .timings = mesh->timings,
-                                .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
+    tc_mesh_data found = {.struct_size = sizeof found,
+                          .vertex_count = mesh->vertex_count,
+                          .triangle_count = mesh->triangle_count,
+                          .active_cell_count = mesh->active_cell_count,
+                          .triangles = mesh->triangle_count ? mesh->triangles.memory : NULL,
+                          .slab_count = mesh->slab_count,
+                          .timings = mesh->timings,
+                          .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
+    for (int n = 0; n < CHANNEL_COUNT; n++) mesh_values_set(&found, n, channel_values(mesh, n));
     struct_copy_out(data, &found);
     return TC_OK;
 }

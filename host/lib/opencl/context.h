@@ -81,7 +81,7 @@ struct tc_context {
     workspace work;
     bool is_trial;                         /* kernels are built without vetting */
     bool tries;                            /* a trial is running: progress is not reported (trial.c) */
-    bool text_changed;                     /* the other text was taken within a call, which starts again */
+    bool variant_changed;                  /* the other variant was taken within a call, which starts again */
     bool vetted[KERNEL_KINDS + 1];         /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *workspace_grid;  /* the grid that the workspace was last used for */
     bool trial_passed[KERNEL_KINDS];       /* kernels that were tried (trial.c) */

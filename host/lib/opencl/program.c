@@ -9,7 +9,7 @@
 #include "opencl/kernel_sources.h"
 #include "opencl/pocl_cache.h"
 #include "opencl/program_cache.h"
-#include "opencl/text.h"
+#include "opencl/variant.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,27 +89,27 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
                            (int)error, p->options, log);
 }
 
-/* A program in both texts, and its kernels in order. */
-typedef struct program_text {
+/* A program in both variants, and its kernels in order. */
+typedef struct program_sources {
     const char *kernels[KERNELS_MOST];
     const char *sources[2];
-} program_text;
+} program_sources;
 
-static const program_text programs[PROGRAM_COUNT] = {
+static const program_sources programs[PROGRAM_COUNT] = {
     [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
-                          {[TEXT_ALONE] = kernel_classify_alone, [TEXT_GROUPS] = kernel_classify_groups}},
-    [PROGRAM_EMIT] = {{"emit"}, {[TEXT_ALONE] = kernel_emit_alone, [TEXT_GROUPS] = kernel_emit_groups}},
+                          {[VARIANT_ALONE] = kernel_classify_alone, [VARIANT_GROUPS] = kernel_classify_groups}},
+    [PROGRAM_EMIT] = {{"emit"}, {[VARIANT_ALONE] = kernel_emit_alone, [VARIANT_GROUPS] = kernel_emit_groups}},
     [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_wish", "snap_even", "snap_odd", "snap_close"},
-                      {[TEXT_ALONE] = kernel_snap_alone, [TEXT_GROUPS] = kernel_snap_groups}},
+                      {[VARIANT_ALONE] = kernel_snap_alone, [VARIANT_GROUPS] = kernel_snap_groups}},
     [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
-                         {[TEXT_ALONE] = kernel_complex_alone, [TEXT_GROUPS] = kernel_complex_groups}},
+                         {[VARIANT_ALONE] = kernel_complex_alone, [VARIANT_GROUPS] = kernel_complex_groups}},
 };
 
 uint64_t kernel_sources_hash(void) {
     uint64_t hash = 0xcbf29ce484222325u;
-    for (int text = TEXT_GROUPS; text <= TEXT_ALONE; text++)
+    for (int variant = VARIANT_GROUPS; variant <= VARIANT_ALONE; variant++)
         for (int name = 0; name < PROGRAM_COUNT; name++)
-            for (const char *c = programs[name].sources[text]; *c; c++)
+            for (const char *c = programs[name].sources[variant]; *c; c++)
                 hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
     return hash;
 }
@@ -215,7 +215,7 @@ static tc_status program_make(const tc_context *context, program *p, const char 
 }
 
 tc_status program_get(tc_context *context, program_name name, kernel_kind kind, const program **out) {
-    const program_text *text = &programs[name];
+    const program_sources *from = &programs[name];
     const char *kernels[KERNELS_MOST];
     char options[PROGRAM_OPTIONS_BYTES];
     options_write(context, name, kind, options, sizeof options);
@@ -227,8 +227,8 @@ tc_status program_get(tc_context *context, program_name name, kernel_kind kind, 
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
     snprintf(p->asked, sizeof p->asked, "%s", options);
-    p->source = text->sources[text_for(context->launch.work_items)];
-    memcpy(kernels, text->kernels, sizeof kernels);
+    p->source = from->sources[variant_for(context->launch.work_items)];
+    memcpy(kernels, from->kernels, sizeof kernels);
     if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
     tc_status status = program_make(context, p, kernels);
     if (status) {

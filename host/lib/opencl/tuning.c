@@ -3,7 +3,7 @@
 #include "opencl/cache.h"
 #include "failure.h"
 #include "slab.h"
-#include "opencl/text.h"
+#include "opencl/variant.h"
 
 #include <errno.h>
 #include <stddef.h>
@@ -35,7 +35,7 @@ static uint32_t work_items_limit(const tc_device_info *device) {
 }
 
 static bool work_items_fit(const tc_device_info *device, uint32_t count) {
-    if (count == 1) return text_rule_of(device)->takes_alone;
+    if (count == 1) return variant_rule_of(device)->takes_alone;
     return count % 32 == 0 && count <= work_items_limit(device);
 }
 
@@ -131,7 +131,7 @@ static const uint32_t spins = 1u << 14, spins_cpu = 1u << 17;
  * brick; groups to fill the device. One work-item too where a group has no room for a brick. */
 static void defaults_take(const tc_device_info *device, launch_parameters *p) {
     const bool cpu = !strcmp(device->type, "cpu");
-    const bool alone = text_rule_of(device)->text == TEXT_ALONE;
+    const bool alone = variant_rule_of(device)->variant == VARIANT_ALONE;
     const uint64_t most = device->max_work_group_size;
     if (!p->work_items) p->work_items = alone || most < 32 ? 1 : cpu || most < 128 ? 32 : 128;
     if (!p->work_groups) p->work_groups = device->compute_units * (cpu ? 1 : 8);

@@ -23,7 +23,7 @@ typedef struct launch_parameters {
     uint32_t work_items, work_groups;
     scan_parameters scan;
     tc_division division;
-    uint32_t other_items; /* work-items of the other text of the kernels; 0: there is none to take (vetting.c) */
+    uint32_t other_items; /* work-items of the other variant of the kernels; 0: there is none to take (vetting.c) */
 } launch_parameters;
 
 /* Chooses the parameters that the options leave at 0. TC_ERROR_ARGUMENT for values beyond the device's limits. */

@@ -14,7 +14,7 @@ typedef struct kept_verdict {
     char reason[600];
 } kept_verdict;
 
-/* Reads the verdict on the kernels of a kind, by its number, in the text that the context builds now. */
+/* Reads the verdict on the kernels of a kind, by its number, in the variant that the context builds now. */
 void verdict_read(const tc_context *context, unsigned kind, kept_verdict *out);
 void verdict_write(const tc_context *context, unsigned kind, const kept_verdict *verdict);
 

@@ -4,7 +4,7 @@
 #include "failure.h"
 #include "base/float_environment.h"
 #include "opencl/program.h"
-#include "opencl/text.h"
+#include "opencl/variant.h"
 #include "opencl/verdicts.h"
 
 #include <stdio.h>
@@ -16,10 +16,10 @@ enum { OPENING = KERNEL_KINDS }; /* the number of the device itself, beside thos
 
 /* ----------------------------------------------------------------------------------------------------------- driver */
 
-/* Whether the driver counts as tried, with the text that the context builds, or for opening the device. */
+/* Whether the driver counts as tried, with the variant that the context builds, or for opening the device. */
 static bool driver_is_known(const tc_context *context, unsigned kind) {
-    const bool usual = text_for(context->launch.work_items) == text_rule_of(&context->info)->text;
-    return text_tried(&context->info) && (usual || kind == OPENING);
+    const bool usual = variant_for(context->launch.work_items) == variant_rule_of(&context->info)->variant;
+    return variant_tried(&context->info) && (usual || kind == OPENING);
 }
 
 /* PoCL's devices on the host's processor run ld: without it they are not what they are known for. */
@@ -90,10 +90,10 @@ static tc_status verdict_fail(const tc_context *context, unsigned kind, const ke
         driver_finds_linker(d) ? "" : ". It links kernels with ld, which no folder of PATH has: set PATH", kept_in);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ texts */
+/* --------------------------------------------------------------------------------------------------------- variants */
 
-/* Switches to the other text and drops all that was built from the first. */
-static void text_exchange(tc_context *context) {
+/* Switches to the other variant and drops all that was built from the first. */
+static void variant_exchange(tc_context *context) {
     cl->Finish(context->queue);
     workspace_release(context);
     programs_release(context);
@@ -118,7 +118,7 @@ static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged
             vetted_note(context, kind);
         } else if (v.verdict != TC_VERDICT_CANCELLED && context->launch.other_items &&
                    driver_finds_linker(&context->info)) {
-            text_exchange(context);
+            variant_exchange(context);
             *exchanged = true;
         } else {
             return verdict_fail(context, number, &v);
@@ -140,14 +140,14 @@ tc_status call_vet(tc_context *context, kernel_kind kind) {
 }
 
 tc_status kernels_vet(tc_context *context, kernel_kind kind) {
-    tc_status status = kind_vet(context, kind, &context->text_changed);
-    if (status || !context->text_changed) return status;
+    tc_status status = kind_vet(context, kind, &context->variant_changed);
+    if (status || !context->variant_changed) return status;
     return (tc_status)fail(TC_ERROR_DEVICE, "other kernels have been taken, as the driver fails with those before: "
                                             "count again");
 }
 
 bool vetting_restarts(tc_context *context) {
-    const bool restarts = context->text_changed;
-    context->text_changed = false;
+    const bool restarts = context->variant_changed;
+    context->variant_changed = false;
     return restarts;
 }

@@ -1,11 +1,11 @@
 /*
  * slab_plan.h - how a grid is cut into slabs and tiles so that counts and buffers fit the device
  *
- * A slab is a run of whole layers of bricks. Its counts fit the 30 bits of a scan word whatever the samples are. Where
- * memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a window: the samples of a
- * slab, and the other arrays that a grid may have, with one plane before and two after (gradients and missing cells
- * reach that far), sign words with one layer after. Devices with memory of their own hold two such windows, where that
- * fits: one is copied while kernels run over the other.
+ * A slab has whole layers of bricks, one after the other. Its counts fit the 30 bits of a scan word whatever the
+ * samples are. Where memory allows, buffers hold the whole grid and slabs only bound the counts; else they hold a
+ * window: the samples of a slab, and the other arrays that a grid may have, with one plane before and two after
+ * (gradients and missing cells reach that far), sign words with one layer after. Devices with memory of their own hold
+ * two such windows, where that fits: one is copied while kernels run over the other.
  *
  * Method snap has a plan of its own. Whether a sample is snapped depends on samples up to five steps away, one for each
  * colour. So windows have two layers of bricks more on either side, of which those steps use up the outer part; and
@@ -37,7 +37,7 @@ uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool 
 /* others: the plan of the other methods, whose arrays the grid has on the device already; NULL: that one is made. */
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan);
 
-/* Shapes the tiles again where the context has changed to the other text of the kernels. */
+/* Shapes the tiles again where the context has changed to the other variant of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
 /* Planes z0 <= z < z1 of a slab. */

@@ -13,7 +13,7 @@
 tc_status structured_grid_create(tc_grid *grid);
 void structured_grid_destroy(tc_grid *grid);
 
-/* Shapes tiles again where the context has changed to the other text of the kernels. */
+/* Shapes tiles again where the context has changed to the other variant of the kernels. */
 void structured_reshape(tc_grid *grid);
 
 /* The kind of its kernels; emits: kernel 2 too. */

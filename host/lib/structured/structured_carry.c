@@ -1,6 +1,6 @@
 /*
  * Fields carried to the vertices of a surface that kernel 1 has classified. Its sign words give the crossed edges
- * again, and it has stored where the vertices of each row of 64 samples begin. So threads of the host process runs of
+ * again, and it has stored where the vertices of each row of 64 samples begin. So threads of the host process shares of
  * bricks, and no kernel runs.
  *
  * Where the workspace holds these results no longer, the surface is counted again first. Of grids in slabs they are

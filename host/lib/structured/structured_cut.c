@@ -23,12 +23,12 @@ void steps_largest(const emit_plan *e, uint64_t *vertices, uint64_t *triangles) 
     }
 }
 
-/* Prefix sums in the slab before rows of bricks, taken from the first brick of a row: of every layer the first row, and
- * of one layer all rows. */
-typedef struct row_sums {
+/* Prefix sums in the slab before strips, taken from the first brick of a strip: of every layer the first strip, and of
+ * one layer all strips. */
+typedef struct strip_sums {
     brick_state *layers;
     brick_state *bricks; /* all of a layer, made when first needed */
-} row_sums;
+} strip_sums;
 
 static tc_status layers_read(run *r, brick_state *layers) {
     const uint64_t bricks = plan_bricks_per_layer(r->plan);
@@ -46,7 +46,7 @@ static tc_status layers_read(run *r, brick_state *layers) {
 }
 
 /* Layer n of the grid. */
-static tc_status bricks_read(const run *r, row_sums *sums, uint32_t n) {
+static tc_status bricks_read(const run *r, strip_sums *sums, uint32_t n) {
     const uint64_t bricks = plan_bricks_per_layer(r->plan), bytes = bricks * sizeof *sums->bricks;
     if (!sums->bricks && !(sums->bricks = malloc((size_t)bytes)))
         return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of a layer");
@@ -56,7 +56,7 @@ static tc_status bricks_read(const run *r, row_sums *sums, uint32_t n) {
     }
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->context->work.words[0].bricks.memory, CL_TRUE, n * bytes,
                                          bytes, sums->bricks, 0, NULL, NULL);
-    return error ? context_fail(r->context, "reading sums of rows", error) : TC_OK;
+    return error ? context_fail(r->context, "reading sums of strips", error) : TC_OK;
 }
 
 static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
@@ -64,23 +64,23 @@ static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
     return layers < r->plan->slab_layers ? layers : r->plan->slab_layers;
 }
 
-/* Vertices and triangles before a row of the slab, or before the next slab. */
-static void row_begin(const run *r, const row_sums *sums, uint32_t slab_index, uint32_t row, uint64_t at[2]) {
+/* Vertices and triangles before a strip of the slab, or before the next slab. */
+static void strip_begin(const run *r, const strip_sums *sums, uint32_t slab_index, uint32_t strip, uint64_t at[2]) {
     const uint32_t *head = r->heads + slab_index * STATE_WORDS;
-    const uint32_t layer = row / r->plan->bricks_y, in_layer = row % r->plan->bricks_y;
+    const uint32_t layer = strip / r->plan->bricks_y, in_layer = strip % r->plan->bricks_y;
     const brick_state *brick = in_layer ? &sums->bricks[in_layer * r->plan->words_x]
                                         : &sums->layers[slab_index * r->plan->slab_layers + layer];
     bool end = layer == slab_layer_count(r, slab_index);
-    at[0] = row == 0 ? 0 : end ? head[STATE_VERTICES] : brick->vertices;
-    at[1] = row == 0 ? 0 : end ? head[STATE_TRIANGLES] : brick->triangles;
+    at[0] = strip == 0 ? 0 : end ? head[STATE_VERTICES] : brick->vertices;
+    at[1] = strip == 0 ? 0 : end ? head[STATE_TRIANGLES] : brick->triangles;
 }
 
-/* The part of the mesh that rows [step->row0, row1) of the slab make. */
-static void step_end(const run *r, const row_sums *sums, emit_step *step, uint32_t row1) {
+/* The part of the mesh that strips [step->strip0, strip1) of the slab make. */
+static void step_end(const run *r, const strip_sums *sums, emit_step *step, uint32_t strip1) {
     uint64_t from[2], to[2];
-    row_begin(r, sums, step->ref.slab_index, step->row0, from);
-    row_begin(r, sums, step->ref.slab_index, row1, to);
-    step->row1 = row1;
+    strip_begin(r, sums, step->ref.slab_index, step->strip0, from);
+    strip_begin(r, sums, step->ref.slab_index, strip1, to);
+    step->strip1 = strip1;
     step->part.vertex0 = step->slab_vertex + from[0];
     step->part.vertex1 = step->slab_vertex + to[0];
     step->part.triangle0 = step->slab_triangle + from[1];
@@ -103,7 +103,7 @@ static bool windows_fit(const run *r, const emit_plan *e) {
     return window_fits(r, vertices, triangles, e->window_count);
 }
 
-static tc_status row_refuse(const run *r, const mesh_window *part) {
+static tc_status strip_refuse(const run *r, const mesh_window *part) {
     return (tc_status)fail(
         TC_ERROR_MEMORY,
         "a row of bricks of this surface has %llu bytes, more than the memory budget leaves (%llu) or a buffer may "
@@ -127,39 +127,39 @@ static tc_status step_add(emit_plan *e, const emit_step *step) {
     return TC_OK;
 }
 
-/* Makes the step as long as fits, in steps of `stride` rows and up to row `most`; false where not even the first stride
- * fits, with which the step then ends. */
-static bool step_stretch(const run *r, const emit_plan *e, const row_sums *sums, emit_step *step, uint32_t stride,
+/* Makes the step as long as fits, by `stride` strips at a time and up to strip `most`; false where not even the first
+ * stride fits, with which the step then ends. */
+static bool step_stretch(const run *r, const emit_plan *e, const strip_sums *sums, emit_step *step, uint32_t stride,
                          uint32_t most) {
     emit_step longer = *step;
-    step_end(r, sums, step, e->window_count ? step->row0 + stride : most);
+    step_end(r, sums, step, e->window_count ? step->strip0 + stride : most);
     if (!step_fits(r, e, step, stride == 1 ? 0 : e->shrink)) return false;
-    while (step->row1 < most) {
-        step_end(r, sums, &longer, step->row1 + stride);
+    while (step->strip1 < most) {
+        step_end(r, sums, &longer, step->strip1 + stride);
         if (!step_fits(r, e, &longer, e->shrink)) break;
         *step = longer;
     }
     return true;
 }
 
-/* Cuts a slab into few steps: whole layers, or rows in a layer that is too large. *fits is false where a row is too
- * large; the last step is then that row. */
-static tc_status slab_cut(const run *r, emit_plan *e, row_sums *sums, emit_step first, bool *fits) {
-    const uint32_t rows = r->plan->bricks_y, slab_rows = slab_layer_count(r, first.ref.slab_index) * rows;
+/* Cuts a slab into few steps: whole layers, or strips in a layer that is too large. *fits is false where a strip is too
+ * large; the last step is then that strip. */
+static tc_status slab_cut(const run *r, emit_plan *e, strip_sums *sums, emit_step first, bool *fits) {
+    const uint32_t strips = r->plan->bricks_y, slab_strips = slab_layer_count(r, first.ref.slab_index) * strips;
     tc_status status = TC_OK;
-    for (emit_step step = first; step.row0 < slab_rows && *fits && !status; step.row0 = step.row1) {
-        const uint32_t layer = step.row0 / rows;
-        step.opens_slab = step.row0 == 0;
-        bool whole = step.row0 % rows == 0 && step_stretch(r, e, sums, &step, rows, slab_rows);
-        if (!whole && step.row0 % rows == 0)
+    for (emit_step step = first; step.strip0 < slab_strips && *fits && !status; step.strip0 = step.strip1) {
+        const uint32_t layer = step.strip0 / strips;
+        step.opens_slab = step.strip0 == 0;
+        bool whole = step.strip0 % strips == 0 && step_stretch(r, e, sums, &step, strips, slab_strips);
+        if (!whole && step.strip0 % strips == 0)
             status = bricks_read(r, sums, first.ref.slab_index * r->plan->slab_layers + layer);
-        if (!whole && !status) *fits = step_stretch(r, e, sums, &step, 1, (layer + 1) * rows);
+        if (!whole && !status) *fits = step_stretch(r, e, sums, &step, 1, (layer + 1) * strips);
         if (!status) status = step_add(e, &step);
     }
     return status;
 }
 
-static tc_status slabs_cut(const run *r, emit_plan *e, row_sums *sums, bool *fits) {
+static tc_status slabs_cut(const run *r, emit_plan *e, strip_sums *sums, bool *fits) {
     uint32_t active = 0;
     emit_step first = {0};
     tc_status status = TC_OK;
@@ -178,9 +178,9 @@ static tc_status slabs_cut(const run *r, emit_plan *e, row_sums *sums, bool *fit
     return status;
 }
 
-/* Makes steps smaller, down to one row each, while the windows for the largest step do not fit together. *fits as for
+/* Makes steps smaller, down to one strip each, while the windows for the largest step do not fit together. *fits as for
  * slab_cut. */
-static tc_status windows_cut(const run *r, emit_plan *e, row_sums *sums, bool *fits) {
+static tc_status windows_cut(const run *r, emit_plan *e, strip_sums *sums, bool *fits) {
     enum { SHRINK_MOST = 20 };
     e->shrink = 0;
     tc_status status = slabs_cut(r, e, sums, fits);
@@ -193,7 +193,7 @@ static tc_status windows_cut(const run *r, emit_plan *e, row_sums *sums, bool *f
 }
 
 tc_status steps_plan(run *r, emit_plan *e, bool whole) {
-    row_sums sums = {.layers = calloc(r->plan->layer_count, sizeof *sums.layers)};
+    strip_sums sums = {.layers = calloc(r->plan->layer_count, sizeof *sums.layers)};
     tc_status status = TC_OK;
     bool fits = false;
     if (!sums.layers) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of layers");
@@ -204,7 +204,7 @@ tc_status steps_plan(run *r, emit_plan *e, bool whole) {
         e->window_count = 1;
         status = windows_cut(r, e, &sums, &fits);
     }
-    if (!status && !fits) status = row_refuse(r, &e->steps[e->step_count - 1].part);
+    if (!status && !fits) status = strip_refuse(r, &e->steps[e->step_count - 1].part);
     free(sums.layers);
     free(sums.bricks);
     return status;

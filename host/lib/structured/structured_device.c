@@ -53,16 +53,15 @@ static tc_status mesh_check(const run *r, const mesh_buffers *buffers) {
     tc_status status = TC_OK;
     for (int n = 0; n < CHANNEL_COUNT && !status; n++)
         if (channel_in(r->made, n))
-            status = buffer_check(r, buffers->channels[n].memory, vertex_bytes, channel_names[n]);
+            status = buffer_check(r, buffers->channels[n].memory, vertex_bytes, mesh_channels[n].name);
     if (!status) status = buffer_check(r, buffers->triangles.memory, r->triangle_count * TRIANGLE_BYTES, "triangles");
     return status;
 }
 
 static tc_status surface_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh) {
     run r;
-    mesh_buffers buffers = {.channels = {[CHANNEL_POSITIONS] = {.memory = mesh->positions},
-                                         [CHANNEL_NORMALS] = {.memory = options->normals ? mesh->normals : NULL}},
-                            .triangles = {.memory = mesh->triangles}};
+#define CHANNEL_BUFFER(NAME, member, ...) {.memory = channel_is_asked(options, CHANNEL_##NAME) ? mesh->member : NULL},
+    mesh_buffers buffers = {.channels = {CHANNELS(CHANNEL_BUFFER)}, .triangles = {.memory = mesh->triangles}};
     tc_status status = run_begin(&r, grid, options, inside_range_of(grid->type, options->isovalue), true);
     if (!status) {
         memcpy(r.heads, grid->device->heads, r.plan->slab_count * STATE_WORDS * sizeof *r.heads);

@@ -13,11 +13,11 @@ typedef struct mesh_window {
     mesh_buffers *buffers;
 } mesh_window;
 
-/* Rows of bricks of a slab, layer after layer, that are emitted by one launch. */
+/* Strips of a slab, which are rows of bricks along x, layer after layer, that are emitted by one launch. */
 typedef struct emit_step {
     slab_ref ref;
     bool opens_slab; /* the first of its slab */
-    uint32_t row0, row1;
+    uint32_t strip0, strip1;
     uint64_t slab_vertex, slab_triangle; /* before the slab */
     mesh_window part;                    /* of the mesh: what the step makes */
 } emit_step;
@@ -28,7 +28,7 @@ typedef struct emit_plan {
     uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
     emit_step *steps;
     uint32_t step_count, step_room;
-    unsigned shrink; /* steps of several rows use a window halved so many times */
+    unsigned shrink; /* steps of several strips use a window halved so many times */
     double kernels_end_ms;
 } emit_plan;
 
@@ -39,7 +39,7 @@ bool window_fits(const run *r, uint64_t vertices, uint64_t triangles, uint32_t w
 void steps_largest(const emit_plan *e, uint64_t *vertices, uint64_t *triangles);
 
 /* Chooses windows and steps: the whole mesh at once, else two windows that alternate, else one (structured_cut.c).
- * TC_ERROR_MEMORY, with the memory needed, where a row of bricks is too large for one. */
+ * TC_ERROR_MEMORY, with the memory needed, where a strip is too large for one. */
 tc_status steps_plan(run *r, emit_plan *e, bool whole);
 
 #endif

@@ -1,8 +1,7 @@
 /*
  * Kernel 2 over all slabs, into windows of the mesh: one window where the device's buffers can hold the mesh, else one
- * after the other, each a run of whole layers, or of rows of bricks where a layer is too large. On devices that share
- * the host's memory a window lies in the mesh itself; else what a step has emitted is read back while the next step
- * runs.
+ * after the other, each of whole layers, or of strips where a layer is too large. On devices that share the host's
+ * memory a window lies in the mesh itself; else what a step has emitted is read back while the next step runs.
  */
 #include "structured/structured_emission.h"
 
@@ -30,7 +29,8 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     tc_status status = TC_OK;
     for (int n = 0; n < CHANNEL_COUNT && !status; n++)
         if (channel_in(r->made, n))
-            status = part_open(r, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset, channel_names[n]);
+            status =
+                part_open(r, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset, mesh_channels[n].name);
     if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
@@ -199,8 +199,8 @@ static void step_describe(const run *r, const emit_step *step, slab *s) {
     slab_describe(r, step->ref, s);
     s->mesh.vertex_base = (uint32_t)step->slab_vertex;
     s->mesh.vertex_base_next = (uint32_t)(step->slab_vertex + r->heads[s->results.head_offset + STATE_VERTICES]);
-    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->row0 * r->plan->words_x;
-    s->mesh.brick_last = s->mesh.brick_first + (step->row1 - step->row0) * r->plan->words_x;
+    s->mesh.brick_first = (s->z0 - s->results.word_z) / BRICK_PLANES * bricks + step->strip0 * r->plan->words_x;
+    s->mesh.brick_last = s->mesh.brick_first + (step->strip1 - step->strip0) * r->plan->words_x;
 }
 
 static tc_status step_emit(run *r, uint32_t n) {

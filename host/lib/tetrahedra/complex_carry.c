@@ -1,7 +1,7 @@
 /*
  * Fields carried to the vertices of a complex. The numbered active tetrahedra in the workspace name the crossed edges
  * that they own, in the order of their vertices. For a complex in slabs the host has joined the edges; it keeps them
- * after the first field has been carried. Threads of the host process runs of tetrahedra or of edges.
+ * after the first field has been carried. Threads of the host process shares of tetrahedra or of edges.
  */
 #include "tetrahedra/complex_run.h"
 
@@ -22,7 +22,7 @@ typedef struct carry_job {
     const uint32_t *tiles;
     surface_size size;
     uint8_t cases[16][CASE_BYTES];
-    _Atomic uint64_t next; /* tile, or run of edges */
+    _Atomic uint64_t next; /* tile, or share of edges */
     uint64_t end;
     _Atomic uint64_t vertices; /* met so far */
     atomic_bool wrong;         /* there are invalid point numbers */
@@ -54,8 +54,8 @@ static void tile_carry(carry_job *j, uint64_t tile, edge_batch *batch) {
     carry_batch(j->carry, j->grid, j->isovalue, batch);
 }
 
-static void run_carry(carry_job *j, uint64_t run, edge_batch *batch) {
-    const uint64_t first = run * SHARE_EDGES, end = first + SHARE_EDGES;
+static void share_carry(carry_job *j, uint64_t share, edge_batch *batch) {
+    const uint64_t first = share * SHARE_EDGES, end = first + SHARE_EDGES;
     batch->vertex = first;
     for (uint64_t n = first; n < end && n < j->size.vertex_count; n++)
         edge_add(j, (uint32_t)(j->edges[n] >> 32), (uint32_t)j->edges[n], batch);
@@ -69,7 +69,7 @@ static void shares_carry(void *shared) {
     uint64_t n;
     while ((n = atomic_fetch_add(&j->next, 1)) < j->end && !j->wrong)
         if (j->edges)
-            run_carry(j, n, &batch);
+            share_carry(j, n, &batch);
         else
             tile_carry(j, n, &batch);
 }

@@ -3,10 +3,10 @@
  *
  * Kernels run over a part of a complex, which is all of it where that fits the device, else one slab after the other.
  *
- * A slab is a run of clusters. It is cut so that whatever its surface is, everything on the device fits the budget and
- * each buffer the device. Its points are all those of the complex where these leave room enough, else its own, numbered
- * in the order of the complex's. Its surface is numbered on its own; the host joins the vertices over slabs
- * (edge_numbers.h).
+ * A slab has clusters that follow each other. It is cut so that whatever its surface is, everything on the device fits
+ * the budget and each buffer the device. Its points are all those of the complex where these leave room enough, else
+ * its own, numbered in the order of the complex's. Its surface is numbered on its own; the host joins the vertices over
+ * slabs (edge_numbers.h).
  */
 #ifndef COMPLEX_RUN_H
 #define COMPLEX_RUN_H

@@ -62,7 +62,7 @@ static tc_status meshes_compare(const tc_context *context, const trial_volume *v
     for (int channel = 0; channel < CHANNEL_COUNT; channel++) {
         if (!channel_in(expected->made, channel)) continue;
         n = difference(found->channels[channel].memory, expected->channels[channel].memory, expected->vertex_count);
-        if (n < expected->vertex_count) return wrong(context, v, channel_items[channel], n);
+        if (n < expected->vertex_count) return wrong(context, v, mesh_channels[channel].one, n);
     }
     return TC_OK;
 }

@@ -13,7 +13,7 @@ static void print_fields(FILE *out) {
 }
 
 static void print_choices(const option_view *o, FILE *out) {
-    for (int n = 0; o->choices[n]; n++) fprintf(out, "%s%s", n ? " " : "", o->choices[n]);
+    for (int n = 0; o->choices(n); n++) fprintf(out, "%s%s", n ? " " : "", o->choices(n));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ bash */

@@ -26,7 +26,7 @@ static int has_no_mesh(const situation *s) { return s->o->count; }
 
 static int file_has_no_normals(const situation *s) {
     const mesh_write_options how = {.format = s->o->format};
-    return s->o->output && mesh_write_lacks_normals(s->o->output, &how);
+    return s->o->output && mesh_write_lacks(s->o->output, &how, ROLE_NORMALS);
 }
 
 static int has_no_device(const situation *s) { return s->o->engine == TC_ENGINE_REFERENCE; }

@@ -4,17 +4,27 @@
 #include "option_values.h"
 #include "sample_types.h"
 
-#define TYPE_CHOICE(type, name, ...) [type] = #name,
-static const char *const type_choices[SAMPLE_TYPE_COUNT + 1] = {SAMPLE_TYPES(TYPE_CHOICE)};
 #define TYPE_BEHIND_BLANK(type, name, ...) " " #name
 #define TYPE_BEFORE_BLANK(type, name, ...) #name " "
 
-static const char *const endian_choices[] = {"little", "big", NULL};
-static const char *const engine_choices[] = {"opencl", "reference", "auto", NULL};
-static const char *const method_choices[] = {"tetra", "hybrid", "snap", NULL}; /* as tc_method_name has them */
+#define CHOICES(choices, ...)                                                                                          \
+    static const char *choices(int n) {                                                                                \
+        static const char *const names[] = {__VA_ARGS__, NULL};                                                        \
+        return names[n];                                                                                               \
+    }
+CHOICES(endian_choices, "little", "big")
+CHOICES(engine_choices, "opencl", "reference", "auto")
+CHOICES(blocks_choices, "joined", "separate")
+
 #define FORMAT_CHOICE(name, ...) #name,
-static const char *const format_choices[] = {MESH_FORMATS(FORMAT_CHOICE) NULL};
-static const char *const blocks_choices[] = {"joined", "separate", NULL};
+static const char *format_choices(int n) {
+    static const char *const names[] = {MESH_FORMATS(FORMAT_CHOICE) NULL};
+    return names[n];
+}
+
+static const char *method_choices(int n) { return tc_method_name((tc_method)n); }
+
+static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
 
 #define REPORTS (READS | COMMAND_DEVICES | COMMAND_SELFTEST)
 #define ALL     (REPORTS | COMMAND_GENERATE)

@@ -4,6 +4,8 @@
 #ifndef OPTION_TABLE_H
 #define OPTION_TABLE_H
 
+#include "choice.h"
+
 #include <stddef.h>
 
 typedef enum value_kind {
@@ -28,9 +30,9 @@ typedef struct option {
     const char *value;      /* as --help shows it */
     unsigned commands;
     value_kind kind;
-    size_t place; /* in struct options */
-    const char *const *choices;
-    const char *help; /* lines split by \n */
+    size_t place;         /* in struct options */
+    choice_name *choices; /* or NULL */
+    const char *help;     /* lines split by \n */
 } option;
 
 extern const option option_table[];

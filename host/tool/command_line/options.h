@@ -4,6 +4,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "choice.h"
 #include "option_values.h"
 
 #include <stdio.h>
@@ -19,7 +20,7 @@ int options_given(const options *o, const char *name);
 typedef struct option_view {
     const char *name, *short_name; /* short_name: or NULL */
     const char *value, *help;      /* value: as --help shows it; NULL: takes none */
-    const char *const *choices;    /* the values there are, NULL behind them; or NULL */
+    choice_name *choices;          /* the values there are; or NULL */
     int takes_file;
 } option_view;
 

@@ -3,7 +3,6 @@
 #include "dataset/request.h"
 #include "exit_status.h"
 #include "failure.h"
-#include "similar_name.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -113,22 +112,6 @@ static int parse_size(const option *spec, const char *text, uint64_t *out) {
     return 0;
 }
 
-static int parse_choice(const option *spec, const char *text, int *out) {
-    size_t count = 0;
-    char all[128] = "";
-    for (; spec->choices[count]; count++) {
-        if (strcmp(text, spec->choices[count]) == 0) {
-            *out = (int)count;
-            return 0;
-        }
-        size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", count ? ", " : "", spec->choices[count]);
-    }
-    const char *meant = similar_name(text, spec->choices, count);
-    return fail(STATUS_USAGE, "%s: '%s' is none of %s%s%s%s", spec->name, text, all, meant ? "; did you mean " : "",
-                meant ? meant : "", meant ? "?" : "");
-}
-
 static int parse_number(const option *spec, const char *text, uint64_t most, uint64_t *out) {
     const char *at = text;
     if (!take_whole(&at, out) || *at || *out > most)
@@ -150,9 +133,9 @@ int parse_value(const option *spec, const char *text, options *o) {
         *(const char **)place = text;
         if (!spec->choices) return 0;
         int unused;
-        return parse_choice(spec, text, &unused);
+        return choice_find(spec->name, text, spec->choices, &unused);
     case VALUE_CHOICE:
-        return parse_choice(spec, text, place);
+        return choice_find(spec->name, text, spec->choices, place);
     case VALUE_ISOVALUES:
         return parse_isovalues(text, o);
     case VALUE_NODATA:

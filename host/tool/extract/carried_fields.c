@@ -89,7 +89,7 @@ static int select_one(const options *o, dataset *d, carried_fields *out, const c
         if (strcmp(out->from[n].name, from->name) == 0) return fail(STATUS_USAGE, "--carry: '%s' is given twice", name);
     if (from->is_averaged) input_tell_average(d, from->name);
     out->is_narrow[out->count] = (uint8_t)tell_narrow(d, from);
-    out->fields[out->count++] = (mesh_field){from->name, from->components, NULL};
+    out->fields[out->count++] = (vertex_array){from->name, from->components, NULL, ROLE_DATA};
     return 0;
 }
 

@@ -11,8 +11,8 @@ typedef struct carried_range {
 } carried_range;
 
 typedef struct carried_fields {
-    point_field *from;  /* what the input has */
-    mesh_field *fields; /* of the vertices of the mesh last carried to */
+    point_field *from;    /* what the input has */
+    vertex_array *fields; /* of the vertices of the mesh last carried to */
     float **values;
     uint8_t *is_narrow; /* whose values float32 hardly tells apart, which has been told */
     carried_range *ranges;

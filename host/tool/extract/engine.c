@@ -39,8 +39,7 @@ void engine_close(engine *e) {
     for (int n = 0; n < e->block_count; n++) tc_grid_destroy(e->grids[n]);
     free(e->grids);
     free(e->parts);
-    free(e->joined.positions);
-    free(e->joined.normals);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) free(e->joined.values[channel]);
     free(e->joined.triangles);
     tc_context_destroy(e->context);
     *e = (engine){0};
@@ -109,44 +108,58 @@ int engine_count(engine *e, const tc_extract_options *how, tc_counts *counts) {
 
 /* --------------------------------------------------------------------------------------------------------- joining */
 
-/* The memory with room for count triples, moved where it has to be. NULL where there is no room; the memory is then as
+enum { TRIANGLE_BYTES = 3 * sizeof(uint32_t) };
+
+static size_t tuple_bytes(int channel) { return (size_t)mesh_channels[channel].components * sizeof(float); }
+
+/* The memory with room for count tuples, moved where it has to be. NULL where there is no room; the memory is then as
  * it was. */
-static void *resized(void *memory, uint64_t count) {
-    enum { TRIPLE = 12 };
-    return count <= SIZE_MAX / TRIPLE ? realloc(memory, (size_t)count * TRIPLE) : NULL;
+static void *resized(void *memory, uint64_t count, size_t tuple) {
+    return count <= SIZE_MAX / tuple ? realloc(memory, (size_t)count * tuple) : NULL;
+}
+
+static int make_vertex_room(joined_mesh *j, uint64_t room, const tc_extract_options *how) {
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) {
+        if (!channel_is_asked(how, channel)) continue;
+        float *values = resized(j->values[channel], room, tuple_bytes(channel));
+        if (!values) return 0;
+        j->values[channel] = values;
+    }
+    j->vertex_room = room;
+    return 1;
+}
+
+static int make_triangle_room(joined_mesh *j, uint64_t room) {
+    uint32_t *triangles = resized(j->triangles, room, TRIANGLE_BYTES);
+    if (!triangles) return 0;
+    j->triangles = triangles;
+    j->triangle_room = room;
+    return 1;
 }
 
 /* Room for at least so many, and half as many more: later blocks then rarely move what is there. */
-static int make_room(joined_mesh *j, uint64_t vertices, uint64_t triangles, int normals) {
-    void *positions = j->positions, *directions = j->normals, *indices = j->triangles;
-    if (vertices > j->vertex_room) {
-        uint64_t room = vertices + vertices / 2;
-        if ((positions = resized(j->positions, room))) j->positions = positions;
-        if (normals && (directions = resized(j->normals, room))) j->normals = directions;
-        if (positions && (directions || !normals)) j->vertex_room = room;
-    }
-    if (triangles > j->triangle_room) {
-        uint64_t room = triangles + triangles / 2;
-        if ((indices = resized(j->triangles, room))) j->triangles = indices;
-        if (indices) j->triangle_room = room;
-    }
-    int is_there = positions && indices && (directions || !normals);
+static int make_room(joined_mesh *j, uint64_t vertices, uint64_t triangles, const tc_extract_options *how) {
+    int is_there = vertices <= j->vertex_room || make_vertex_room(j, vertices + vertices / 2, how);
+    if (is_there) is_there = triangles <= j->triangle_room || make_triangle_room(j, triangles + triangles / 2);
     return is_there ? 0 : fail(STATUS_FAILED, "out of memory for the surface of all blocks");
 }
 
-static int join(joined_mesh *j, const tc_mesh_data *part, int normals, tc_mesh_data *sum) {
+static void append_values(joined_mesh *j, const tc_mesh_data *part, int channel, uint64_t first) {
+    const size_t tuple = tuple_bytes(channel), components = tuple / sizeof(float);
+    memcpy(j->values[channel] + components * first, mesh_values(part, channel), part->vertex_count * tuple);
+}
+
+static int join(joined_mesh *j, const tc_mesh_data *part, const tc_extract_options *how, tc_mesh_data *sum) {
     uint64_t vertices = sum->vertex_count + part->vertex_count, triangles = sum->triangle_count + part->triangle_count;
     if (vertices > UINT32_MAX)
         return fail(STATUS_FAILED,
                     "the blocks' surfaces have %" PRIu64 " vertices together, more than the 2^32 - 1 that one mesh "
                     "holds; extract the blocks from files of their own",
                     vertices);
-    int status = make_room(j, vertices, triangles, normals);
+    int status = make_room(j, vertices, triangles, how);
     if (status) return status;
-    if (part->vertex_count)
-        memcpy(j->positions + 3 * sum->vertex_count, part->positions, 3 * part->vertex_count * sizeof *j->positions);
-    if (part->vertex_count && normals)
-        memcpy(j->normals + 3 * sum->vertex_count, part->normals, 3 * part->vertex_count * sizeof *j->normals);
+    for (int channel = 0; channel < CHANNEL_COUNT && part->vertex_count; channel++)
+        if (channel_is_asked(how, channel)) append_values(j, part, channel, sum->vertex_count);
     uint32_t first = (uint32_t)sum->vertex_count, *to = j->triangles + 3 * sum->triangle_count;
     for (uint64_t n = 0; n < 3 * part->triangle_count; n++) to[n] = part->triangles[n] + first;
     if (!sum->vertex_count) memcpy(sum->origin, part->origin, sizeof sum->origin);
@@ -175,15 +188,15 @@ int engine_extract(engine *e, block_range blocks, const tc_extract_options *how,
     tc_mesh_data part;
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     if (blocks.count == 1 && e->grids[blocks.first]) return extract_block(e, blocks.first, how, data);
-    int status = make_room(&e->joined, 1, 1, how->normals);
+    int status = make_room(&e->joined, 1, 1, how);
     e->fails_alike = status != 0;
     for (int n = blocks.first; n < blocks.first + blocks.count && !status; n++) {
         if ((status = extract_block(e, n, how, &part))) break;
-        status = join(&e->joined, &part, how->normals, data);
+        status = join(&e->joined, &part, how, data);
         e->fails_alike = status != 0;
     }
-    data->positions = e->joined.positions;
-    data->normals = how->normals ? e->joined.normals : NULL;
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++)
+        mesh_values_set(data, channel, channel_is_asked(how, channel) ? e->joined.values[channel] : NULL);
     data->triangles = e->joined.triangles;
     return status;
 }

@@ -8,10 +8,11 @@
 
 #include "input/blocks.h"
 #include "mesh_write.h"
+#include "vertex_values.h"
 
 /* Memory that several blocks' meshes are joined in. */
 typedef struct joined_mesh {
-    float *positions, *normals;
+    float *values[CHANNEL_COUNT];
     uint32_t *triangles;
     uint64_t vertex_room, triangle_room;
 } joined_mesh;

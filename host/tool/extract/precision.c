@@ -105,7 +105,7 @@ int precision_count_file(const surface_source *s, const double zero[3], int digi
 }
 
 void precision_tell_mesh(const surface_report *s) {
-    const coarse_count *found = &s->mesh_numbers;
+    const coarse_count *found = &s->coarse_in_mesh;
     if (found->coarse)
         notice("isovalue %s: float32 is coarse at %" PRIu64 " of %" PRIu64
                " vertices: cells are as thin as %.2g of its "
@@ -114,7 +114,7 @@ void precision_tell_mesh(const surface_report *s) {
 }
 
 void precision_tell_file(const surface_report *s, int is_chosen) {
-    const coarse_count *found = &s->file_numbers;
+    const coarse_count *found = &s->coarse_in_file;
     if (!found->coarse) return;
     if (!s->has_origin)
         notice("isovalue %s: blocks lie so far from each other that cells are as thin as %.2g steps of the file's "

@@ -26,13 +26,13 @@ static const char *ending_of(const char *path) {
 /* The file of one isovalue and block, from malloc: with several isovalues every % stands for the isovalue as typed. */
 static char *file_name(const options *o, const typed_isovalue *iso, int block) {
     const char *stand_in = o->isovalue_count > 1 ? iso->text : "%", *ending = ending_of(o->output);
-    char number[24] = "";
-    if (block != ALL_BLOCKS) snprintf(number, sizeof number, "_b%d", block);
-    size_t bytes = strlen(number) + 1;
+    char suffix[24] = "";
+    if (block != ALL_BLOCKS) snprintf(suffix, sizeof suffix, "_b%d", block);
+    size_t bytes = strlen(suffix) + 1;
     for (const char *c = o->output; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
     char *path = malloc(bytes), *at = path;
     for (const char *c = o->output; path; c++) {
-        if (c == ending) at = stpcpy(at, number);
+        if (c == ending) at = stpcpy(at, suffix);
         if (!*c) break;
         at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
     }
@@ -77,7 +77,7 @@ static int check_files(const options *o, const dataset *d, const typed_isovalue 
 }
 
 int surface_files_check(const options *o, const dataset *d) {
-    const mesh_field some = {.name = "", .components = 1};
+    const vertex_array some = {.name = "", .components = 1};
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (!o->output) return 0;
@@ -87,9 +87,9 @@ int surface_files_check(const options *o, const dataset *d) {
     return status;
 }
 
-/* --------------------------------------------------------------------------------------------------------- numbers */
+/* ------------------------------------------------------------------------------------------------------- precision */
 
-static mesh_write_options write_options(const options *o, const final_surface *mesh) {
+static mesh_write_options write_options(const options *o, const result_mesh *mesh) {
     return (mesh_write_options){.format = o->format,
                                 .soup = o->soup,
                                 .parts = mesh->parts,
@@ -108,7 +108,7 @@ static void tell_relative(const double *origin, int is_own) {
                shortest_number(origin[1]).text, shortest_number(origin[2]).text, what);
 }
 
-int surface_files_count_coarse(const options *o, const surface_source *source, const final_surface *mesh,
+int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
                                surface_report *s) {
     static const double world[3] = {0, 0, 0};
     if (!o->output) return 0;
@@ -118,17 +118,17 @@ int surface_files_count_coarse(const options *o, const surface_source *source, c
     const int has_own_origin = o->separate_blocks || !engine_origins_differ(source->engine, source->range);
     if (mesh_write_is_relative(o->output, &mesh->mesh, &how)) s->is_relative = 1;
     if (!has_doubles && !how.origin_at && has_own_origin) return 0; /* they are the mesh's own numbers */
-    return precision_count_file(source, zero, digits, o->check, &s->file_numbers);
+    return precision_count_file(source, zero, digits, o->check, &s->coarse_in_file);
 }
 
-void surface_files_tell_numbers(const options *o, int block_count, const surface_report *s) {
+void surface_files_tell_precision(const options *o, int block_count, const surface_report *s) {
     if (s->is_relative) tell_relative(s->origin, o->separate_blocks && block_count > 1);
     precision_tell_file(s, options_given(o, "--origin-at"));
 }
 
 /* --------------------------------------------------------------------------------------------------------- writing */
 
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const final_surface *mesh,
+int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
                         const carried_fields *fields, output_group *group) {
     mesh_write_options how = write_options(o, mesh);
     how.fields = fields->fields;

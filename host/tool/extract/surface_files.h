@@ -8,7 +8,7 @@
 #define SURFACE_FILES_H
 
 #include "carried_fields.h"
-#include "final_surface.h"
+#include "result_mesh.h"
 #include "output_group.h"
 #include "precision.h"
 
@@ -18,16 +18,16 @@ int surface_files_check(const options *o, const dataset *d);
 
 /* Adds to s where the numbers in the mesh's file will be coarse. Returns STATUS_USAGE where coordinates are beyond
  * float32 and the file has nothing larger. */
-int surface_files_count_coarse(const options *o, const surface_source *source, const final_surface *mesh,
+int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
                                surface_report *s);
 
 /* Notices: which point the file's coordinates count from, where it is not the input's own; where its numbers are coarse
  * (precision.h). */
-void surface_files_tell_numbers(const options *o, int block_count, const surface_report *s);
+void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
 
 /* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file waits in
  * the group. */
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const final_surface *mesh,
+int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
                         const carried_fields *fields, output_group *group);
 
 /* Names the files of the isovalue for people; from malloc, NULL with its failure's text without memory. */

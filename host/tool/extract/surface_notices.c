@@ -106,7 +106,7 @@ static int tell_zero_area(const dataset *d, const scalar *field, const surface_r
 int surface_tell_degenerate(const dataset *d, const scalar *field, const surface_report *s) {
     enum { MANY = 5 }; /* a fifth of the triangles */
     uint64_t ties = 0;
-    if (!notice_wanted() || s->mesh_numbers.coarse || s->summary.degenerate_triangles <= s->triangle_count / MANY)
+    if (!notice_wanted() || s->coarse_in_mesh.coarse || s->summary.degenerate_triangles <= s->triangle_count / MANY)
         return 0;
     int status = count_ties(d, field, s->iso->value, &ties);
     return status ? status : tell_zero_area(d, field, s, ties);

@@ -1,7 +1,6 @@
-/* final_surface.h - a surface as it is reported and written: the engine's mesh, or what --drop-degenerate leaves of it
- */
-#ifndef FINAL_SURFACE_H
-#define FINAL_SURFACE_H
+/* result_mesh.h - a mesh as it is reported and written: the engine's, or what --drop-degenerate leaves of it */
+#ifndef RESULT_MESH_H
+#define RESULT_MESH_H
 
 #include "carried_fields.h"
 #include "engine.h"
@@ -9,29 +8,29 @@
 #include "report.h"
 
 /* The mesh, and where triangles of zero area were dropped (mesh_collapse.h) the memory that it is in. */
-typedef struct final_surface {
+typedef struct result_mesh {
     tc_mesh_data mesh;
     const mesh_part *parts; /* what each of its blocks gave to it */
     int part_count;
 
     collapsed_mesh collapsed; /* from here on: only where triangles were dropped */
-    float *positions, *normals;
+    float *values[CHANNEL_COUNT];
     mesh_part *own_parts;
-} final_surface;
+} result_mesh;
 
 /* The engine's surface, as it is; to be released. */
-void final_surface_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, final_surface *out);
+void result_mesh_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, result_mesh *out);
 
 /* Drops the triangles, and adds to s how many. Returns 0 or STATUS_FAILED. */
-int final_surface_drop_degenerate(final_surface *shown, surface_report *s);
+int result_mesh_drop_degenerate(result_mesh *result, surface_report *s);
 
 /* Notices of what dropping could not mend, in all meshes of the surface. s has the summary of what is left. */
-void final_surface_tell_dropped(const surface_report *s);
+void result_mesh_tell_dropped(const surface_report *s);
 
 /* Brings the fields that were carried onto the engine's vertices to the vertices that are left. Returns 0 or
  * STATUS_FAILED. */
-int final_surface_carry(const final_surface *shown, carried_fields *fields);
+int result_mesh_carry(const result_mesh *result, carried_fields *fields);
 
-void final_surface_release(final_surface *shown);
+void result_mesh_release(result_mesh *result);
 
 #endif

@@ -1,4 +1,4 @@
-#include "surface_figures.h"
+#include "surface_totals.h"
 
 #include <math.h>
 #include <string.h>
@@ -35,7 +35,7 @@ static void add_box(const mesh_summary *own, uint64_t vertex_count, const double
 }
 
 /* Each part has an origin of its own. */
-static void add_boxes_of_parts(const final_surface *mesh, double bounds[2][3]) {
+static void add_boxes_of_parts(const result_mesh *mesh, double bounds[2][3]) {
     const float *positions = mesh->mesh.positions;
     for (int n = 0; n < mesh->part_count; n++) {
         const mesh_part *part = &mesh->parts[n];
@@ -53,7 +53,7 @@ static void clear_bounds(double bounds[2][3]) {
     }
 }
 
-void surface_add_mesh(const options *o, const surface_source *made, const final_surface *mesh, surface_report *s) {
+void surface_totals_add(const options *o, const surface_source *made, const result_mesh *mesh, surface_report *s) {
     const tc_mesh_data *m = &mesh->mesh;
     if (!s->has_mesh) clear_bounds(s->summary.bounds);
     if (!o->quiet || o->json) {

@@ -1,36 +1,36 @@
-#include "opencl/text.h"
+#include "opencl/variant.h"
 
 #include <string.h>
 
-/* The first that fits. A device nobody knows gets the plain text, processors too: a compiler that does not know the
+/* The first that fits. A device nobody knows gets the plain variant, processors too: a compiler that does not know the
  * extensions of the other may abort the process. Nothing but speed depends on the choice.
  *
  * PoCL 6.0 with LLVM 18 or 19 asks the optimiser to check itself (pass instcombine, verify-fixpoint), and aborts the
  * process where code could be simplified twice. The kernels do not trigger that now, but nothing guarantees it.
  * So these versions do not count as tried: where a trial is asked for, they first build in a process of their own. */
-static const text_rule rules[] = {
-    {"Portable Computing Language", "cpu", TEXT_ALONE, true, "3.1",
+static const variant_rule rules[] = {
+    {"Portable Computing Language", "cpu", VARIANT_ALONE, true, "3.1",
      "PoCL compiles by Clang; one work-item per group is three times as fast there"},
-    {"Intel(R) OpenCL", "cpu", TEXT_ALONE, true, "2026.", "Intel's compiler for CPUs is built on Clang"},
-    {"Oclgrind", NULL, TEXT_GROUPS, true, "Oclgrind 21.10",
+    {"Intel(R) OpenCL", "cpu", VARIANT_ALONE, true, "2026.", "Intel's compiler for CPUs is built on Clang"},
+    {"Oclgrind", NULL, VARIANT_GROUPS, true, "Oclgrind 21.10",
      "it simulates instructions one by one and knows no prefetching unless that is defined away"},
-    {"rusticl", NULL, TEXT_GROUPS, false, "22.3 25.0",
+    {"rusticl", NULL, VARIANT_GROUPS, false, "22.3 25.0",
      "Mesa compiles by way of SPIR-V, whose vectors have 16 elements at the most: its translator aborts on longer "
      "ones"},
-    {"Clover", NULL, TEXT_GROUPS, false, "", "Mesa's older implementation, never tried"},
-    {NULL, NULL, TEXT_GROUPS, true, "", "nothing is known about it"},
+    {"Clover", NULL, VARIANT_GROUPS, false, "", "Mesa's older implementation, never tried"},
+    {NULL, NULL, VARIANT_GROUPS, true, "", "nothing is known about it"},
 };
 
 static bool contains(const char *text, const char *part) { return !part || strstr(text, part); }
 
-const text_rule *text_rule_of(const tc_device_info *device) {
-    const text_rule *rule = rules;
+const variant_rule *variant_rule_of(const tc_device_info *device) {
+    const variant_rule *rule = rules;
     while (!contains(device->platform, rule->platform) || !contains(device->type, rule->type)) rule++;
     return rule;
 }
 
-bool text_tried(const tc_device_info *device) {
-    const char *version = text_rule_of(device)->tried;
+bool variant_tried(const tc_device_info *device) {
+    const char *version = variant_rule_of(device)->tried;
     while (*version) {
         const size_t length = strcspn(version, " ");
         if (!strncmp(device->driver, version, length)) return true;
@@ -39,4 +39,4 @@ bool text_tried(const tc_device_info *device) {
     return false;
 }
 
-kernel_text text_for(uint32_t work_items) { return work_items == 1 ? TEXT_ALONE : TEXT_GROUPS; }
+kernel_variant variant_for(uint32_t work_items) { return work_items == 1 ? VARIANT_ALONE : VARIANT_GROUPS; }
