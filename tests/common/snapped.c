@@ -53,7 +53,8 @@ static void link_make(const signs *s, const int64_t p[3], sample_link *l) {
         l->faces |= (unsigned)(p[axis] == 0 || p[axis] + 1 == s->grid->dims[axis]) << axis;
 }
 
-/* ----------------------------------------------------------------------------------------------- the curve in a link */
+/* ----------------------------------------------------------------------------------------------- the curve in a link
+ */
 
 /* Where the surface meets the link: nodes are samples on it and crossed edges, arcs join them across triangles. */
 typedef struct curve {
@@ -180,7 +181,8 @@ bool sample_is_regular(const signs *s, const int8_t *sides, const int64_t p[3]) 
     return link_is_regular(&l, sides);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- snapping */
+/* ---------------------------------------------------------------------------------------------------------- snapping
+ */
 
 typedef struct snapped {
     signs signs;
@@ -250,7 +252,8 @@ static const char *fault_of(snapped *w, const char *what, uint64_t number, const
     return w->fault;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- vertices */
+/* ---------------------------------------------------------------------------------------------------------- vertices
+ */
 
 static bool vertex_lies_between(const snapped *w, uint64_t n, const int64_t p[3], const int64_t q[3]) {
     const bool ordered = signs_index(&w->signs, p) < signs_index(&w->signs, q);
@@ -285,8 +288,8 @@ static bool edge_find(const snapped *w, const int64_t p[3], unsigned spans, int6
     }
     for (unsigned back = 0; back < 8; back++)
         if (!(back & spans))
-            found = found || signs_cube(&w->signs,
-                                        (int64_t[3]){p[0] - (back & 1), p[1] - (back >> 1 & 1), p[2] - (back >> 2)});
+            found = found ||
+                    signs_cube(&w->signs, (int64_t[3]){p[0] - (back & 1), p[1] - (back >> 1 & 1), p[2] - (back >> 2)});
     return found;
 }
 
@@ -303,16 +306,18 @@ static const char *row_walk(snapped *w, int64_t x0, int64_t x1, int64_t y, int64
                       : w->sides[n] != SIDE_ON)
                 continue;
             if (w->vertex_count == w->mesh->vertex_count) return fault_of(w, "missing vertex", w->vertex_count, p);
-            right = spans ? vertex_lies_between(w, w->vertex_count, a, b)
-                          : snapped_vertex_is_right(w, w->vertex_count, p);
+            right =
+                spans ? vertex_lies_between(w, w->vertex_count, a, b) : snapped_vertex_is_right(w, w->vertex_count, p);
             if (!right)
-                return fault_of(w, spans ? "wrong place of vertex" : "wrong place of snapped vertex", w->vertex_count, p);
+                return fault_of(w, spans ? "wrong place of vertex" : "wrong place of snapped vertex", w->vertex_count,
+                                p);
             w->ids[7 * n + spans] = (uint32_t)w->vertex_count++;
         }
     return NULL;
 }
 
-/* --------------------------------------------------------------------------------------------------------- triangles */
+/* --------------------------------------------------------------------------------------------------------- triangles
+ */
 
 /* The vertex on an edge of a cube, or at a corner: both ends are then the same. */
 static uint32_t id_between(const snapped *w, const int64_t cube[3], split_edge e) {
@@ -381,7 +386,8 @@ static const char *cubes_walk(snapped *w, int64_t x0, int64_t x1, int64_t y, int
     return fault;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- whole */
+/* ------------------------------------------------------------------------------------------------------------- whole
+ */
 
 static int64_t least_of(int64_t a, int64_t b) { return a < b ? a : b; }
 
