@@ -113,6 +113,8 @@ FILES = {
     "host/lib/grid/inside.c": ["test_inside"],
     "host/lib/reference/reference.c": REFERENCE,
     "host/lib/reference/reference_run.h": REFERENCE,
+    "host/lib/reference/reference_snap.c": ["test_snap_links", "test_snap"],
+    "host/lib/reference/reference_nearest.inc": ["test_snap"],
     "host/lib/reference/reference_crossing.inc": REFERENCE,
     "host/lib/reference/reference_vertex.inc": REFERENCE,
     "host/lib/reference/reference_complex.c": ["test_complex, reference", "test_complex, u8"],

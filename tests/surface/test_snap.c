@@ -184,6 +184,34 @@ static const char *pieces_differ(const pieces *tetra, const pieces *snap) {
 /* -------------------------------------------------------------------------------------------------------- comparison
  */
 
+/* Position and normal. */
+typedef struct vertex {
+    float numbers[6];
+} vertex;
+
+static int vertex_order(const void *a, const void *b) { return memcmp(a, b, sizeof(vertex)); }
+
+static vertex *vertices_of(const tc_mesh_data *mesh) {
+    vertex *list = memory_get(mesh->vertex_count, sizeof *list);
+    for (uint64_t n = 0; n < mesh->vertex_count; n++) {
+        memcpy(list[n].numbers, mesh->positions + 3 * n, 3 * sizeof(float));
+        if (mesh->normals) memcpy(list[n].numbers + 3, mesh->normals + 3 * n, 3 * sizeof(float));
+    }
+    qsort(list, mesh->vertex_count, sizeof *list, vertex_order);
+    return list;
+}
+
+/* Bit for bit: a snapped sample is moved to a vertex of tetra. */
+static bool vertices_are_of(const tc_mesh_data *tetra, const tc_mesh_data *snap) {
+    vertex *all = vertices_of(tetra), *some = vertices_of(snap);
+    bool found = true;
+    for (uint64_t n = 0; n < snap->vertex_count && found; n++)
+        found = bsearch(&some[n], all, tetra->vertex_count, sizeof *all, vertex_order) != NULL;
+    free(all);
+    free(some);
+    return found;
+}
+
 typedef struct grid_kind {
     bool complete, plain; /* nothing is missing; positions are indices */
 } grid_kind;
@@ -196,6 +224,7 @@ static const char *snap_fault(const tc_grid_options *grid, const tc_extract_opti
     if (!fault && kind.complete && q.pinches) fault = "a vertex of a complete grid has several fans";
     if (!fault && kind.complete && kind.plain && !border_is_in_faces(grid, snap, &q))
         fault = "the border has left the box";
+    if (!fault && !vertices_are_of(tetra, snap)) fault = "a vertex is none of the tetrahedra's";
     if (!fault) fault = snapped_fault(grid, how->isovalue, how->snap, snap, &doubtful);
     tally.doubtful += !fault && doubtful;
     pieces_free(&p);
