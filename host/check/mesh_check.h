@@ -35,6 +35,15 @@ typedef struct mesh_summary {
     uint64_t nonfinite_vertices;   /* with a NaN or an infinity among the three coordinates */
 } mesh_summary;
 
+/* Triangles by their smallest angle, which is 60 degrees at most; 0 where the area is. Without invalid ones and those
+ * that have a non-finite corner. */
+enum { SHAPE_ANGLES = 601 };
+typedef struct mesh_shapes {
+    uint64_t triangles;
+    uint64_t below_10, below_20;     /* degrees */
+    uint64_t by_tenth[SHAPE_ANGLES]; /* rounded to tenths of a degree */
+} mesh_shapes;
+
 /* positions: 3 floats per vertex; triangles: 3 indices each; either may be NULL where its count is 0. Returns 0, or
  * STATUS_FAILED with its message (failure.h) where memory runs out. Takes about 12 bytes per vertex and a window on the
  * triangles of 64 MiB or a sixteenth of them, whichever is more. */
@@ -43,6 +52,13 @@ int mesh_check(const float *positions, uint64_t vertex_count, const uint32_t *tr
 
 void mesh_summarize(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count,
                     mesh_summary *result);
+
+/* Adds the mesh's triangles to those of others. */
+void mesh_shapes_add(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count,
+                     mesh_shapes *sum);
+
+/* In degrees, to a tenth; of an even number the lower one of the two in the middle. 0 where there are no triangles. */
+double mesh_shapes_median(const mesh_shapes *shapes);
 
 /* XXH64 (seed 0) of the positions' bytes, then the indices' bytes, both as they lie in memory. */
 uint64_t mesh_hash(const float *positions, uint64_t vertex_count, const uint32_t *triangles, uint64_t triangle_count);

@@ -323,6 +323,28 @@ static bool grid_mirrors(const walk *w) {
     return sum < 0;
 }
 
+static walk walk_of(const signs *s, double isovalue, const tc_mesh_data *mesh) {
+    return (walk){.grid = s->grid, .isovalue = isovalue, .mesh = mesh, .signs = *s};
+}
+
+long double crossing_between(const signs *s, double isovalue, const int64_t a[3], const int64_t b[3]) {
+    const walk w = walk_of(s, isovalue, NULL);
+    return crossing_of(&w, a, b);
+}
+
+bool vertex_is_right(const signs *s, double isovalue, const tc_mesh_data *mesh, uint64_t n, const int64_t a[3],
+                     const int64_t b[3]) {
+    const walk w = walk_of(s, isovalue, mesh);
+    const long double t = crossing_of(&w, a, b);
+    return position_is_right(&w, a, b, t, mesh->positions + 3 * n) &&
+           (!mesh->normals || normal_is_right(&w, a, b, t, mesh->normals + 3 * n));
+}
+
+bool grid_is_mirrored(const signs *s, const tc_mesh_data *mesh) {
+    const walk w = walk_of(s, 0, mesh);
+    return grid_mirrors(&w);
+}
+
 const char *mesh_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh) {
     static _Thread_local char text[256];
     walk w = {.grid = grid, .isovalue = isovalue, .mesh = mesh};

@@ -23,7 +23,8 @@ EXTRACT_KEYS = {"input", "device", "engine", "method", "dims", "cells", "tetrahe
 COUNT_KEYS = {"iso", "vertices", "triangles", "active_cells", "timings_ms"}
 SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
 CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges", "coarse_vertices",
-              "euler_characteristic", "components", "area", "volume"}
+              "euler_characteristic", "components", "area", "volume", "smallest_angle_median", "angles_below_10",
+              "angles_below_20"}
 INFO_KEYS = {"input", "format", "dims", "first", "type", "spacing", "matrix", "space", "notice", "range", "nonfinite",
              "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
 

@@ -143,7 +143,7 @@ def test_keys(text, tool):
     """Keys of reports of extract with every option that adds some."""
     page = "host/tool/README.md"
     table = section(page, text, "| of `extract` | |", "With `--count`")
-    documented = set(re.findall(r"`([a-z_]+)`", table)) - {"extract", "verified"}
+    documented = set(re.findall(r"`([a-z_0-9]+)`", table)) - {"extract", "verified"}
     with tempfile.TemporaryDirectory() as folder:
         run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
         extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]

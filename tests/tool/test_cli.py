@@ -274,11 +274,15 @@ class Reports(Case):
             self.assertEqual((surface["boundary_edges"], surface["euler_characteristic"], surface["components"]),
                              (0, 2, 1))
             self.assertAlmostEqual(surface["volume"], 1.24, delta=0.03)
+            self.assertAlmostEqual(surface["smallest_angle_median"], 33.8, delta=1)
+            self.assertLess(0.05, surface["angles_below_10"])
+            self.assertLess(surface["angles_below_10"], surface["angles_below_20"])
+            self.assertLess(surface["angles_below_20"], 0.5)
             [surface] = self.report(*extract, "--count")["surfaces"]
             self.assertEqual(set(surface), tool_case.COUNT_KEYS)
             self.assertEqual((surface["vertices"], surface["triangles"]), (5082, 10160))
             text = self.expect(0, *extract, "--check").stdout
-            for fact in ("5082 vertices", "10160 triangles", "Euler characteristic 2", "closed"):
+            for fact in ("5082 vertices", "10160 triangles", "Euler characteristic 2", "closed", "smallest angles: median"):
                 self.assertIn(fact, text)
             self.assertEqual(self.expect(0, *extract, "--quiet").stdout, "")
             self.assertEqual(self.expect(0, *extract, "--quiet").stderr, "")

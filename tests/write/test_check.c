@@ -218,6 +218,96 @@ static void test_degenerate_is_exact(void) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------------------- shapes */
+
+static void expect_shapes(const mesh_shapes *is, uint64_t triangles, uint64_t below_10, uint64_t below_20,
+                          double median, const char *name) {
+    EXPECT(is->triangles == triangles && is->below_10 == below_10 && is->below_20 == below_20 &&
+               mesh_shapes_median(is) == median,
+           "%s: %llu of %llu triangles below 10 degrees, %llu below 20, median %.17g", name,
+           (unsigned long long)is->below_10, (unsigned long long)is->triangles, (unsigned long long)is->below_20,
+           mesh_shapes_median(is));
+}
+
+/* Triangles that are known, alone and together; from either end, turned round and away from the axes. */
+static void test_shapes(void) {
+    static const struct {
+        float corners[3][3];
+        double angle; /* to a tenth */
+        int below_10, below_20;
+    } shapes[] = {
+        {{{0, 0, 0}, {1, 0, 0}, {0.5f, 0.8660254f, 0}}, 60, 0, 0},
+        {{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 45, 0, 0},
+        {{{0, 0, 0}, {0, 0, 3}, {4, 0, 0}}, 36.9, 0, 0},
+        {{{1, 1, 1}, {2, 2, 1}, {1, 1, 1.5f}}, 19.5, 0, 1},
+        {{{0, 0, 0}, {1, 0, 0}, {1, 0.1f, 0}}, 5.7, 1, 1},
+        {{{0, 0, 0}, {1, 0, 0}, {0.5f, 0.01f, 0}}, 1.1, 1, 1},
+        {{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, 0, 1, 1},
+        {{{1, 2, 3}, {1, 2, 3}, {5, 5, 5}}, 0, 1, 1},
+        {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, 0, 1, 1},
+        {{{-3e38f, 0, 0}, {3e38f, 0, 0}, {0, 3e38f, 0}}, 45, 0, 0},
+        {{{0, 0, 0}, {1e-45f, 0, 0}, {0, 1e-45f, 0}}, 45, 0, 0},
+    };
+    enum { COUNT = sizeof shapes / sizeof *shapes };
+    static const uint32_t orders[][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}, {1, 0, 2}, {0, 2, 1}};
+    mesh_shapes sum = {0};
+    for (uint32_t n = 0; n < COUNT; n++) {
+        mesh_shapes is = {0};
+        mesh_shapes_add(shapes[n].corners[0], 3, orders[0], 6, &is);
+        expect_shapes(&is, 6, 6 * (uint64_t)shapes[n].below_10, 6 * (uint64_t)shapes[n].below_20, shapes[n].angle,
+                      "a triangle");
+        mesh_shapes_add(shapes[n].corners[0], 3, orders[n % 6], 1, &sum);
+    }
+    expect_shapes(&sum, COUNT, 5, 6, 19.5, "known triangles");
+
+    const float odd[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}};
+    const uint32_t left_out[][3] = {{0, 1, 1}, {0, 1, 3}, {0, 1, 4}, {UINT32_MAX, 1, 2}, {0, 1, 2}, {2, 1, 2}};
+    mesh_shapes is = {0};
+    mesh_shapes_add(odd[0], 4, left_out[0], 6, &is);
+    expect_shapes(&is, 1, 0, 0, 45, "invalid triangles and one that is valid");
+    is = (mesh_shapes){0};
+    mesh_shapes_add(NULL, 0, NULL, 0, &is);
+    expect_shapes(&is, 0, 0, 0, 0, "no triangle");
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Against the law of cosines, and a median of sorted angles. */
+static void test_random_shapes(void) {
+    enum { COUNT = 2001 };
+    static float corners[3 * COUNT][3];
+    static uint32_t triangles[3 * COUNT];
+    static double angles[COUNT];
+    uint64_t below_10 = 0, below_20 = 0;
+    mesh_shapes is = {0};
+    for (uint32_t n = 0; n < COUNT; n++) {
+        double squares[3] = {0};
+        for (uint32_t m = 0; m < 3; m++) {
+            triangles[3 * n + m] = 3 * n + m;
+            for (int axis = 0; axis < 3; axis++) corners[3 * n + m][axis] = (float)random_between(-1, 1);
+        }
+        for (uint32_t m = 0; m < 3; m++)
+            for (int axis = 0; axis < 3; axis++) {
+                const double step = (double)corners[3 * n + m][axis] - (double)corners[3 * n + (m + 1) % 3][axis];
+                squares[m] += step * step;
+            }
+        angles[n] = 180;
+        for (int m = 0; m < 3; m++) {
+            const double a = squares[m], b = squares[(m + 1) % 3], c = squares[(m + 2) % 3];
+            angles[n] = fmin(angles[n], 180 / 3.14159265358979323846 * acos((b + c - a) / (2 * sqrt(b * c))));
+        }
+        below_10 += angles[n] < 10;
+        below_20 += angles[n] < 20;
+    }
+    mesh_shapes_add(corners[0], 3 * COUNT, triangles, COUNT, &is);
+    qsort(angles, COUNT, sizeof *angles, compare_doubles);
+    expect_shapes(&is, COUNT, below_10, below_20, floor(10 * angles[COUNT / 2] + 0.5) / 10, "random triangles");
+    EXPECT(below_10 > 0 && below_10 < below_20 && below_20 < COUNT, "random triangles have no slivers");
+}
+
 /* Constants from an implementation of the XXH64 specification apart from libxxhash. */
 static void test_hash(void) {
     uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -456,6 +546,8 @@ int main(int argc, char **argv) {
     test_area_and_volume();
     test_summary();
     test_degenerate_is_exact();
+    test_shapes();
+    test_random_shapes();
     test_hash();
     test_against_force();
     test_great_fan();

@@ -85,7 +85,8 @@ const option option_table[] = {
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
      "check the mesh itself: manifold, oriented; Euler characteristic, area, of\n"
-     "closed surfaces volume (boundary edges are reported, they are no fault)"},
+     "closed surfaces volume (boundary edges are reported, they are no fault);\n"
+     "smallest angles of triangles: median, share below 10 and 20 degrees"},
     {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
      "a missing corner is left out; of f32 samples and of scaled ones the float\n"

@@ -33,6 +33,18 @@ static void add_topology(json_t *object, const surface_report *s) {
     json_object_set_new(object, "volume", has_volume(s) ? real_json(t->volume) : json_null());
 }
 
+/* The part of the surface's triangles; null of an empty surface. */
+static json_t *share_json(const surface_report *s, uint64_t triangles) {
+    return s->shapes.triangles ? real_json((double)triangles / (double)s->shapes.triangles) : json_null();
+}
+
+static void add_shapes(json_t *object, const surface_report *s) {
+    json_object_set_new(object, "smallest_angle_median",
+                        s->shapes.triangles ? real_json(mesh_shapes_median(&s->shapes)) : json_null());
+    json_object_set_new(object, "angles_below_10", share_json(s, s->shapes.below_10));
+    json_object_set_new(object, "angles_below_20", share_json(s, s->shapes.below_20));
+}
+
 /* An empty surface has none. */
 static int has_bounds(const surface_report *s) { return s->vertex_count > s->summary.nonfinite_vertices; }
 
@@ -64,6 +76,7 @@ static json_t *surface_json(const surface_report *s) {
     }
     json_object_set_new(object, "timings_ms", timings);
     if (s->has_topology) add_topology(object, s);
+    if (s->has_topology) add_shapes(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
     return object;
 }
@@ -107,6 +120,13 @@ static void topology_text(const surface_report *s) {
         printf(", %s: no volume\n", t->boundary_edges ? "open" : "not oriented");
 }
 
+static void shapes_text(const mesh_shapes *shapes) {
+    if (!shapes->triangles) return;
+    printf("  shapes      smallest angles: median %.1f degrees, %.3g%% below 10, %.3g%% below 20\n",
+           mesh_shapes_median(shapes), 100 * (double)shapes->below_10 / (double)shapes->triangles,
+           100 * (double)shapes->below_20 / (double)shapes->triangles);
+}
+
 static void bounds_text(const surface_report *s) {
     printf("  bounds     ");
     for (int end = 0; end < 2 && has_bounds(s); end++)
@@ -142,6 +162,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->slab_count > 1) printf(", in %" PRIu32 " slabs", s->slab_count);
     printf("\n");
     if (s->has_topology) topology_text(s);
+    if (s->has_topology) shapes_text(&s->shapes);
     if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
     if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
 }

@@ -35,6 +35,7 @@ typedef struct surface_report {
     uint64_t nonmanifold_edges; /* that dropping has left: of more than two triangles */
     int has_topology;
     mesh_topology topology;
+    mesh_shapes shapes;
     coarse_count coarse_in_mesh, coarse_in_file; /* float32 of the mesh; the numbers in the file */
     uint64_t coarse_vertices;                    /* with --check: where the shape is lost in one of them */
     int is_relative;                             /* the file holds coordinates relative to the mesh's origin */

@@ -57,6 +57,7 @@ int surface_check(const tc_mesh_data *m, surface_report *s) {
     sum->components += t.components;
     sum->area += t.area;
     sum->volume += t.volume;
+    mesh_shapes_add(m->positions, m->vertex_count, m->triangles, m->triangle_count, &s->shapes);
     return 0;
 }
 
