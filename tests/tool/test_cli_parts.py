@@ -6,6 +6,7 @@ share a plane of samples have together the triangles of the whole, to the bit. F
 which only a region is there, show that nothing else is read.
 """
 import collections
+import gzip
 import itertools
 import os
 import random
@@ -199,6 +200,33 @@ class Steps(PartCase):
             self.assertEqual(self.hash_of(whole, "0.1", *thinned), self.hash_of(sliced, "0.1"))
             self.assertGreater(self.hash_of(whole, "0.1", *thinned)[1], 50)
         self.assertEqual(self.hash_of(whole, "0.1", "--step", "2"), self.hash_of(whole, "0.1", "--step", "2,2,2"))
+
+    def test_vectors_text_and_compressed(self):
+        """Of images that are not used where they lie."""
+        vectors, ranges, step = noise(17, 3 * POINTS), ((1, 10), (0, 9), (2, 10)), (2, 1, 3)
+        more = ["--roi", roi(ranges), "--step", "2,1,3"]
+        triples = list(zip(*[iter(vectors)] * 3))
+        kept, dims = part_of(triples, DIMS, ranges, step)
+
+        def nrrd(name, sizes, values, encoding="raw"):
+            data = struct.pack(f">{len(values)}d", *values)
+            data = {"raw": data, "gzip": gzip.compress(data), "ascii": " ".join(map(repr, values)).encode()}[encoding]
+            with open(self.path(name), "wb") as out:
+                out.write(f"NRRD0004\ntype: double\ndimension: {len(sizes)}\nsizes: {' '.join(map(str, sizes))}\n"
+                          f"endian: big\nencoding: {encoding}\nkinds:{' vector' * (len(sizes) > 3)}{' domain' * 3}\n\n"
+                          .encode() + data)
+            return [self.path(name)]
+        place = ["--spacing", "2,1,3", "--origin", "1,0,2"]
+        whole = nrrd("v.nrrd", (3, *DIMS), vectors) + ["--spacing", "1,1,1"]
+        sliced = nrrd("w.nrrd", (3, *dims), list(itertools.chain.from_iterable(kept)))
+        for component in ("0", "2", "magnitude"):
+            self.assertEqual(self.hash_of(whole, "0.6", "--component", component, *more),
+                             self.hash_of(sliced, "0.6", "--component", component, *place))
+        sliced = nrrd("s.nrrd", dims, [triple[1] for triple in kept])
+        encodings = ["raw", "ascii"] + ["gzip"] * ("gzip" in self.expect(0, "--version").stdout)
+        for encoding in encodings:
+            whole = nrrd("t.nrrd", DIMS, vectors[1::3], encoding) + ["--spacing", "1,1,1"]
+            self.assertEqual(self.hash_of(whole, "0.1", *more), self.hash_of(sliced, "0.1", *place))
 
     def test_parity(self):
         """Thinned regions that share a plane fit, wherever they begin."""
