@@ -84,18 +84,20 @@ class Regions(PartCase):
         dims = (1400, 5, 4)
         points = lattice(dims)
         values = [bump((p[0] % 9, 2 * p[1], 2 * p[2])) for p in points]
-        whole = self.raw("a.raw", "f32", dims, values) + ["--spacing", "0.7,0.3,0.9", "--origin", "0.1,4e6,0"]
+        whole = self.raw("a.raw", "f32", dims, values) + ["--spacing", "0.7,0.3,0.9", "--origin", "3e6,4e6,0"]
         axes = [[0.7 * n for n in range(1400)], [0.3 * n for n in range(5)], [1.1 * n for n in range(4)]]
-        grids = [(whole, "0.2")]
+        grids = [(whole, 0)]
         if "VTK XML" in self.expect(0, "--version").stdout:
-            grids.append(([self.vtr("a.vtr", dims, axes, [("f", "f64", values)])], "0.2"))
+            grids.append(([self.vtr("a.vtr", dims, axes, [("f", "f64", values)])], 0))
             bent = [(0.7 * x + 0.1 * y, 0.3 * y, z + 0.01 * (x % 5)) for x, y, z in points]
-            grids.append(([self.write("a.vts", vts_text(dims, bent, [("f", "f64", values)]))], "0.2"))
-        for arguments, iso in grids:
+            grids.append(([self.write("a.vts", vts_text(dims, bent, [("f", "f64", values)]))], 0))
+            grids.append(([self.write("a.vti", vti_text(dims, [("f", "f64", values)], first=(80001, 0, 0)))] +
+                          ["--spacing", "0.7,1,1"], 80001))
+        for arguments, first in grids:
             parts = collections.Counter()
             for begin, end in ((0, 1301), (1300, 1321), (1320, 1400)):
-                parts.update(self.triangles(arguments, iso, "--roi", f"{begin}:{end},:,:"))
-            self.assertEqual(parts, self.triangles(arguments, iso))
+                parts.update(self.triangles(arguments, "0.2", "--roi", f"{first + begin}:{first + end},:,:"))
+            self.assertEqual(parts, self.triangles(arguments, "0.2"))
 
     def test_regions_of_other_grids_fit(self):
         self.needs_xml()
@@ -388,6 +390,10 @@ class Masks(PartCase):
         blanked = self.write("b.vts", vts_text(DIMS, bent, [("f", "f32", self.values), ("vtkGhostType", "u8", ghosts)]))
         for mask in (self.path("m.raw"), self.nrrd("m.nrrd")):
             self.assertEqual(self.triangles([grid], "0.1", "--mask", mask), self.triangles([blanked], "0.1"))
+        more = self.nrrd("more.nrrd", labels=[n % 31 for n in range(len(self.labels))])
+        both = [2 * (n == 0 or at % 31 == 0) for at, n in enumerate(self.labels)]
+        grid = self.write("c.vts", vts_text(DIMS, bent, [("f", "f32", self.values), ("vtkGhostType", "u8", both)]))
+        self.assertEqual(self.triangles([blanked], "0.1", "--mask", more), self.triangles([grid], "0.1"))
 
     def test_everything_and_nothing(self):
         ones = self.nrrd("1.nrrd", labels=[1] * len(self.labels))
@@ -456,6 +462,10 @@ class Blocks(PartCase):
         for region in ("2:9,:,1:8", "5:9,:,:", "0:6,:,:", "4:6,:,:"):
             more = ["--roi", region]
             self.assertEqual(self.triangles([pieces], "2", *more), self.triangles([whole], "2", *more))
+        more = ["--roi", "1:,:,:", "--step", "4,1,1"]
+        self.assertEqual(self.triangles([pieces], "2", *more), self.triangles([whole], "2", *more))
+        blocks = self.report("info", pieces, "--step", "3,1,1")["blocks"]
+        self.assertEqual([[corner[0] for corner in block["bounds"]] for block in blocks], [[0, 3], [6, 9]])
 
 
 class Usage(PartCase):
