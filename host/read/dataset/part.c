@@ -166,7 +166,7 @@ void part_whole_extent(const dataset_block *b, int64_t first[3], int64_t dims[3]
     }
 }
 
-/* Where sample i of the whole has the index floor(i / step), the matrix counts from the first sample of that step. */
+/* Sample i of the whole gets the index floor(i / step); the matrix puts the part's first sample where it was. */
 static void thin_indices(dataset_block *b, int axis) {
     const int64_t step = b->part.step[axis], at = b->first[axis] + b->part.first[axis];
     b->first[axis] = floor_div(at, step);
