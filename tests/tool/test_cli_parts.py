@@ -510,8 +510,8 @@ class Usage(PartCase):
 
 
 class Reading(PartCase):
-    """Of a file of 8 GiB that has holes, the region that is there is extracted within 300 MB."""
-    SIZES = (2048, 2048, 512)
+    """Of a file of 4 GiB that has holes, the region that is there is extracted within 300 MB."""
+    SIZES = (2048, 1024, 512)
     BYTES = 4
 
     def sparse(self, name, head, order="<", kind="f", tail=b""):
