@@ -257,6 +257,13 @@ typedef struct tc_grid_options {
     const double *points_f64;  /* in place of points; likewise */
     int has_origin;            /* nonzero: the origin is the one given here; so several grids can share one */
     double origin[3];          /* in world space, finite */
+
+    const struct tc_grid_options *whole; /* the grid that this one is a part of, so that surfaces of parts have the same
+                                            bytes where they meet: float32 coordinates count from where they do in the
+                                            whole. Read during tc_grid_create only: dims and first_index; axes or
+                                            points, and what is blanked, of a rectilinear or curvilinear grid. Of a
+                                            uniform grid the matrix is the part's, and the part lies within (else
+                                            TC_ERROR_ARGUMENT). Samples may be NULL. NULL: a grid by itself */
 } tc_grid_options;
 
 /* Samples at points, ready for extraction: of a structured grid, or of tetrahedra. */

@@ -3,6 +3,7 @@
  */
 #include "read.h"
 
+#include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "file/mapping.h"
@@ -18,9 +19,10 @@ static int is_raw(const read_request *request) {
 }
 
 static const read_format *find_format(const read_request *request, const mapping *file) {
-    if (is_raw(request)) return raw_format;
+    if (is_raw(request) && !request->raw_else) return raw_format;
     const read_format *format = read_format_of_content(request->path, file);
-    return format ? format : read_format_of_ending(request->path);
+    if (!format) format = read_format_of_ending(request->path);
+    return format || !request->raw_else ? format : raw_format;
 }
 
 /* Endings of Plot3D's files that are no use alone, or may be anything. */
@@ -143,7 +145,9 @@ static int read_as(const read_format *format, const read_request *request, const
         return fail(STATUS_USAGE, "%s: has one frame; leave out --frame", request->path);
     int status = format->read(request, file, out);
     if (!status) tell_repeated(out);
-    return status ? status : check_placement(request, out);
+    if (!status) status = check_placement(request, out);
+    if (!status && !out->frames) status = part_cut_blocks(request, out); /* images are cut already */
+    return status;
 }
 
 /* Two inputs can only be Plot3D, whose files do not say what they are. So a file whose format is known is none of them,

@@ -108,7 +108,7 @@ static void describe_input(job *j) {
     j->report.type = j->field.blocks[0].type;
     j->report.point_count = 0;
     for (int n = 0; n < j->data.block_count; n++) j->report.point_count += (uint64_t)first[n].point_count;
-    j->report.dims = j->data.block_count == 1 && first->kind != BLOCK_UNSTRUCTURED ? first->dims : NULL;
+    j->report.grid = j->data.block_count == 1 && first->kind != BLOCK_UNSTRUCTURED ? first : NULL;
     j->report.cell_count = j->blocks.cell_count;
     j->report.tetrahedron_count = j->blocks.tetrahedron_count;
 }

@@ -7,6 +7,7 @@
 #include "info/no_surface.h"
 #include "info/open_choices.h"
 #include "input/input.h"
+#include "input/part_report.h"
 #include "input/statistics.h"
 #include "progress.h"
 #include "shortest.h"
@@ -68,6 +69,7 @@ static void add_grid(json_t *object, const dataset_block *b) {
                         is_uniform ? json_pack("[o, o, o]", reals_json(b->matrix[0], 4), reals_json(b->matrix[1], 4),
                                                reals_json(b->matrix[2], 4))
                                    : json_null());
+    part_report_json(object, b);
 }
 
 static void add_field(json_t *object, const facts *f) {
@@ -128,6 +130,7 @@ static void print_image(const facts *f) {
            tc_type_name(b->fields->type));
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
+    part_report_text("part          ", b);
     describe_place_text(f->d, b);
     describe_values_text(b);
 }
@@ -203,6 +206,7 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     }
     if (!status) tell_rounded(f);
     if (!status) status = find_statistics(f);
+    if (!status) status = input_take_parts(d);
     if (!status) status = no_surface_reason(o, d, f->field, f->no_surface);
     if (!status && *f->no_surface) notice("%s: nothing can be extracted: %s", f->path, f->no_surface);
     return status ? status : progress_status();

@@ -47,6 +47,7 @@ static const command commands[] = {
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
+     "  tetracubes extract ct.nrrd --iso 300 --roi 100:228,:,40: --step 2,2,1 -o part.ply\n"
      "  tetracubes extract dem.mha --iso 0 --nodata -9999 --verify --json\n"
      "  gzip -dc ct.nrrd.gz | tetracubes extract - --iso 300 -o ct.ply\n"
      "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"

@@ -18,15 +18,15 @@ TOOL = None
 HAS_DEVICE = False
 FAULT_LIBRARY = None
 
-EXTRACT_KEYS = {"input", "device", "engine", "method", "dims", "cells", "tetrahedra", "timings_ms", "surfaces",
-                "notices"}
+EXTRACT_KEYS = {"input", "device", "engine", "method", "dims", "roi", "step", "cells", "tetrahedra", "timings_ms",
+                "surfaces", "notices"}
 COUNT_KEYS = {"iso", "vertices", "triangles", "active_cells", "timings_ms"}
 SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
 CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges", "coarse_vertices",
               "euler_characteristic", "components", "area", "volume", "smallest_angle_median", "angles_below_10",
               "angles_below_20"}
-INFO_KEYS = {"input", "format", "dims", "first", "type", "spacing", "matrix", "space", "notice", "range", "nonfinite",
-             "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
+INFO_KEYS = {"input", "format", "dims", "first", "roi", "step", "type", "spacing", "matrix", "space", "notice", "range",
+             "nonfinite", "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
 
 
 def chosen():

@@ -97,7 +97,7 @@ typedef struct place {
         AT(call, grid_options.points, absent), AT(call, grid_options.blanked_samples, absent),                         \
         AT(call, grid_options.blanked_cells, absent), AT(call, grid_options.axes_f64[1], LISTED({8, ARGUMENT})),       \
         AT(call, grid_options.points_f64, absent), AT(call, grid_options.has_origin, LISTED({1, OK | ARGUMENT})),      \
-        AT(call, grid_options.origin[0], any_f64)
+        AT(call, grid_options.origin[0], any_f64), AT(call, grid_options.whole, absent)
 
 #define OPTIONS_OF_EXTRACTION(call)                                                                                    \
     AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \

@@ -8,7 +8,7 @@ from mutant import Mutant
 
 RESULTS, DROPPED, STREAMS = "tool/test_results.py", "tool/test_dropped.py", "tool/test_streams.py"
 FAR, IMAGES, CELLS = "tool/test_cli_far.py", "tool/test_cli_images.py", "tool/test_cli_cells.py"
-BLOCKS = "tool/test_cli_blocks.py"
+BLOCKS, PARTS = "tool/test_cli_blocks.py", "tool/test_cli_parts.py"
 ENDINGS, TRIALS, SELFTEST = "drivers/test_endings.py", "drivers/test_trials.py", "drivers/test_selftest.py"
 REFERENCE, STRIKE, LAYER, FAULT = ("reference",), ("drivers/strike",), ("layer/layer",), ("fault=tool/mesh_fault",)
 
@@ -26,6 +26,7 @@ TESTS = {
     "test_cli_far": (FAR, "", REFERENCE),
     "test_cli_images": (IMAGES, ""),
     "test_cli_cells": (CELLS, "*Unstructured*", REFERENCE),
+    "test_cli_parts": (PARTS, "", REFERENCE),
     "test_cli_blocks, separate": (BLOCKS, "*test_separate*", REFERENCE),
     "test_endings, signals": (ENDINGS, "*test_signals_cancel", (), False, STRIKE),
     "test_endings, signals with kernels": (ENDINGS, "*test_signals_cancel_with_kernels", (), True, STRIKE),
@@ -402,6 +403,33 @@ MUTANTS = [
             "another device is tried than the one meant"),
            ("host/tool/drivers/child_process.c", "test_trials, killed", "prctl(PR_SET_PDEATHSIG, SIGKILL);", "",
             "a trial outlives what started it")),
+    *point("parts of grids",
+           ("host/lib/grid/grid.c", "test_far, reference", "low[axis] = (double)whole->first[axis];",
+            "low[axis] = (double)grid->first[axis];", "indices of a part count from its own"),
+           ("host/lib/grid/grid.c", "test_far, reference", "if (o->whole && !origin) {", "if (0) {",
+            "coordinates of a part have an origin of their own"),
+           ("host/lib/grid/grid.c", "test_far, reference", "if (whole->kind == grid->kind && is_within)",
+            "if (whole->kind == grid->kind)", "a part may lie outside its whole"),
+           ("host/tool/input/blocks.c", "test_cli_parts", "grid->whole = describe_whole(b->source, whole);",
+            "(void)describe_whole, (void)whole;", "parts are grids by themselves"),
+           ("host/tool/input/mask.c", "test_cli_parts", "is_out || (blanked && blanked[n]);", "is_out; (void)blanked;",
+            "a mask brings back what is blanked"),
+           ("host/read/dataset/part.c", "test_cli_parts", "*box = other->part;", "*box = other->part, box->first[0] = 0;",
+            "a mask's part begins at 0"),
+           ("host/read/dataset/part.c", "test_cli_parts", "b->first[axis] = floor_div(at, step);", "b->first[axis] = at;",
+            "thinned samples keep their index"),
+           ("host/read/dataset/part.c", "test_cli_parts", "first[axis] = b->first[axis] - before;",
+            "first[axis] = b->first[axis];", "the whole begins with the part"),
+           ("host/read/dataset/part.c", "test_cli_parts", "any |= cells[", "any = cells[",
+            "the last cell decides on a coarse one"),
+           ("host/read/dataset/part.c", "test_cli_parts", "(step - (begin - asked.begin[axis]) % step) % step", "0",
+            "each piece is thinned from its own begin"),
+           ("host/read/dataset/part.c", "test_cli_parts", "floor(least_index[axis] + tolerance)",
+            "ceil(least_index[axis] - tolerance)", "a box of the world is not covered"),
+           ("host/read/field/select.c", "test_cli_parts", "if (!f->on_cells || !f->is_whole) {", "if (1) {",
+            "a part's cells are averaged by themselves"),
+           ("host/read/vtk_xml/vtk_xml.c", "test_cli_parts", "if (status || !is_cut || !v.stored)",
+            "if (status || !is_cut || 1)", "VTK XML is read whole")),
     *point("devices that lack something",
            ("host/lib/opencl/program.c", "test_lacks", "if (most < limit->most) *limit =", "if (0) *limit =",
             "groups are larger than a kernel allows"),

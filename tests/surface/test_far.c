@@ -5,7 +5,7 @@
  * engines must make the same bytes; every vertex must lie where its edge says, relative to the origin (mesh_walk.h, in
  * long double); indices must be the same; area and volume must agree to 1e-6. Fill values at points that nothing uses
  * may not hide where the grid lies. Grids near zero must keep the origin 0, 0, 0, and double coordinates that are
- * floats must give the bytes of these floats.
+ * floats must give the bytes of these floats. Parts that name their whole must have its triangles, to the bit.
  */
 #include "complex.h"
 #include "engines.h"
@@ -371,6 +371,112 @@ static void test_long_far_grid(void) {
     free(samples);
 }
 
+/* ----------------------------------------------------------------------------------------------------------- parts */
+
+enum { WIDE = 6, LONG_PLANES = 1500, LONG_POINTS = WIDE * WIDE * LONG_PLANES };
+
+typedef struct triangle {
+    float at[9];
+} triangle;
+
+static int triangle_compare(const void *a, const void *b) { return memcmp(a, b, sizeof(triangle)); }
+
+/* Adds the mesh's triangles, each from its least vertex on. */
+static void triangles_add(const tc_mesh_data *m, triangle *all, size_t *count) {
+    for (uint64_t t = 0; t < m->triangle_count; t++, ++*count) {
+        float p[3][3];
+        int first = 0;
+        for (int k = 0; k < 3; k++)
+            memcpy(p[k], m->positions + 3 * (uint64_t)m->triangles[3 * t + (uint64_t)k], sizeof p[k]);
+        for (int k = 1; k < 3; k++)
+            if (memcmp(p[k], p[first], sizeof p[k]) < 0) first = k;
+        for (int k = 0; k < 3; k++) memcpy(all[*count].at + 3 * k, p[(first + k) % 3], sizeof p[k]);
+    }
+    qsort(all, *count, sizeof *all, triangle_compare);
+}
+
+/* Extracts planes first to last of a long grid along z, as a part of it or as a grid by itself. */
+static void part_add(const tc_grid_options *whole, tc_context *context, int64_t first, int64_t last, bool is_part,
+                     triangle *all, size_t *count) {
+    const int64_t plane = WIDE * WIDE;
+    static subject s;
+    surface made;
+    s.kind = whole->points_f64 ? CURVILINEAR : whole->axes_f64[0] ? RECTILINEAR : UNIFORM;
+    s.grid = *whole;
+    s.grid.dims[2] = last - first + 1;
+    s.grid.first_index[2] += first;
+    s.grid.samples = (const float *)whole->samples + first * plane;
+    if (s.grid.points_f64) s.grid.points_f64 += 3 * first * plane;
+    if (s.grid.axes_f64[2]) s.grid.axes_f64[2] += first;
+    s.grid.whole = is_part ? whole : NULL;
+    tc_extract_options_init(&s.how);
+    s.how.isovalue = 0.1;
+    if (!surface_extract(&s, context, &made)) return;
+    triangles_add(&made.data, all, count);
+    tc_mesh_destroy(made.mesh);
+}
+
+/* Parts that share a plane have the triangles of the whole, to the bit, also one that lies far from 0 by itself: as
+ * grids of their own they do not, so that this is a test. */
+static void test_parts(tc_context *context) {
+    static float samples[LONG_POINTS];
+    static double points[3 * LONG_POINTS], axes[3][LONG_PLANES];
+    const int64_t ends[] = {0, 701, 722, LONG_PLANES - 1};
+    triangle *all[3];
+    for (int n = 0; n < 3; n++) all[n] = calloc(20 * LONG_POINTS, sizeof **all);
+    for (int n = 0; n < LONG_POINTS; n++) {
+        const double x = n % WIDE, y = n / WIDE % WIDE, z = n / WIDE / WIDE;
+        samples[n] = (float)(sin(0.7 * x + 0.31 * z) + cos(0.9 * y - 0.23 * z));
+        points[3 * n] = x + 0.1 * sin(y), points[3 * n + 1] = y, points[3 * n + 2] = 0.7 * z + 0.05 * x;
+    }
+    for (int n = 0; n < LONG_PLANES; n++) axes[0][n] = n, axes[1][n] = 0.3 * n, axes[2][n] = 0.7 * n;
+    for (int kind = UNIFORM; kind <= CURVILINEAR; kind++)
+        for (int64_t shift = 0; shift < 2; shift++) {
+            size_t counts[3] = {0};
+            tc_grid_options whole;
+            tc_grid_options_init(&whole);
+            whole.dims[0] = whole.dims[1] = WIDE, whole.dims[2] = LONG_PLANES;
+            whole.type = TC_F32, whole.samples = samples;
+            whole.matrix[2][2] = 0.7;
+            if (kind == ROTATED) whole.matrix[0][2] = 0.4, whole.matrix[2][0] = -0.6;
+            if (kind == INDEXED) whole.first_index[0] = 3, whole.first_index[2] = shift ? 1 << 30 : -80001;
+            if (kind == CURVILINEAR) whole.points_f64 = points;
+            for (int axis = 0; axis < 3 && kind == RECTILINEAR; axis++) whole.axes_f64[axis] = axes[axis];
+            if (kind != INDEXED) whole.first_index[0] = shift, whole.matrix[2][3] = 1e6 * (double)shift;
+            part_add(&whole, context, 0, LONG_PLANES - 1, false, all[0], &counts[0]);
+            for (int n = 0; n < 3; n++) {
+                part_add(&whole, context, ends[n], ends[n + 1], true, all[1], &counts[1]);
+                part_add(&whole, context, ends[n], ends[n + 1], false, all[2], &counts[2]);
+            }
+            EXPECT(counts[0] > 1000 && counts[1] == counts[0] && counts[2] == counts[0],
+                   "%s: %zu triangles, in parts %zu", kind_names[kind], counts[0], counts[1]);
+            EXPECT(!memcmp(all[0], all[1], counts[0] * sizeof **all), "%s: parts differ from the whole",
+                   kind_names[kind]);
+            EXPECT(memcmp(all[0], all[2], counts[0] * sizeof **all), "%s: parts by themselves do not differ",
+                   kind_names[kind]);
+        }
+    for (int n = 0; n < 3; n++) free(all[n]);
+}
+
+static void test_no_parts(void) {
+    static subject s, other;
+    tc_grid *grid = NULL;
+    subject_make(&s, UNIFORM, far_place);
+    subject_make(&other, RECTILINEAR, far_place);
+    s.grid.whole = &other.grid;
+    EXPECT_REFUSED(tc_grid_create(reference, &s.grid, &grid), TC_ERROR_ARGUMENT, "a whole of another kind");
+    other.grid = s.grid;
+    s.grid.whole = &other.grid, other.grid.samples = NULL;
+    EXPECT(tc_grid_create(reference, &s.grid, &grid) == TC_OK, "a whole without samples: %s", tc_message());
+    tc_grid_destroy(grid);
+    for (int end = 0; end < 2; end++) {
+        other.grid.first_index[1] += end ? -2 : 1;
+        EXPECT_REFUSED(tc_grid_create(reference, &s.grid, &grid), TC_ERROR_ARGUMENT, "a part that lies outside");
+    }
+    other.grid.struct_size = 0;
+    EXPECT_REFUSED(tc_grid_create(reference, &s.grid, &grid), TC_ERROR_ARGUMENT, "a whole that is not initialised");
+}
+
 static void test_refusals(void) {
     static subject s;
     tc_grid *grid = NULL;
@@ -398,6 +504,9 @@ int main(void) {
     test_rule();
     test_long_grid();
     test_long_far_grid();
+    test_parts(reference);
+    if (device) test_parts(device);
+    test_no_parts();
     test_refusals();
     tc_context_destroy(device);
     tc_context_destroy(reference);

@@ -24,7 +24,8 @@ SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "h
 RAW = ["--dims", "8,8,8", "--type", "u8"]
 VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
-          "--method": ["hybrid"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"]}
+          "--method": ["hybrid"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
+          "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"]}
 REFERENCE = ["--engine", "reference"]
 
 # Per case of the source: command, operand, more arguments. That of the option itself is added.
@@ -41,6 +42,8 @@ CASES = {
     "has_no_time": ("selftest", None, []),
     "has_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "-o", "a.ply"]),
     "is_hybrid_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
+    "has_world_range": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "--roi-world", ":,:,:"]),
+    "is_everything": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_cells": ("tetrahedralize", "u8.nrrd", ["-o", "new.vtu"]),
 }
 OPEN = {"COMMAND_TETRAHEDRALIZE": ("tetrahedralize", "two.vti", ["-o", "new.vtu"]), "COMMAND_INFO": ("info", "two.vti", [])}

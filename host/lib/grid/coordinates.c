@@ -233,12 +233,10 @@ static void axes_extent(const tc_grid *grid, extent *e) {
         }
 }
 
-static void origin_take(tc_grid *grid, const double *given) {
+void coordinates_origin(tc_grid *grid) {
     const int64_t *dims = grid->dims;
     extent e;
-    if (given) {
-        for (int axis = 0; axis < 3; axis++) grid->origin[axis] = given[axis];
-    } else if (grid->kind == GRID_CURVILINEAR) {
+    if (grid->kind == GRID_CURVILINEAR) {
         origin_find(cube_corners, grid, (uint64_t)((dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1)), grid->origin);
     } else {
         axes_extent(grid, &e);
@@ -315,6 +313,9 @@ static tc_status axes_take(tc_grid *grid) {
 }
 
 tc_status coordinates_take(tc_grid *grid, const double *origin) {
-    origin_take(grid, origin);
+    if (origin)
+        memcpy(grid->origin, origin, sizeof grid->origin);
+    else
+        coordinates_origin(grid);
     return grid->kind == GRID_RECTILINEAR ? axes_take(grid) : points_take(grid);
 }

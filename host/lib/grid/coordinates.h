@@ -19,6 +19,9 @@
 /* Whether a coordinate is finite, and so are its differences from others. */
 static inline bool coordinate_usable(float value) { return fabsf(value) < 0x1p127f; }
 
+/* Sets the origin that fits the grid, of which given_axes or given_points, dims and what is missing are looked at. */
+void coordinates_origin(tc_grid *grid);
+
 /* Sets the grid's origin (NULL: the one that fits it), its axes or points relative to that, and whether it is mirrored.
  * TC_ERROR_DATA for coordinates of a present sample that are not finite, or so large that their difference may not be:
  * 2^127 and beyond. Everything but the device is described already. */

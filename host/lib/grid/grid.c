@@ -1,5 +1,6 @@
 #include "grid/grid.h"
 
+#include "base/structs.h"
 #include "opencl/context.h"
 #include "grid/coordinates.h"
 #include "failure.h"
@@ -112,14 +113,14 @@ static void uniform_origin(const double matrix[3][4], const extent *e, double or
             origin[r] = matrix[r][3];
 }
 
-/* Indices count from an even number near the grid's where these are large, as float32 holds i + t, too: cubes keep
- * their parity. */
-static void first_move(double matrix[3][4], tc_grid *grid) {
+/* Indices count from an even number near those of the whole grid where these are large, as float32 holds i + t, too:
+ * cubes keep their parity. */
+static void first_move(double matrix[3][4], tc_grid *whole, tc_grid *grid) {
     extent e = extent_empty;
     double base[3];
     for (int axis = 0; axis < 3; axis++) {
-        e.low[axis] = (double)grid->first[axis];
-        e.high[axis] = (double)(grid->first[axis] + grid->dims[axis] - 1);
+        e.low[axis] = (double)whole->first[axis];
+        e.high[axis] = (double)(whole->first[axis] + whole->dims[axis] - 1);
         e.cell[axis] = 1;
     }
     origin_choose(&e, base);
@@ -127,7 +128,10 @@ static void first_move(double matrix[3][4], tc_grid *grid) {
         if (fmax(fabs(e.low[axis] - base[axis]), fabs(e.high[axis] - base[axis])) > (double)index_limit)
             base[axis] = 2 * rint((e.low[axis] + e.high[axis]) / 4);
     for (int r = 0; r < 3; r++) matrix[r][3] = world_at((const double(*)[4])matrix, base, r);
-    for (int axis = 0; axis < 3; axis++) grid->first[axis] -= (int64_t)base[axis];
+    for (int axis = 0; axis < 3; axis++) {
+        whole->first[axis] -= (int64_t)base[axis];
+        grid->first[axis] -= (int64_t)base[axis];
+    }
 }
 
 static tc_status matrix_refuse(const double matrix[3][4], int r, int c) {
@@ -152,7 +156,7 @@ static tc_status matrix_round(const double matrix[3][4], tc_grid *grid) {
     return TC_OK;
 }
 
-static tc_status matrix_take(const double given[3][4], const double *origin, tc_grid *grid) {
+static tc_status matrix_take(const double given[3][4], const double *origin, tc_grid *whole, tc_grid *grid) {
     double matrix[3][4], m[3][3], largest = 0;
     extent e;
     for (int r = 0; r < 3; r++)
@@ -160,8 +164,8 @@ static tc_status matrix_take(const double given[3][4], const double *origin, tc_
             if (!isfinite(given[r][c])) return matrix_refuse(given, r, c);
             matrix[r][c] = given[r][c];
         }
-    first_move(matrix, grid);
-    uniform_extent((const double(*)[4])matrix, grid, &e);
+    first_move(matrix, whole, grid);
+    uniform_extent((const double(*)[4])matrix, whole, &e);
     if (origin)
         for (int axis = 0; axis < 3; axis++) grid->origin[axis] = origin[axis];
     else
@@ -214,7 +218,47 @@ tc_status origin_check(int has_origin, const double origin[3]) {
     return TC_OK;
 }
 
+/* Where samples lie. */
+static tc_status place_take(const tc_grid_options *o, tc_grid *grid) {
+    for (int axis = 0; axis < 3; axis++) {
+        grid->dims[axis] = o->dims[axis];
+        grid->first[axis] = o->first_index[axis];
+    }
+    grid->blanked_samples = o->blanked_samples;
+    grid->blanked_cells = o->blanked_cells;
+    grid->kind = o->points || o->points_f64     ? GRID_CURVILINEAR
+                 : o->axes[0] || o->axes_f64[0] ? GRID_RECTILINEAR
+                                                : GRID_UNIFORM;
+    grid->given_points = (coordinate_array){o->points, o->points_f64};
+    for (int axis = 0; axis < 3; axis++) grid->given_axes[axis] = (coordinate_array){o->axes[axis], o->axes_f64[axis]};
+    return coordinates_check(o);
+}
+
+/* The grid that *grid is a part of: itself, where no other is given. */
+static tc_status whole_take(const tc_grid_options *given, const tc_grid *grid, tc_grid *whole) {
+    tc_grid_options o;
+    tc_grid_options_init(&o);
+    *whole = (tc_grid){.kind = grid->kind};
+    for (int axis = 0; axis < 3; axis++) {
+        whole->dims[axis] = grid->dims[axis];
+        whole->first[axis] = grid->first[axis];
+    }
+    if (!given) return TC_OK;
+    tc_status status = struct_copy_in(&o, sizeof o, given, "whole grid");
+    if (!status) status = sizes_check(&o);
+    if (!status) status = place_take(&o, whole);
+    if (status) return status;
+    int is_within = 1;
+    for (int axis = 0; axis < 3 && grid->kind == GRID_UNIFORM; axis++)
+        is_within &= grid->first[axis] >= whole->first[axis] &&
+                     grid->first[axis] + grid->dims[axis] <= whole->first[axis] + whole->dims[axis];
+    if (whole->kind == grid->kind && is_within) return TC_OK;
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid is no part of its whole: %s",
+                           is_within ? "their coordinates are of different kinds" : "indices lie outside");
+}
+
 tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
+    tc_grid whole;
     if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     tc_status status = sizes_check(o);
     if (status) return status;
@@ -224,10 +268,6 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     if ((uintptr_t)o->samples % tc_type_bytes(o->type))
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the samples are not aligned to their type, %s",
                                tc_type_name(o->type));
-    for (int axis = 0; axis < 3; axis++) {
-        grid->dims[axis] = o->dims[axis];
-        grid->first[axis] = o->first_index[axis];
-    }
     grid->type = o->type;
     grid->samples = o->samples;
     grid->cl_samples = o->cl_samples;
@@ -235,19 +275,17 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->has_nodata = o->has_nodata != 0;
     /* 0.1 is no float32; samples have the nearest float32. */
     grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata;
-    grid->blanked_samples = o->blanked_samples;
-    grid->blanked_cells = o->blanked_cells;
-    status = coordinates_check(o);
+    status = place_take(o, grid);
+    if (!status) status = whole_take(o->whole, grid, &whole);
     if (status) return status;
-    grid->kind = o->points || o->points_f64     ? GRID_CURVILINEAR
-                 : o->axes[0] || o->axes_f64[0] ? GRID_RECTILINEAR
-                                                : GRID_UNIFORM;
-    grid->given_points = (coordinate_array){o->points, o->points_f64};
-    for (int axis = 0; axis < 3; axis++) grid->given_axes[axis] = (coordinate_array){o->axes[axis], o->axes_f64[axis]};
     const double *origin = o->has_origin ? o->origin : NULL;
-    for (int axis = 0; axis < 3 && grid->kind != GRID_UNIFORM; axis++)
-        grid->first[axis] &= 1; /* only the parity of cubes depends on it */
-    return grid->kind == GRID_UNIFORM ? matrix_take(o->matrix, origin, grid) : coordinates_take(grid, origin);
+    if (grid->kind == GRID_UNIFORM) return matrix_take(o->matrix, origin, &whole, grid);
+    for (int axis = 0; axis < 3; axis++) grid->first[axis] &= 1; /* only the parity of cubes depends on it */
+    if (o->whole && !origin) {
+        coordinates_origin(&whole);
+        origin = whole.origin;
+    }
+    return coordinates_take(grid, origin);
 }
 
 void grid_release(tc_grid *grid) {

@@ -75,6 +75,14 @@ int layout_make(const char *path, const axes *from, int element, const read_requ
     return status;
 }
 
+void layout_cut(layout *l, const sample_box *part) {
+    for (int axis = 0; axis < 3; axis++) {
+        l->dims[axis] = part->count[axis];
+        l->offset += (uint64_t)part->first[axis] * l->stride[axis];
+        l->stride[axis] *= (uint64_t)part->step[axis];
+    }
+}
+
 tc_type layout_type(const layout *l) { return l->scaled ? TC_F64 : element_sample_type(l->element); }
 
 static int64_t values_per_sample(const layout *l) { return l->components > 1 ? l->components : 1; }

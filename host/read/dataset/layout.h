@@ -9,6 +9,7 @@
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
+#include "dataset/dataset.h"
 #include "dataset/request.h"
 #include "stored_types.h"
 
@@ -41,6 +42,9 @@ typedef struct layout {
 
 /* Fills *out from the axes and the element; overflow and the choice of component and frame are checked. */
 int layout_make(const char *path, const axes *from, int element, const read_request *request, layout *out);
+
+/* Of the volume, only these samples are taken out. */
+void layout_cut(layout *l, const sample_box *part);
 
 /* The type of the samples taken out. */
 tc_type layout_type(const layout *l);

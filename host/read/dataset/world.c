@@ -26,6 +26,18 @@ int world_spans(double matrix[3][4]) {
     return is_finite && spanned != 0;
 }
 
+/* Cramer's rule. */
+void world_index(double matrix[3][4], const double point[3], double index[3]) {
+    for (int a = 0; a < 3; a++) {
+        double replaced[3][4];
+        for (int n = 0; n < 12; n++) {
+            const int r = n / 4, c = n % 4;
+            replaced[r][c] = c == a ? point[r] - matrix[r][3] : matrix[r][c];
+        }
+        index[a] = determinant(replaced) / determinant(matrix);
+    }
+}
+
 int world_no_direction(const char *path, const char *name, int axis) {
     return fail(STATUS_INPUT,
                 "%s: its %s has only zeros for axis %d, which then has no direction: correct it, or give --spacing",

@@ -12,6 +12,9 @@ int world_place(const read_request *request, const char *path, double matrix[3][
 /* Whether the matrix is finite and invertible. */
 int world_spans(double matrix[3][4]);
 
+/* The index, in general no whole number, that such a matrix puts at a point. */
+void world_index(double matrix[3][4], const double point[3], double index[3]);
+
 /* STATUS_INPUT: what has that name in the file has no direction for an axis, counted from 1. */
 int world_no_direction(const char *path, const char *name, int axis);
 

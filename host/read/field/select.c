@@ -1,5 +1,6 @@
 #include "field/select.h"
 
+#include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "field/average.h"
@@ -256,6 +257,24 @@ static int scalar_of_block(dataset *d, const dataset_block *b, const dataset_fie
     return 0;
 }
 
+/* Of a part: its values, or, of cells, the averages of the whole at its points. */
+static int scalar_of_part(dataset *d, const dataset_block *b, const dataset_field *f, const read_request *request,
+                          scalar_block *out, int *has_nodata) {
+    dataset_field own;
+    dataset_block around;
+    sample_box inner;
+    if (!f->on_cells || !f->is_whole) {
+        int status = part_field(d, b, f, &own);
+        return status ? status : scalar_of_block(d, b, &own, request, out, has_nodata);
+    }
+    int status = part_around(d, b, f, &around, &own, &inner);
+    if (!status) status = scalar_of_block(d, &around, &own, request, out, has_nodata);
+    if (!status) status = part_points(d, around.dims, out->type, 1, &inner, &out->samples);
+    if (!status) status = part_blanked_cells(d, around.dims, &inner, &out->blanked_cells);
+    out->blanked_points = b->blanked_points;
+    return status;
+}
+
 int scalar_select(dataset *d, const read_request *request, scalar *out) {
     *out = (scalar){.component = -1};
     choice chosen;
@@ -267,7 +286,7 @@ int scalar_select(dataset *d, const read_request *request, scalar *out) {
     for (int n = 0; n < d->block_count && !status; n++) {
         const dataset_field *f = chosen_field(&d->blocks[n], chosen);
         status = check_component(d, request->path, f, request->component);
-        if (!status) status = scalar_of_block(d, &d->blocks[n], f, request, &out->blocks[n], &out->has_nodata);
+        if (!status) status = scalar_of_part(d, &d->blocks[n], f, request, &out->blocks[n], &out->has_nodata);
         if (f->components > 1) out->component = request->component;
         out->is_rounded |= f->is_rounded;
         out->is_averaged |= f->on_cells;
@@ -288,6 +307,18 @@ int scalar_components(const dataset *d, const read_request *request, int *compon
     return 0;
 }
 
+/* The field at the points of a block. */
+static int field_at_points(dataset *d, const dataset_block *b, const dataset_field *f, dataset_field *out) {
+    dataset_field own;
+    dataset_block around;
+    sample_box inner;
+    if (!f->on_cells) return part_field(d, b, f, out);
+    if (!f->is_whole) return average_to_points(d, b, b->blanked_cells, f, out);
+    int status = part_around(d, b, f, &around, &own, &inner);
+    if (!status) status = average_to_points(d, &around, around.blanked_cells, &own, out);
+    return status ? status : part_points(d, around.dims, out->type, out->components, &inner, &out->values);
+}
+
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out) {
     *out = (point_field){0};
     choice chosen;
@@ -305,8 +336,7 @@ int point_field_select(dataset *d, const char *path, const char *name, point_fie
                         out->components, f->components, n);
         out->components = f->components;
         out->is_averaged |= f->on_cells;
-        out->blocks[n] = *f;
-        if (f->on_cells) status = average_to_points(d, b, b->blanked_cells, f, &out->blocks[n]);
+        status = field_at_points(d, b, f, &out->blocks[n]);
     }
     return status;
 }

@@ -361,7 +361,7 @@ int metaimage_read(const read_request *request, const mapping *file, dataset *ou
     l.swapped = !h.is_text && h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
     snprintf(out->format, sizeof out->format, "MetaImage");
     if (*h.orientation) snprintf(out->space, sizeof out->space, "anatomical orientation %s", h.orientation);
-    status = source_load(&h.from, &l, out);
+    status = source_load(request, &h.from, &l, out);
 cleanup:
     data_names_release(&h.from.files);
     return status;

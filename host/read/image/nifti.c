@@ -358,7 +358,7 @@ static int load(nifti_header *h, const char *image_path, const mapping *image, i
         snprintf(out->format, sizeof out->format, "Analyze 7.5");
     else
         snprintf(out->format, sizeof out->format, "NIfTI-%d", h->version);
-    return source_load(&from, &l, out);
+    return source_load(h->request, &from, &l, out);
 }
 
 int nifti_read(const read_request *request, const mapping *file, dataset *out) {

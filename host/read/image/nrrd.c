@@ -303,7 +303,7 @@ int nrrd_read(const read_request *request, const mapping *file, dataset *out) {
     l.swapped = h.from.encoding != ENCODING_TEXT && h.endian && h.endian != __BYTE_ORDER__;
     snprintf(out->format, sizeof out->format, "NRRD");
     snprintf(out->space, sizeof out->space, "%s", h.space);
-    status = source_load(&h.from, &l, out);
+    status = source_load(request, &h.from, &l, out);
 cleanup:
     data_names_release(&h.from.files);
     return status;

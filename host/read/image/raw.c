@@ -47,6 +47,11 @@ int raw_read(const read_request *request, const mapping *file, dataset *out) {
     l.swapped = request->big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 
     uint64_t expected;
+    if (request->raw_else && l.bytes != file->size)
+        return fail(STATUS_INPUT,
+                    "%s: its format is not known, and it is no raw volume of %" PRId64 " x %" PRId64 " x %" PRId64
+                    " samples of one byte, as it is %zu bytes long",
+                    request->path, request->dims[0], request->dims[1], request->dims[2], file->size);
     if (request->skip > INT64_MAX || __builtin_add_overflow(request->skip, l.bytes, &expected) ||
         expected != file->size)
         return fail(STATUS_INPUT,
@@ -59,5 +64,5 @@ int raw_read(const read_request *request, const mapping *file, dataset *out) {
         out->blocks->matrix[i][i] = request->spacing[i];
         out->blocks->matrix[i][3] = request->origin[i];
     }
-    return source_load(&from, &l, out);
+    return source_load(request, &from, &l, out);
 }

@@ -2,6 +2,7 @@
 #include "image/source.h"
 
 #include "dataset/array_memory.h"
+#include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "file/mapping.h"
@@ -317,11 +318,9 @@ static void describe(const source *from, const layout *l, dataset *out) {
     out->frames = l->frames;
 }
 
-int source_load(const source *from, const layout *l, dataset *out) {
+static int load(const source *from, const layout *l, dataset *out) {
     int64_t parts = from->files.count ? from->files.count : 1;
-    int status = check_file_count(from);
-    if (status) return status;
-    describe(from, l, out);
+    int status = 0;
     if (parts == 1 && from->encoding == ENCODING_RAW)
         return load_raw(from, from->files.count ? from->files.paths[0] : from->header_path, l, out);
 
@@ -343,4 +342,13 @@ int source_load(const source *from, const layout *l, dataset *out) {
 cleanup:
     free(stored);
     return status;
+}
+
+int source_load(const read_request *request, const source *from, const layout *stored, dataset *out) {
+    layout cut = *stored;
+    int status = check_file_count(from);
+    if (status) return status;
+    describe(from, stored, out);
+    status = part_cut_image(request, out, &cut);
+    return status ? status : load(from, &cut, out);
 }

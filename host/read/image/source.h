@@ -26,8 +26,8 @@ typedef struct source {
     int64_t axes_per_file;
 } source;
 
-/* Fills an image that dataset_image_begin has made, except its matrix: samples and their memory, type, sizes, frames. A
- * notice says where files hold more than is used. */
-int source_load(const source *from, const layout *l, dataset *out);
+/* Fills an image that dataset_image_begin has made and that has its matrix: samples and their memory, type, sizes,
+ * frames; of the part that the request asks for (part.h). A notice says where files hold more than is used. */
+int source_load(const read_request *request, const source *from, const layout *stored, dataset *out);
 
 #endif

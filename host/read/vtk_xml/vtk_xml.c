@@ -8,6 +8,7 @@
 #include "vtk_xml/vtk_xml.h"
 
 #include "dataset/layout.h"
+#include "dataset/part.h"
 #include "dataset/world.h"
 #include "exit_status.h"
 #include "failure.h"
@@ -109,12 +110,27 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     return status;
 }
 
+/* Of a part the values are left where they lie, whatever their order of bytes: part_field takes what is wanted. */
+static int load_values(xml_reader *r, const xml_array *array, uint64_t count, dataset_field *field) {
+    const int is_cut = part_is_asked(r->request) && r->doc.kind != BLOCK_UNSTRUCTURED;
+    xml_values v;
+    int status = vtk_xml_open(&r->doc, array, count, &v);
+    if (status || !is_cut || !v.stored) return status ? status : vtk_xml_load_opened(r, &v, &field->values);
+    field->is_swapped = r->doc.swapped && element_bytes(array->element) > 1;
+    field->values = v.stored;
+    r->uses_file = 1;
+    vtk_xml_note_more(r, &v);
+    return 0;
+}
+
 /* 64-bit integers become doubles, in the same memory; the nearest where no double is equal. */
 static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, const char *names, dataset_block *block) {
     uint64_t count;
-    const void *values;
-    int wide = array->element >= SAMPLE_TYPE_COUNT, is_rounded = 0;
-    dataset_field *field;
+    int wide = array->element >= SAMPLE_TYPE_COUNT;
+    dataset_field *added, field = {.name = names + array->name,
+                                   .on_cells = array->section == SECTION_CELL_DATA,
+                                   .components = (int)array->components,
+                                   .type = element_sample_type(array->element)};
     if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
     if (wide) {
         xml_values v;
@@ -125,20 +141,14 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
         if (!v.in_place && (status = vtk_xml_take(&v, memory))) return status;
         vtk_xml_note_more(r, &v);
         layout convert = {.element = array->element, .dims = {(int64_t)count, 1, 1}, .stride = {1, 0, 0}};
-        is_rounded = layout_gather(v.label, &convert, from, memory) != 0; /* one row, which is filled in any case */
-        values = memory;
+        field.is_rounded = layout_gather(v.label, &convert, from, memory) != 0; /* one row, filled in any case */
+        field.values = memory;
     } else {
-        int status =
-            array->is_bits ? load_bits(r, array, count, &values) : vtk_xml_load_stored(r, array, count, &values);
+        int status = array->is_bits ? load_bits(r, array, count, &field.values) : load_values(r, array, count, &field);
         if (status) return status;
     }
-    if (dataset_field_add(block, &field)) return STATUS_FAILED;
-    *field = (dataset_field){.name = names + array->name,
-                             .on_cells = array->section == SECTION_CELL_DATA,
-                             .components = (int)array->components,
-                             .type = element_sample_type(array->element),
-                             .is_rounded = is_rounded,
-                             .values = values};
+    if (dataset_field_add(block, &added)) return STATUS_FAILED;
+    *added = field;
     return 0;
 }
 

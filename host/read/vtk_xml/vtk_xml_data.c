@@ -158,6 +158,7 @@ static int open_plain(xml_document *doc, xml_values *v) {
     if (held < v->bytes) return has_too_few(v, held);
     if (source_left(&v->data) < v->bytes) return has_too_few(v, source_left(&v->data));
     v->more = held > v->bytes;
+    if (!v->data.is_base64) v->stored = v->data.at;
     if (!v->data.is_base64 && (!doc->swapped || element_size == 1) && (uintptr_t)v->data.at % element_size == 0) {
         v->in_place = v->data.at;
         return 0;

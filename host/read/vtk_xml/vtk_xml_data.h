@@ -18,6 +18,7 @@ typedef struct xml_values {
     const xml_array *array;
     uint64_t count, bytes;         /* of the values that are wanted */
     const unsigned char *in_place; /* where they lie in the file as this machine wants them; NULL: vtk_xml_take */
+    const unsigned char *stored;   /* the same, be they swapped or not aligned; NULL: packed, or text */
     int more;                      /* whether the array holds more than that; of text only known when it is taken */
     char label[512];               /* file and array, for messages */
     size_t label_array;            /* where in it the array begins */

@@ -31,8 +31,7 @@ void vtk_xml_note_more(xml_reader *r, const xml_values *v) {
         dataset_notice(r->out, "%s holds more values than are needed; the rest is not used", v->label + v->label_array);
 }
 
-/* *values: those of the array, in the stored type, in the mapped file or in memory of the dataset. */
-static int load_opened(xml_reader *r, xml_values *v, const void **values) {
+int vtk_xml_load_opened(xml_reader *r, xml_values *v, const void **values) {
     int status = 0;
     *values = v->in_place;
     if (v->in_place) {
@@ -50,7 +49,7 @@ static int load_opened(xml_reader *r, xml_values *v, const void **values) {
 int vtk_xml_load_stored(xml_reader *r, const xml_array *array, uint64_t count, const void **values) {
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
-    return status ? status : load_opened(r, &v, values);
+    return status ? status : vtk_xml_load_opened(r, &v, values);
 }
 
 /* Doubles as they are stored. Later float32 coordinates are made of them, half their size: so sharing them is bounded
@@ -59,7 +58,7 @@ static int load_doubles(xml_reader *r, const xml_array *array, uint64_t count, c
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
     if (!status && v.in_place) status = vtk_xml_note_taken(&r->doc, &v, v.bytes);
-    return status ? status : load_opened(r, &v, (const void **)values);
+    return status ? status : vtk_xml_load_opened(r, &v, (const void **)values);
 }
 
 int vtk_xml_load_briefly(xml_reader *r, const xml_array *array, uint64_t count, const unsigned char **values,

@@ -22,6 +22,9 @@ void *vtk_xml_memory(xml_reader *r, uint64_t bytes);
 const xml_array *vtk_xml_array_find(const xml_reader *r, const xml_piece *piece, enum xml_section section,
                                     const char *name, int index);
 
+/* *values: those of an array that is open, in the stored type, in the mapped file or in memory of the dataset. */
+int vtk_xml_load_opened(xml_reader *r, xml_values *v, const void **values);
+
 /* The first `count` values of an array, in the stored type: in the mapped file or in memory of the dataset. */
 int vtk_xml_load_stored(xml_reader *r, const xml_array *array, uint64_t count, const void **values);
 

@@ -51,6 +51,12 @@ static int has_cells(const situation *s) {
     return 0;
 }
 
+static int has_world_range(const situation *s) { return options_given(s->o, "--roi-world"); }
+
+static int is_everything(const situation *s) {
+    return s->o->part.step[0] == 1 && s->o->part.step[1] == 1 && s->o->part.step[2] == 1;
+}
+
 static int has_no_cells(const situation *s) { return !has_cells(s); }
 
 static int is_hybrid_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_HYBRID; }
@@ -73,6 +79,7 @@ typedef struct effect {
 
 #define NO_MESH  "--count makes no mesh: leave out "
 #define NOT_RAW  " describes raw input: give --dims NX,NY,NZ too, or leave it out"
+#define NOT_GRID " is for structured grids only"
 #define NO_FIELD " is for the values of one field, and none is chosen: see --field and --component"
 
 static const effect table[] = {
@@ -116,6 +123,11 @@ static const effect table[] = {
     {READS, "--endian", BEFORE_READING, has_bytes, TOLD, "--endian has no effect on samples of one byte"},
     {COMMAND_GENERATE, "--seed", BEFORE_READING, is_not_noise, TOLD, "--seed has an effect on noise alone"},
 
+    {COMMAND_EXTRACT | COMMAND_INFO, "--roi", BEFORE_READING, has_world_range, REFUSED,
+     "--roi and --roi-world both choose a region: leave one out"},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--step", BEFORE_READING, is_everything, TOLD,
+     "--step 1 takes every sample: it has no effect"},
+
     {COMMAND_SELFTEST, "--timeout", BEFORE_READING, has_no_time, REFUSED,
      "--timeout 0 leaves no time for a trial; leave it out for no limit"},
 
@@ -123,11 +135,17 @@ static const effect table[] = {
      "is unstructured: --normals are made of structured grids only"},
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_hybrid_of_cells, REFUSED,
      "is unstructured: --method hybrid is for structured grids only"},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--roi-world", AFTER_READING, has_cells, REFUSED,
+     "is unstructured: --roi-world" NOT_GRID},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--step", AFTER_READING, has_cells, REFUSED, "is unstructured: --step" NOT_GRID},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--mask", AFTER_READING, has_cells, REFUSED, "is unstructured: --mask" NOT_GRID},
     {COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, "--skip-unsupported", AFTER_READING, has_no_cells, TOLD,
      "is structured: it has no cells that --skip-unsupported could leave out"},
     {COMMAND_TETRAHEDRALIZE, "--nodata", AFTER_READING, has_no_field, REFUSED, "--nodata" NO_FIELD},
     {COMMAND_TETRAHEDRALIZE, "--component", AFTER_READING, has_no_field, REFUSED, "--component" NO_FIELD},
     {COMMAND_INFO, "--nodata", AFTER_READING, has_no_field, TOLD, "--nodata" NO_FIELD},
+    {COMMAND_INFO, "--mask", AFTER_READING, has_no_field, TOLD, "--mask" NO_FIELD},
     {COMMAND_INFO, "--component", AFTER_READING, has_no_field, TOLD, "--component" NO_FIELD},
 };
 

@@ -99,6 +99,18 @@ const option option_table[] = {
      "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
      "which volume, from 0, of data with a fourth axis"},
+    {"--roi", NULL, "I0:I1,...", COMMAND_EXTRACT | COMMAND_INFO, VALUE_INDICES, IN(part.indices), NULL,
+     "only the samples of these indices along x, y and z, from I0 to before I1;\n"
+     "an end left out, as in 10:,:,:50, is the grid's; regions that share a plane\n"
+     "of samples, as 0:65 and 64:129, have surfaces that fit; structured grids"},
+    {"--roi-world", NULL, "X0:X1,...", COMMAND_EXTRACT | COMMAND_INFO, VALUE_RANGES, IN(part.world), NULL,
+     "the same by a box in the input's space: the fewest samples that cover it"},
+    {"--step", NULL, "N[,N,N]", COMMAND_EXTRACT | COMMAND_INFO, VALUE_STEP, IN(part.step), NULL,
+     "only every Nth sample, from the first one on, along x, y and z; points stay\n"
+     "where they are; structured grids"},
+    {"--mask", NULL, "FILE", COMMAND_EXTRACT | COMMAND_INFO, VALUE_TEXT, IN(mask), NULL,
+     "a volume of the input's size, in any format (else raw u8): where it is 0,\n"
+     "samples are missing; structured grids"},
     {"--dims", NULL, "NX,NY,NZ", READS, VALUE_DIMS, IN(dims), NULL,
      "raw input: samples along x, y and z, x fastest"},
     {"--dims", NULL, "NX,NY,NZ", COMMAND_GENERATE, VALUE_DIMS, IN(dims), NULL,

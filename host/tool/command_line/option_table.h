@@ -22,6 +22,9 @@ typedef enum value_kind {
     VALUE_DIMS,      /* int64_t[3], from 1 */
     VALUE_SPACING,   /* double[3], above 0 */
     VALUE_POINT,     /* double[3] */
+    VALUE_INDICES,   /* index_ranges */
+    VALUE_RANGES,    /* world_ranges */
+    VALUE_STEP,      /* int64_t[3], from 1; one number goes for all */
 } value_kind;
 
 typedef struct option {

@@ -6,6 +6,8 @@
 #ifndef OPTION_VALUES_H
 #define OPTION_VALUES_H
 
+#include "dataset/request.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -50,7 +52,9 @@ typedef struct options {
     int has_nodata;
     double nodata;
     int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
-    uint64_t max_memory;  /* 0 where not given */
+    part_request part;
+    const char *mask;
+    uint64_t max_memory; /* 0 where not given */
     uint64_t seed;
 
     int64_t dims[3]; /* zeros where not given */

@@ -91,6 +91,83 @@ static int parse_dims(const option *spec, const char *text, int64_t out[3]) {
     return 0;
 }
 
+static int take_index(const char **at, int64_t *value) {
+    char *end;
+    const char *digits = *at + (**at == '-');
+    if (!isdigit((unsigned char)*digits)) return 0;
+    errno = 0;
+    *value = strtoll(*at, &end, 10);
+    *at = end;
+    return errno == 0;
+}
+
+/* Numbers of one range, or its open ends, of which *low and *high then stay as they are. */
+static int take_indices(const char **at, int64_t *low, int64_t *high) {
+    *at = skip_blanks(*at);
+    if (**at != ':' && !take_index(at, low)) return 0;
+    if (*(*at)++ != ':') return 0;
+    return !**at || strchr(", \t", **at) || take_index(at, high);
+}
+
+static int take_reals(const char **at, double *low, double *high) {
+    *at = skip_blanks(*at);
+    if (**at != ':' && !take_real(at, low)) return 0;
+    if (*(*at)++ != ':') return 0;
+    if (**at && !strchr(", \t", **at) && !take_real(at, high)) return 0;
+    return *low < *high;
+}
+
+static int parse_indices(const option *spec, const char *text, index_ranges *out) {
+    const char *at = text;
+    for (int axis = 0; axis < 3; axis++) {
+        out->begin[axis] = INT64_MIN;
+        out->end[axis] = INT64_MAX;
+        int good = take_indices(&at, &out->begin[axis], &out->end[axis]);
+        at = good ? skip_blanks(at) : at;
+        if (!good || *at != (axis < 2 ? ',' : '\0'))
+            return fail(STATUS_USAGE,
+                        "%s: '%s' is not three ranges of indices with commas between, as in 10:60,0:64,:32", spec->name,
+                        text);
+        at++;
+    }
+    return 0;
+}
+
+static int parse_ranges(const option *spec, const char *text, world_ranges *out) {
+    const char *at = text;
+    for (int axis = 0; axis < 3; axis++) {
+        out->low[axis] = -INFINITY;
+        out->high[axis] = INFINITY;
+        int good = take_reals(&at, &out->low[axis], &out->high[axis]);
+        at = good ? skip_blanks(at) : at;
+        if (!good || *at != (axis < 2 ? ',' : '\0'))
+            return fail(STATUS_USAGE,
+                        "%s: '%s' is not three ranges of coordinates, each from a lower number to a higher one, as in "
+                        "-1.5:2,0:10,:3",
+                        spec->name, text);
+        at++;
+    }
+    return 0;
+}
+
+/* One number, or three. */
+static int parse_step(const option *spec, const char *text, int64_t out[3]) {
+    uint64_t step[3] = {0};
+    const char *at = text;
+    int count = 0, good = 1;
+    do {
+        at = skip_blanks(at + (count > 0));
+        good = take_whole(&at, &step[count]) && step[count] > 0 && step[count] <= INT32_MAX;
+        at = good ? skip_blanks(at) : at;
+        count++;
+    } while (good && *at == ',' && count < 3);
+    if (!good || *at || count == 2)
+        return fail(STATUS_USAGE, "%s: '%s' is not one whole number above 0, nor three, as in 2 or 2,2,1", spec->name,
+                    text);
+    for (int axis = 0; axis < 3; axis++) out[axis] = (int64_t)step[count == 1 ? 0 : axis];
+    return 0;
+}
+
 /* Bytes: a whole number, then K, M, G or T, with iB or B after it if one likes. */
 static int parse_size(const option *spec, const char *text, uint64_t *out) {
     static const char units[] = "KMGT";
@@ -163,6 +240,12 @@ int parse_value(const option *spec, const char *text, options *o) {
     case VALUE_SPACING:
     case VALUE_POINT:
         return parse_reals(spec, text, place);
+    case VALUE_INDICES:
+        return parse_indices(spec, text, place);
+    case VALUE_RANGES:
+        return parse_ranges(spec, text, place);
+    case VALUE_STEP:
+        return parse_step(spec, text, place);
     }
     return fail(STATUS_USAGE, "%s: not understood", spec->name);
 }

@@ -1,6 +1,7 @@
 /* report.c - each fact is formatted as JSON and as text; the same fact has the same place in both */
 #include "report.h"
 
+#include "input/part_report.h"
 #include "output.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
@@ -94,7 +95,8 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "method", json_string(tc_method_name((tc_method)r->o->method)));
-    json_object_set_new(object, "dims", r->dims ? integers_json(r->dims) : json_null());
+    json_object_set_new(object, "dims", r->grid ? integers_json(r->grid->dims) : json_null());
+    part_report_json(object, r->grid);
     json_object_set_new(object, "cells", count_json(r->cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
@@ -170,12 +172,13 @@ static void surface_text(const surface_report *s, const char *cells) {
 static void input_text(const extract_report *r) {
     printf("%s: ", r->o->operands[0]);
     if (r->block_count > 1) printf("%d blocks, ", r->block_count);
-    if (r->dims)
-        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->dims[0], r->dims[1], r->dims[2]);
+    if (r->grid)
+        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->grid->dims[0], r->grid->dims[1], r->grid->dims[2]);
     else
         printf("%" PRIu64 " points ", r->point_count);
     printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
            tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
+    part_report_text("part: ", r->grid);
 }
 
 void extract_report_text(const extract_report *r) {

@@ -8,6 +8,7 @@
 
 #include "mesh_check.h"
 #include "command_line/options.h"
+#include "dataset/dataset.h"
 #include "tetracubes.h"
 
 /* Vertices in cells that are only few steps of floating-point numbers thick (precision.h). */
@@ -46,8 +47,8 @@ typedef struct surface_report {
 
 typedef struct extract_report {
     const options *o;
-    tc_engine engine;    /* the one that made the surfaces; with --engine auto the last one */
-    const int64_t *dims; /* of an input that is one structured block, else NULL */
+    tc_engine engine;          /* the one that made the surfaces; with --engine auto the last one */
+    const dataset_block *grid; /* of an input that is one structured block, else NULL */
     int block_count;
     int is_complex;    /* unstructured: active cells are tetrahedra */
     const char *field; /* "" where it has no name */

@@ -1,6 +1,7 @@
 #include "describe_blocks.h"
 
 #include "dataset/cell_types.h"
+#include "input/part_report.h"
 #include "input/statistics.h"
 #include "input/used_points.h"
 #include "shortest.h"
@@ -189,6 +190,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
         if (b->first[0] || b->first[1] || b->first[2])
             printf("first point   %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     }
+    part_report_text("part          ", b);
     if (b->kind == BLOCK_UNIFORM) describe_place_text(d, b);
     if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
     if (b->point_count)

@@ -1,6 +1,7 @@
 #include "blocks.h"
 
 #include "dataset/cell_types.h"
+#include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -22,8 +23,8 @@ static int block_status(int status, int n, int block_count) {
     return fail(status, "%s (block %d)", text, n);
 }
 
-static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
-    const dataset_block *from = b->source;
+/* Where samples of a structured block lie, and what is blanked. */
+static void describe_place(const dataset_block *from, tc_grid_options *grid) {
     tc_grid_options_init(grid);
     memcpy(grid->dims, from->dims, sizeof grid->dims);
     memcpy(grid->first_index, from->first, sizeof grid->first_index);
@@ -38,6 +39,23 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
     }
     grid->blanked_samples = from->blanked_points;
     grid->blanked_cells = from->blanked_cells;
+}
+
+/* The grid that a block is a part of: its samples count where the part's do, thinned likewise. Returns NULL where the
+ * block is no part, or where the library takes no grid of that size. */
+static const tc_grid_options *describe_whole(const dataset_block *b, tc_grid_options *whole) {
+    enum { SAMPLES_MOST = 1 << 24 };
+    if (!b->whole) return NULL;
+    describe_place(b->whole, whole);
+    if (b->kind == BLOCK_UNIFORM) part_whole_extent(b, whole->first_index, whole->dims);
+    for (int axis = 0; axis < 3; axis++)
+        if (whole->dims[axis] < 2 || whole->dims[axis] > SAMPLES_MOST) return NULL;
+    return whole;
+}
+
+static void describe_grid(const prepared_block *b, tc_grid_options *grid, tc_grid_options *whole) {
+    describe_place(b->source, grid);
+    grid->whole = describe_whole(b->source, whole);
     if (!b->scalar) return;
     grid->type = b->scalar->type;
     grid->samples = b->scalar->samples;
@@ -48,8 +66,8 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid) {
 }
 
 static int cut_structured(const options *o, prepared_block *b) {
-    tc_grid_options grid;
-    describe_grid(b, &grid);
+    tc_grid_options grid, whole;
+    describe_grid(b, &grid, &whole);
     void *none_missing = NULL; /* the library wants samples, and looks only at which are missing */
     if (!b->scalar) {
         grid.type = TC_U8;
@@ -155,9 +173,10 @@ static uint64_t count_unused_points(const block_list *list) {
 static void tell_all(const block_list *list) {
     uint64_t flat_blocks = 0, flat = 0, curved = 0, inverted = 0, folded = 0, left_out = 0, unsupported = 0,
              surplus = 0, blanked_points = 0, blanked_cells = 0;
-    int all_cut = 1;
+    int all_cut = 1, is_thinned = 0;
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
+        for (int axis = 0; axis < 3; axis++) is_thinned |= b->source->part.step[axis] > 1;
         flat_blocks += (uint64_t)b->is_skipped;
         flat += b->complex.flat_cell_count;
         curved += b->complex.curved_cell_count;
@@ -182,6 +201,8 @@ static void tell_all(const block_list *list) {
     tell(folded, "cells are folded: their tetrahedra overlap");
     if (list->count > 1 && has_ambiguous_cells(list))
         notice("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
+    if (list->count > 1 && is_thinned)
+        notice("--step takes every Nth sample of each block by itself: surfaces of neighbouring blocks may not meet");
     tell(blanked_points, "points are blanked: cells with one of them are left out");
     tell(blanked_cells, "blanked cells are left out");
     if (!list->tetrahedron_count && all_cut) notice("nothing to contour: no cell of three dimensions is left");
@@ -240,11 +261,11 @@ static tc_status complex_grid(const prepared_block *b, tc_context *context, cons
 int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
                tc_grid **grid) {
     const prepared_block *b = &list->blocks[n];
-    tc_grid_options from;
+    tc_grid_options from, whole;
     *grid = NULL;
     if (b->is_skipped) return 0;
     if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, origin, grid)), n, list->count);
-    describe_grid(b, &from);
+    describe_grid(b, &from, &whole);
     if (origin) {
         from.has_origin = 1;
         memcpy(from.origin, origin, sizeof from.origin);

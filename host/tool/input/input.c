@@ -1,8 +1,10 @@
 #include "input.h"
 
+#include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "library_status.h"
+#include "mask.h"
 #include "output.h"
 #include "read.h"
 #include "shortest.h"
@@ -45,6 +47,10 @@ int input_request(const options *o, read_request *request) {
     request->field = o->field;
     request->has_nodata = o->has_nodata;
     request->nodata = o->nodata;
+    request->part = o->part;
+    request->part.has_indices = options_given(o, "--roi");
+    request->part.has_world = options_given(o, "--roi-world");
+    request->mask = o->mask;
     return 0;
 }
 
@@ -71,6 +77,14 @@ int input_select(const read_request *request, dataset *d, scalar *out) {
         notice("--nodata %s: no %s of %s%s%s equals it: nothing is left out", shortest_number(request->nodata).text,
                out->is_averaged ? "cell's value" : "sample", out->name[0] ? "field '" : "the input", out->name,
                out->name[0] ? "'" : "");
+    return status || !request->mask ? status : mask_apply(request, d, out);
+}
+
+int input_take_parts(dataset *d) {
+    int status = 0;
+    for (int n = 0; n < d->block_count; n++)
+        for (int m = 0; m < d->blocks[n].field_count && !status; m++)
+            status = part_field(d, &d->blocks[n], &d->blocks[n].fields[m], &d->blocks[n].fields[m]);
     return status;
 }
 
@@ -113,6 +127,9 @@ int input_overwrite_check(const options *o, const dataset *d, const char *path) 
         if (in.st_dev == out.st_dev && in.st_ino == out.st_ino && S_ISREG(in.st_mode))
             return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
     }
+    if (o->mask && !stat(o->mask, &in) && !stat(path, &out) && in.st_dev == out.st_dev && in.st_ino == out.st_ino &&
+        S_ISREG(in.st_mode))
+        return fail(STATUS_USAGE, "-o %s is the mask itself: name another file", path);
     if (d && file_list_has(&d->files, path))
         return fail(STATUS_USAGE, "-o %s is a file that the input names, read as part of it: name another file", path);
     return 0;

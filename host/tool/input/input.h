@@ -14,8 +14,12 @@ int input_request(const options *o, read_request *request);
 int input_read(const read_request *request, dataset *d);
 
 /* Chooses the field by --field, --component and --nodata, with notices where it had to be averaged,
- * and where --nodata is nowhere in it. */
+ * and where --nodata is nowhere in it; leaves out what --mask does. */
 int input_select(const read_request *request, dataset *d, scalar *out);
+
+/* Gives all fields the values of their block's part, for what is told of them; to be called behind input_select, which
+ * wants the values of cells around a part. */
+int input_take_parts(dataset *d);
 
 /* The field's samples, an array per block, for statistics: of points that some cell of three dimensions uses, or of all
  * where no block has such a cell; from malloc, NULL with its failure's text without memory. */
