@@ -208,7 +208,8 @@ typedef struct near_crossing {
     long double distance;
 } near_crossing;
 
-/* Those near enough along the edges that keep the sample in its faces, to samples that no earlier turn took. */
+/* Those near enough along the edges that keep the sample in its faces. One just at the threshold is the inside
+ * sample's. */
 static int near_crossings(snapped *w, const int64_t p[3], const sample_link *l, near_crossing out[STEPS]) {
     const bool inside = w->signs.inside[signs_index(&w->signs, p)];
     int count = 0;
@@ -223,10 +224,10 @@ static int near_crossings(snapped *w, const int64_t p[3], const sample_link *l, 
             keeps = keeps && (step_along(step, axis) == 0 || !(l->faces >> axis & 1));
         }
         grid_place(w->signs.grid, other, q);
-        if (!keeps || (w->sides[other] == SIDE_ON && sample_turn(&w->signs, q) < sample_turn(&w->signs, p))) continue;
+        if (!keeps) continue;
         const long double t = crossing_between(&w->signs, w->isovalue, p, q);
         w->doubtful = w->doubtful || (t != w->threshold && fabsl(t - w->threshold) <= 1e-6L * w->threshold);
-        if (t <= w->threshold) out[count++] = (near_crossing){other, t * sqrtl(spans)};
+        if (t < w->threshold || (inside && t == w->threshold)) out[count++] = (near_crossing){other, t * sqrtl(spans)};
     }
     return count;
 }

@@ -49,9 +49,9 @@ def test_bash(script, known):
             ("tetracubes ", known.keys() | {"--help", "--version", "--completion"}),
             ("tetracubes ex", {"extract"}),
             ("tetracubes extract --met", {"--method"}),
-            ("tetracubes extract --method ", {"tetra", "hybrid"}),
+            ("tetracubes extract --method ", {"tetra", "hybrid", "snap"}),
             ("tetracubes extract --method=h", {"hybrid"}),
-            ("tetracubes extract --method=", {"tetra", "hybrid"}),
+            ("tetracubes extract --method=", {"tetra", "hybrid", "snap"}),
             ("tetracubes extract x.nrrd --iso ", set()),
             ("tetracubes info --type f", {"f32", "f64"}),
             ("tetracubes generate gy", {"gyroid"}),
@@ -98,7 +98,7 @@ def test_zsh(script, known):
     expect(first[0] == "compdef _tetracubes tetracubes", f"zsh: {first[0]}")
     expect({line.split(":")[0] for line in first[1:]} >= known.keys(), f"zsh, commands: {first}")
     extract = zsh_completes(zsh, script, "tetracubes", "extract", "--")
-    expect("--method=[tetra (default)\\: tetrahedra, five per cube; hybrid\\: marching cubes whose]:M:(tetra hybrid)"
+    expect("--method=[tetra (default)\\: tetrahedra, five per cube; hybrid\\: marching cubes whose]:M:(tetra hybrid snap)"
            in extract, f"zsh, extract: {extract}")
     expect(any(line.startswith("-o[") and line.endswith(":FILE:_files") for line in extract), f"zsh, -o: {extract}")
 

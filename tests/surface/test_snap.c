@@ -513,8 +513,8 @@ static void test_figures(void) {
         printf("%s: %.3f times the triangles; facing uphill %.3f%% of them, of tetra's %.3f%%\n", shape_names[which],
                ratio, 100 * after, 100 * before);
         EXPECT(ratio < (which == WHITE_NOISE ? 0.75 : 0.3), "%s: %g times the triangles", shape_names[which], ratio);
-        /* of smooth fields a smaller share, of noise a greater one of fewer triangles */
-        EXPECT((which == WHITE_NOISE ? ratio : 1) * after <= before,
+        /* of smooth fields a smaller share; of noise, where every triangle is as long as its cube, some more */
+        EXPECT(which == WHITE_NOISE ? ratio * after <= 1.35 * before : after <= before,
                "%s: %g of the triangles face uphill, of tetra's %g", shape_names[which], after, before);
     }
 }
@@ -558,7 +558,7 @@ static void test_options(void) {
     tc_mesh *mesh = NULL;
     tc_grid *made = NULL;
     shape_make(SPHERE, 5, &grid, &how);
-    EXPECT(how.snap == 0.4, "the default is %g", how.snap);
+    EXPECT(how.snap == 0.5, "the default is %g", how.snap);
     EXPECT(tc_grid_create(reference, &grid, &made) == TC_OK, "no grid: %s", tc_message());
     for (int n = 0; n < 4; n++) {
         how.snap = refused[n];

@@ -25,7 +25,8 @@ RAW = ["--dims", "8,8,8", "--type", "u8"]
 VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
           "--method": ["hybrid"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
-          "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"]}
+          "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"],
+          "--snap": ["0.3"]}
 REFERENCE = ["--engine", "reference"]
 
 # Per case of the source: command, operand, more arguments. That of the option itself is added.
@@ -36,12 +37,13 @@ CASES = {
     "file_has_no_normals": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.stl"]),
     "has_no_main_engine": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_device": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "is_not_snap": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "is_not_raw": ("info", "u8.nrrd", []),
     "has_bytes": ("info", "u8.raw", RAW),
     "is_not_noise": ("generate", "sphere", [*RAW, "-o", "new.nrrd"]),
     "has_no_time": ("selftest", None, []),
     "has_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "-o", "a.ply"]),
-    "is_hybrid_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
+    "is_method_of_cubes": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
     "has_world_range": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "--roi-world", ":,:,:"]),
     "is_everything": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_cells": ("tetrahedralize", "u8.nrrd", ["-o", "new.vtu"]),

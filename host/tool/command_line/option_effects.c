@@ -59,7 +59,9 @@ static int is_everything(const situation *s) {
 
 static int has_no_cells(const situation *s) { return !has_cells(s); }
 
-static int is_hybrid_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_HYBRID; }
+static int is_method_of_cubes(const situation *s) { return has_cells(s) && s->o->method != TC_METHOD_TETRA; }
+
+static int is_not_snap(const situation *s) { return s->o->method != TC_METHOD_SNAP; }
 
 static int has_no_field(const situation *s) { return s->is_open; }
 
@@ -117,6 +119,9 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device"},
 
+    {COMMAND_EXTRACT, "--snap", BEFORE_READING, is_not_snap, REFUSED,
+     "--snap is the threshold of --method snap: give that too, or leave it out"},
+
     {READS, "--type", BEFORE_READING, is_not_raw, REFUSED, "--type" NOT_RAW},
     {READS, "--endian", BEFORE_READING, is_not_raw, REFUSED, "--endian" NOT_RAW},
     {READS, "--skip", BEFORE_READING, is_not_raw, REFUSED, "--skip" NOT_RAW},
@@ -133,8 +138,8 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--normals", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --normals are made of structured grids only"},
-    {COMMAND_EXTRACT, "--method", AFTER_READING, is_hybrid_of_cells, REFUSED,
-     "is unstructured: --method hybrid is for structured grids only"},
+    {COMMAND_EXTRACT, "--method", AFTER_READING, is_method_of_cubes, REFUSED,
+     "is unstructured: --method hybrid and snap are for structured grids only"},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi-world", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --roi-world" NOT_GRID},

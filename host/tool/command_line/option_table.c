@@ -71,7 +71,12 @@ const option option_table[] = {
      "classify only: count vertices, triangles and active cells, make no mesh"},
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,
      "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
-     "ambiguous cases the tetrahedra decide: fewer triangles, structured grids"},
+     "ambiguous cases the tetrahedra decide; snap: tetrahedra whose samples near\n"
+     "the surface are moved onto it, where its topology stays: a quarter of the\n"
+     "triangles, of better shape (both: structured grids)"},
+    {"--snap", NULL, "A", COMMAND_EXTRACT, VALUE_THRESHOLD, IN(snap), NULL,
+     "of --method snap: a sample is moved to a crossing at most this part of an\n"
+     "edge away, 0 to 0.5 (default: 0.5)"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},

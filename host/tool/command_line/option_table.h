@@ -25,6 +25,7 @@ typedef enum value_kind {
     VALUE_INDICES,   /* index_ranges */
     VALUE_RANGES,    /* world_ranges */
     VALUE_STEP,      /* int64_t[3], from 1; one number goes for all */
+    VALUE_THRESHOLD, /* double, 0 to 0.5 */
 } value_kind;
 
 typedef struct option {

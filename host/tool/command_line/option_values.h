@@ -43,8 +43,9 @@ typedef struct options {
     const char *output; /* NULL where not given, as all texts */
     const char *format;
     const char *device;
-    int engine; /* a tc_engine, or ENGINE_AUTO */
-    int method; /* a tc_method */
+    int engine;  /* a tc_engine, or ENGINE_AUTO */
+    int method;  /* a tc_method */
+    double snap; /* -1 where not given */
     const char *field;
     const char *carry;   /* names with commas between */
     int separate_blocks; /* a file for each */

@@ -65,6 +65,7 @@ int options_parse(enum command_bit command, const char *name, int argc, char **a
                    .bit = command,
                    .component = COMPONENT_OPEN,
                    .frame = -1,
+                   .snap = -1,
                    .type = -1,
                    .spacing = {1.0, 1.0, 1.0}};
     int only_operands = 0;

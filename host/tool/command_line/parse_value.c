@@ -219,6 +219,9 @@ int parse_value(const option *spec, const char *text, options *o) {
         o->has_nodata = 1;
         if (take_real(&text, &o->nodata) && !*text) return 0;
         return fail(STATUS_USAGE, "--nodata: give one finite number (NaN and infinities are missing in any case)");
+    case VALUE_THRESHOLD:
+        if (take_real(&text, place) && !*text && *(double *)place >= 0 && *(double *)place <= 0.5) return 0;
+        return fail(STATUS_USAGE, "%s: give one number from 0 to 0.5", spec->name);
     case VALUE_INDEX:
         status = parse_number(spec, text, INT_MAX, &number);
         *(int *)place = (int)number;
