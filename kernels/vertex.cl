@@ -62,7 +62,8 @@ inline_always void position_between(const slab *s, grid_arrays in, corner c, uin
 #if NORMALS
 
 /* The two samples whose difference along an axis is taken: central; one-sided at borders and beside missing samples;
- * the same sample twice, so 0, where both sides are a border or missing. */
+ * the same sample twice, so 0, where both sides are a border or missing. Functions get it by address: in a loop
+ * Mesa loses what is copied. */
 typedef struct neighbours {
     ulong before, after; /* in the sample buffer */
     uint first, last;    /* along the axis */
@@ -91,9 +92,9 @@ inline_always neighbours neighbours_of(grid_arrays in, const slab *s, const uint
     return n;
 }
 
-inline_always REAL sample_difference(grid_arrays in, neighbours n) {
-    REAL weight = n.weight;
-    return weight * SAMPLE_VALUE(in.samples[n.after]) - weight * SAMPLE_VALUE(in.samples[n.before]);
+inline_always REAL sample_difference(grid_arrays in, const neighbours *n) {
+    REAL weight = n->weight;
+    return weight * SAMPLE_VALUE(in.samples[n->after]) - weight * SAMPLE_VALUE(in.samples[n->before]);
 }
 
 inline_always REAL largest_of(const REAL v[3]) {
@@ -104,15 +105,15 @@ inline_always REAL largest_of(const REAL v[3]) {
 
 #if GRID
 
-inline_always REAL coordinate_difference(grid_arrays in, const slab *s, neighbours n, uint axis, uint row) {
-    REAL weight = n.weight;
+inline_always REAL coordinate_difference(grid_arrays in, const slab *s, const neighbours *n, uint axis, uint row) {
+    REAL weight = n->weight;
 #if GRID == 1
     global const float *positions = in.coordinates + OF_AXIS(axis, 0, s->nx, s->nx + s->ny);
-    return weight * (REAL)positions[n.last] - weight * (REAL)positions[n.first];
+    return weight * (REAL)positions[n->last] - weight * (REAL)positions[n->first];
 #else
     global const float *points = in.coordinates + row;
-    return weight * (REAL)points[3 * n.after + s->arrays.point_offset] -
-           weight * (REAL)points[3 * n.before + s->arrays.point_offset];
+    return weight * (REAL)points[3 * n->after + s->arrays.point_offset] -
+           weight * (REAL)points[3 * n->before + s->arrays.point_offset];
 #endif
 }
 
@@ -161,10 +162,10 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint ed
 #pragma unroll AXES_AT_ONCE
     for (uint axis = 0; axis < 3; axis++) { /* results enter at [2] and move down, so that no index varies */
         neighbours at_a = neighbours_of(in, s, a, axis), at_b = neighbours_of(in, s, b, axis);
-        REAL ga = sample_difference(in, at_a), gb = sample_difference(in, at_b);
+        REAL ga = sample_difference(in, &at_a), gb = sample_difference(in, &at_b);
         g[0] = g[1], g[1] = g[2], g[2] = ga + (REAL)t * (gb - ga);
 #if GRID == 1
-        REAL ja = coordinate_difference(in, s, at_a, axis, axis), jb = coordinate_difference(in, s, at_b, axis, axis);
+        REAL ja = coordinate_difference(in, s, &at_a, axis, axis), jb = coordinate_difference(in, s, &at_b, axis, axis);
         const REAL along = ja + (REAL)t * (jb - ja); /* positions along an axis change in that coordinate alone */
 #pragma unroll
         for (uint row = 0; row < 3; row++)
@@ -172,7 +173,8 @@ inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint ed
 #elif GRID == 2
 #pragma unroll
         for (uint row = 0; row < 3; row++) {
-            REAL ja = coordinate_difference(in, s, at_a, axis, row), jb = coordinate_difference(in, s, at_b, axis, row);
+            REAL ja = coordinate_difference(in, s, &at_a, axis, row);
+            REAL jb = coordinate_difference(in, s, &at_b, axis, row);
             j[0][row] = j[1][row], j[1][row] = j[2][row], j[2][row] = ja + (REAL)t * (jb - ja);
         }
 #endif

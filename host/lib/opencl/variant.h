@@ -29,6 +29,9 @@ const variant_rule *variant_rule_of(const tc_device_info *device);
 /* Whether the device's driver is among those that have been tried with the text it gets. */
 bool variant_tried(const tc_device_info *device);
 
+/* What the device's driver is known to do wrong and no trial is large enough to show; NULL where nothing is. */
+const char *variant_fault(const tc_device_info *device);
+
 kernel_variant variant_for(uint32_t work_items);
 
 #endif

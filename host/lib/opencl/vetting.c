@@ -128,8 +128,15 @@ static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged
 }
 
 tc_status device_vet(tc_context *context) {
+    const tc_device_info *d = &context->info;
+    const char *fault = variant_fault(d);
     kept_verdict v;
     if (context->is_trial) return TC_OK;
+    if (fault && (context->expert.child_trial || context->options.check_device))
+        return (tc_status)fail(TC_ERROR_WRONG_RESULT,
+                               "driver %s of %s (%s) %s, so that results are wrong: update the driver, use another "
+                               "device or the reference engine",
+                               d->driver, d->name, d->platform, fault);
     verdict_find(context, OPENING, &v);
     return v.verdict == TC_VERDICT_GOOD || v.verdict == TC_VERDICT_NONE ? TC_OK : verdict_fail(context, OPENING, &v);
 }
