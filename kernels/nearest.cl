@@ -8,7 +8,7 @@
 #define NEAREST_CL
 
 #include "crossing.cl"
-#include "link.h"
+#include "link_steps.cl"
 #include "words.cl"
 
 #ifdef REAL
@@ -28,9 +28,6 @@ inline_always bool near_enough(const slab *s, BITS sample, REAL difference) {
     const REAL distance = difference_of(half_of * ISOVALUE(&s->test), half_of * SAMPLE_VALUE(sample));
     return bits_inside(sample, &s->test) ? distance <= reach : distance < reach;
 }
-
-#define LINK_STEP(x, y, z) {x, y, z},
-constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};
 
 /* From a sample to those of its link, in the sample buffer. */
 inline_always long link_offset(const slab *s, uint n) {

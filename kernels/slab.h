@@ -64,7 +64,7 @@ enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 1
 
 /* Local memory that a group takes for every 32 of its work-items: at most kernel 2's table of a brick's rows
  * (emit_rows.cl). */
-enum { LOCAL_BYTES_PER_BRICK = 2816 };
+enum { LOCAL_BYTES_PER_BRICK = 3072 };
 
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
 #define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))

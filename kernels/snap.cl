@@ -8,7 +8,8 @@
  * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
  * 4. snap_wish: which samples are near enough to a crossing of theirs;
  * 5. snap_even, once for each colour of even samples (link.h), then snap_odd: samples of the colour that wish it and
- * are regular points (regular.cl) become zeros. They do not see each other, so their order does not matter;
+ * are regular points (regular_alone.cl, regular_groups.cl) become zeros. They do not see each other, so their order
+ * does not matter;
  * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
  */
 #ifndef SNAP_CL
@@ -111,14 +112,11 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
 /* ------------------------------------------------------------------------------------------------------------ passes
  */
 
-/* Of the samples in a set those that are regular points. */
-inline_always lanes set_snap(const slab *s, const brick_around *a, row_set r, bool spread, lanes wanted, bool odd) {
-    link_signs l;
-    const borders b = borders_of(s, r);
-    if (!lanes_any(wanted)) return 0;
-    link_load(s, a, r, spread, odd, true, &l);
-    return points_regular(&l, b.across, wanted, odd);
-}
+#if WORK_ITEMS == 1
+#include "snap_link_alone.cl"
+#else
+#include "regular_groups.cl"
+#endif
 
 kernel void snap_even(slab s, uint colour, global ulong *words, global const brick_state *bricks,
                       global const uint *near, global const uint *state, global const ulong *wishes) {

@@ -5,7 +5,7 @@
 #define SNAP_CROSSED_CL
 
 #include "cells.cl"
-#include "snap_link.cl"
+#include "snap_samples.cl"
 
 #if MISSING
 /* Samples of a set that is not spread of which all cubes in the grid are present. */

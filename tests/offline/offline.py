@@ -49,7 +49,7 @@ PLANTED = [
 
 # Registers of kernel 2 on GPUs of NVIDIA; where normals of rectilinear grids are made in double. Local memory for every
 # 32 work-items, as kernels/slab.h has it.
-EMIT_REGISTERS, EMIT_REGISTERS_DOUBLE, LOCAL_BYTES_PER_BRICK = 96, 112, 2816
+EMIT_REGISTERS, EMIT_REGISTERS_DOUBLE, LOCAL_BYTES_PER_BRICK = 96, 112, 3072
 
 
 def rules_broken(target, kernel, need, program):

@@ -1,13 +1,13 @@
 /*
- * regular.cl - method snap: whether the surface may be made to go through a sample, for LANES x 64 samples at once
+ * regular_alone.cl - regular points for a work-item alone: eight rows of samples at once
  *
  * Around a sample is its link (link.h), a sphere of triangles. The sample is a regular point if on the link the samples
  * inside are connected, those outside are too, and every sample there that is a vertex lies on a curve between them: in
  * the ring of link samples around it + and - change twice. On the grid's border links are disks and rings may be cut
  * open, with one change; and the ring in the border's plane is looked at too, so that the border's curves stay.
  */
-#ifndef REGULAR_CL
-#define REGULAR_CL
+#ifndef REGULAR_ALONE_CL
+#define REGULAR_ALONE_CL
 
 #include "lanes.cl"
 #include "link.h"
@@ -112,8 +112,8 @@ inline_always lanes joined_odd(const lanes set[LINK_EVEN], uint n) {
     return set[LINK_AXIS(b, 0)] | set[LINK_AXIS(b, 1)] | set[LINK_AXIS(c, 0)] | set[LINK_AXIS(c, 1)];
 }
 
-/* In which lanes a set of link samples is connected and not empty; only those of `wanted` matter. Starts from the first
- * sample of the set and adds what is joined. */
+/* For which samples a set of link samples is connected and not empty; only those of `wanted` matter. Starts from the
+ * first sample of the set and adds what is joined. */
 inline_always lanes connected(const lanes set[LINK_EVEN], lanes wanted, bool odd) {
     const uint count = odd ? LINK_ODD : LINK_EVEN;
     lanes seen[LINK_EVEN], any = 0, added, missed;
