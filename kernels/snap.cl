@@ -129,10 +129,11 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
-        around_make(&s, words, bricks, near[n], &a);
         for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
             const row_set r = set_spread(p.y, p.z, p.w, set, odd_y, odd_z);
             lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
+            if (!lanes_any(wanted)) continue;
+            around_make(&s, words, bricks, near[n], &a);
             wanted = set_snap(&s, &a, r, true, wanted, false);
             if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
         }
@@ -148,11 +149,16 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
     for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
-        around_make(&s, words, bricks, near[n], &a);
+        bool have_around = false;
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
             const row_set r = set_of_plane(p.y, p.z, p.w, set);
-            const lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
-            set_store(set_snap(&s, &a, r, false, wanted, true), wishes + index, r);
+            lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
+            if (lanes_any(wanted)) {
+                if (!have_around) around_make(&s, words, bricks, near[n], &a);
+                have_around = true;
+                wanted = set_snap(&s, &a, r, false, wanted, true);
+            }
+            set_store(wanted, wishes + index, r);
         }
     }
 }

@@ -61,7 +61,6 @@ inline_always void link_load(const slab *s, const brick_around *a, row_set r, bo
 inline_always lanes set_snap(const slab *s, const brick_around *a, row_set r, bool spread, lanes wanted, bool odd) {
     link_signs l;
     const borders b = borders_of(s, r);
-    if (!lanes_any(wanted)) return 0;
     link_load(s, a, r, spread, odd, &l);
     return points_regular(&l, b.across, wanted, odd);
 }
