@@ -69,6 +69,9 @@ enum { LOCAL_BYTES_PER_BRICK = 3072 };
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
 #define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))
 
+/* Kernels of method snap that take what they do by ticket; the passes over even samples have one each. */
+enum { TICKET_SIGN, TICKET_OPEN, TICKET_WISH, TICKET_CLOSE, TICKET_ODD, TICKET_EVEN, SNAP_TICKETS = TICKET_EVEN + 4 };
+
 /* Indices in a slab's head: STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
     STATE_TICKET,      /* next tile of kernel 1 */
@@ -79,7 +82,8 @@ enum {
     STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
     STATE_NEAR_BRICKS, /* method snap: bricks near the surface */
-    STATE_WORDS
+    STATE_SNAP_TICKET, /* its kernels' next tile or brick of these: one each */
+    STATE_WORDS = STATE_SNAP_TICKET + SNAP_TICKETS
 };
 
 /* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and

@@ -19,12 +19,26 @@
 #include "count.cl"
 #include "snap_crossed.cl"
 
+inline_always global uint *snap_ticket(const slab *s, global uint *state, uint ticket) {
+    return state + s->results.head_offset + STATE_SNAP_TICKET + ticket;
+}
+
+/* The next run of this length that the group takes. Called by the whole group. */
+inline_always uint run_take(global uint *ticket, uint length, local uint *shared) {
+    group_barrier();
+    if (get_local_id(0) == 0) shared[0] = length * atomic_inc(ticket);
+    group_barrier();
+    return shared[0];
+}
+
 kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ranges, global ulong *words,
                       global brick_state *bricks, global uint *state) {
     local sign_room room;
+    local uint shared[1];
     uint nonfinite = 0;
+    global uint *ticket = snap_ticket(&s, state, TICKET_SIGN);
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    for (uint n = (uint)get_group_id(0); n < s.tiling.tile_count; n += (uint)get_num_groups(0)) {
+    for (uint n = run_take(ticket, 1, shared); n < s.tiling.tile_count; n = run_take(ticket, 1, shared)) {
         const tile t = tile_locate(&s, n);
         for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
             layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &room);
@@ -58,28 +72,39 @@ kernel void snap_near(slab s, global const brick_state *bricks, global uint *nea
 }
 
 /* Work-items per brick: one for each of its rows, or one for all. */
-#define BRICK_ITEMS    (BRICK_WORDS / (WORK_ITEMS == 1 ? BRICK_WORDS : 1))
-#define GROUP_BRICKS   (WORK_ITEMS / BRICK_ITEMS)
-#define FIRST_BRICK    ((uint)get_group_id(0) * GROUP_BRICKS + (uint)get_local_id(0) / BRICK_ITEMS)
-#define BRICKS_FURTHER ((uint)get_num_groups(0) * GROUP_BRICKS)
-#define ITEM_ROW       ((uint)get_local_id(0) % BRICK_ITEMS)
+#define BRICK_ITEMS  (BRICK_WORDS / (WORK_ITEMS == 1 ? BRICK_WORDS : 1))
+#define GROUP_BRICKS (WORK_ITEMS / BRICK_ITEMS)
+#define OWN_BRICK    ((uint)get_local_id(0) / BRICK_ITEMS)
+#define ITEM_ROW     ((uint)get_local_id(0) % BRICK_ITEMS)
+
+/* Bricks near the surface that a group takes at once. */
+inline_always uint run_length(uint count) {
+    return clamp(count / (16 * (uint)get_num_groups(0)), (uint)GROUP_BRICKS, 256u);
+}
+
+/* Loops over the bricks of a run: n, and whether there is one for this work-item. */
+#define RUNS_OF(count, ticket)                                                                                         \
+    const uint length = run_length(count);                                                                             \
+    for (uint run = run_take(ticket, length, shared); run < count; run = run_take(ticket, length, shared))
+#define BRICKS_OF_RUN(count) for (uint end = min(run + length, count), step = run; step < end; step += GROUP_BRICKS)
 
 kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
-                      global const uint *state) {
+                      global uint *state) {
+    local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    for (uint step = 0; step < count; step += BRICKS_FURTHER) {
-        const uint n = step + FIRST_BRICK, number = n < count ? near[n] : 0, sign = bricks[number].sign;
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK, number = n < end ? near[n] : 0, sign = bricks[number].sign;
         const uint w = number % s.words_x, y0 = number / s.words_x % s.bricks_y * BRICK_ROWS;
         const uint z0 = s.results.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES;
-        for (uint row = ITEM_ROW; row < BRICK_WORDS && n < count; row += BRICK_ITEMS) {
+        for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
             const bool exists = y0 + row % BRICK_ROWS < s.ny && z0 + row / BRICK_ROWS < s.z1;
             global ulong *word = words + BRICK_WORDS * (ulong)number + row;
             if (sign != SIGN_MIXED) *word = exists ? sign_word(sign) & word_valid(&s, w) : 0;
             word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
         }
         group_barrier();
-        if (n < count && ITEM_ROW == 0) bricks[number].sign = SIGN_MIXED;
+        if (n < end && ITEM_ROW == 0) bricks[number].sign = SIGN_MIXED;
     }
 }
 
@@ -93,14 +118,17 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
 
 /* wishes: a word for each row of the bricks near the surface. */
 kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
-                      global const brick_state *bricks, global const uint *near, global const uint *state,
+                      global const brick_state *bricks, global const uint *near, global uint *state,
                       global ulong *wishes) {
+    local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     wish_room room;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     wishes_begin(&s, &room);
-    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_WISH)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK;
+        if (n >= end) continue;
         around_make(&s, words, bricks, near[n], &a);
         wishes_make(&s, &a, brick_place_of(&s, near[n]), near[n], samples, cells, wishes, &room);
     }
@@ -119,14 +147,17 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
 #endif
 
 kernel void snap_even(slab s, uint colour, global ulong *words, global const brick_state *bricks,
-                      global const uint *near, global const uint *state, global const ulong *wishes) {
+                      global const uint *near, global uint *state, global const ulong *wishes) {
+    local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS], odd_j = colour >> 1;
     const uint odd_k = COLOUR_EVEN(odd_j, 0) == colour ? 0 : 1;
     const uint odd_y = (odd_j ^ (uint)s.first[1]) & 1, odd_z = (odd_k ^ (uint)s.first[2]) & 1;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     global ulong *zeros = words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
-    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_EVEN + colour)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK;
+        if (n >= end) continue;
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
         for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
@@ -142,11 +173,14 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
 
 /* What becomes of the odd samples replaces the wishes. */
 kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
-                     global const uint *state, global ulong *wishes) {
+                     global uint *state, global ulong *wishes) {
+    local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_ODD)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK;
+        if (n >= end) continue;
         const ulong index = BRICK_WORDS * (ulong)near[n];
         const brick_place p = brick_place_of(&s, near[n]);
         bool have_around = false;
@@ -163,15 +197,18 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
     }
 }
 
-kernel void snap_close(slab s, global ulong *words, global const uint *near, global const uint *state,
+kernel void snap_close(slab s, global ulong *words, global const uint *near, global uint *state,
                        global const ulong *last) {
+    local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     words += BRICK_WORDS * (UNIFORM_BRICKS + (ulong)s.snapping.zero_bricks);
-    for (uint n = FIRST_BRICK; n < count; n += BRICKS_FURTHER)
-        for (uint row = ITEM_ROW; row < BRICK_WORDS; row += BRICK_ITEMS) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_CLOSE)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK;
+        for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
             const ulong index = BRICK_WORDS * (ulong)near[n] + row;
             words[index] |= last[index];
         }
+    }
 }
 
 #endif
