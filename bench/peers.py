@@ -9,6 +9,7 @@ any new mesh anew.
 
   ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
   hybrid  the same by --method hybrid, up to 512^3 samples: about as many triangles as the others make
+  snap    likewise by --method snap: fewer
   vtk     vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
           are all cores unless --threads says otherwise
   vtk_mc  vtkMarchingCubes.Update(), likewise, up to 512^3 samples; it has one thread
@@ -51,7 +52,8 @@ REAL_VOLUME, REAL_ISO = "uniform/embryo.nrrd", 80.0  # of the folder TETRACUBES_
 REST = 0.01  # seconds before every turn: the others' threads have gone to sleep by then
 SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
 HALVED_FROM = 1024
-HYBRID_MOST = 512 ** 3  # samples
+METHODS = ["hybrid", "snap"]  # beside tetra
+METHODS_MOST = 512 ** 3  # samples
 LARGE_PEERS = ("vtk_mc", "skimage")  # which have turns of their own
 MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
 
@@ -332,10 +334,10 @@ def result_of(case, samples, reports, times, peers):
         result["beside_ms"] = spread(times["beside"])
     if "half" in times:
         result["half_ms"] = spread(times["half"])
-    if "hybrid" in times:
-        result["hybrid_ms"] = spread(times["hybrid"])
-        result["hybrid_triangles"] = reports["hybrid"]["cases"][0]["triangles"]
-        result["hybrid_ratio"] = round(statistics.median(times["vtk"]) / statistics.median(times["hybrid"]), 3)
+    for method in set(METHODS) & set(times):
+        result[f"{method}_ms"] = spread(times[method])
+        result[f"{method}_triangles"] = reports[method]["cases"][0]["triangles"]
+        result[f"{method}_ratio"] = round(statistics.median(times["vtk"]) / statistics.median(times[method]), 3)
     return result
 
 
@@ -351,9 +353,9 @@ def run_case(arguments, case, folder):
         for key, its in opened.items():
             progress(f"{case.name}: verifying")
             ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
-        if samples.count() <= HYBRID_MOST and case.grid == "uniform":
-            progress(f"{case.name}: verifying the hybrid")
-            ours["hybrid"] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, "hybrid")
+        for method in METHODS if samples.count() <= METHODS_MOST and case.grid == "uniform" else []:
+            progress(f"{case.name}: verifying method {method}")
+            ours[method] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, method)
         peers = peers_of(samples, case.iso)
         large = {key: peer for key, peer in peers.items() if key in LARGE_PEERS}
         fast = {key: peer for key, peer in peers.items() if key not in large}
@@ -408,9 +410,10 @@ def print_row(result):
     if "half_ms" in result:
         growth = result["extract_ms"]["median"] / result["half_ms"]["median"]
         print(f"    {growth:.2f} times the time of half the size, {shown(result['half_ms'])}", flush=True)
-    if "hybrid_ms" in result:
-        print(f"    hybrid: {shown(result['hybrid_ms'])}, {result['hybrid_triangles']} triangles; vtkFlyingEdges3D takes "
-              f"{result['hybrid_ratio']:.2f} times as long", flush=True)
+    for method in METHODS:
+        if f"{method}_ms" in result:
+            print(f"    {method}: {shown(result[f'{method}_ms'])}, {result[f'{method}_triangles']} triangles; "
+                  f"vtkFlyingEdges3D takes {result[f'{method}_ratio']:.2f} times as long", flush=True)
 
 
 def find_bench():

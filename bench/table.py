@@ -16,6 +16,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 README = os.path.join(os.path.dirname(HERE), "README.md")
 PAGE = os.path.join(HERE, "README.md")
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
+METHODS = ["hybrid", "snap"]  # beside tetra
 PEERS = [("vtk", "vtkFlyingEdges3D, ms"), ("vtk_mc", "vtkMarchingCubes, ms"), ("skimage", "scikit-image, ms")]
 GRID_PEERS = [("vtk_contour", "vtkContourFilter"), ("vtk_linear", "vtkContour3DLinearGrid")]  # of grids not uniform
 HEADLINES = {"sphere", "gyroid", "marschner-lobb"}  # fields of the tables in bench/README.md
@@ -60,23 +61,27 @@ def peer_name(peer):
     return f"{peer['case'].split()[0]} {size(peer['dims'])} {peer['type']}{'' if grid == 'uniform' else ', ' + grid}"
 
 
-def hybrid_cell(peer):
-    """The hybrid's median, and how many times that Flying Edges takes."""
-    if "hybrid_ms" not in peer:
+def method_cell(peer, method):
+    """A method's median, and how many times that Flying Edges takes."""
+    if f"{method}_ms" not in peer:
         return ""
-    median = peer["hybrid_ms"]["median"]
+    median = peer[f"{method}_ms"]["median"]
     return f"{number(median)} (**{peer['vtk_ms']['median'] / median:.2f}**)"
+
+
+def method_triangles(peer, method):
+    return f"{peer[f'{method}_triangles']:,}" if f"{method}_triangles" in peer else ""
 
 
 def peers_table(peers):
     """With a column for each peer that any of them has."""
     present = [(key, title) for key, title in PEERS if any(f"{key}_ms" in peer for peer in peers)]
-    head = ["samples", "Tetracubes, ms", *(title for _, title in present), "hybrid, ms", "triangles",
-            "VTK's triangles", "hybrid's triangles", "× memory limit"]
-    rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present), hybrid_cell(peer),
-             f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
-             f"{peer['hybrid_triangles']:,}" if "hybrid_triangles" in peer else "", f"{peer['limit_ratio']:.1f}"]
-            for peer in peers]
+    methods = [method for method in METHODS if any(f"{method}_ms" in peer for peer in peers)]
+    head = ["samples", "Tetracubes, ms", *(title for _, title in present), *(f"{method}, ms" for method in methods),
+            "triangles", "VTK's triangles", *(f"{method}'s triangles" for method in methods), "× memory limit"]
+    rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present),
+             *(method_cell(peer, method) for method in methods), f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}",
+             *(method_triangles(peer, method) for method in methods), f"{peer['limit_ratio']:.1f}"] for peer in peers]
     return table(head, rows)
 
 
@@ -117,8 +122,8 @@ def peers_text(result, peers):
     text = [f"Beside other filters: VTK {vtk['version']} without normals. Flying Edges has {vtk['threads']} threads, the "
             "others have one. Each side makes a new mesh on every repeat, and all take turns in one run; "
             "vtkMarchingCubes and scikit-image take turns with a second series of ours. Times are medians, ours with "
-            "the least and the greatest. In bold: its time divided by ours; in the hybrid's column: Flying "
-            "Edges' time divided by the hybrid's." + growth_text(peers), peers_table(uniform)]
+            "the least and the greatest. In bold: its time divided by ours; in the columns of other methods: "
+            "Flying Edges' time divided by the method's." + growth_text(peers), peers_table(uniform)]
     if others:
         text += ["Grids that are not uniform. The other filter uses as many threads as it can, merges points, and has "
                  "its scalar tree for the second isovalue:", grid_peers_table(others)]
@@ -233,15 +238,16 @@ def brief_row(peer):
     """The first of the other programs is the fastest of them."""
     key, title = next((key, title.removesuffix(", ms")) for key, title in PEERS + GRID_PEERS if f"{key}_ms" in peer)
     theirs, ours = peer[f"{key}_ms"]["median"], peer["extract_ms"]["median"]
-    return [peer_name(peer), number(ours), number(peer["hybrid_ms"]["median"]) if "hybrid_ms" in peer else "", title,
-            number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
+    methods = [number(peer[f"{method}_ms"]["median"]) if f"{method}_ms" in peer else "" for method in METHODS]
+    return [peer_name(peer), number(ours), *methods, title, number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
             if "vtk_triangles" in peer else f"{peer[f'{key}_triangles']:,}"]
 
 
 def brief(result):
     """The section of a machine in the project's README: nothing of one without peers."""
     peers = list(filter(is_headline_peer, result.get("peers", [])))
-    head = ["samples", "Tetracubes, ms", "hybrid, ms", "VTK's filter", "its ms", "times ours", "our triangles", "VTK's"]
+    head = ["samples", "Tetracubes, ms", *(f"{method}, ms" for method in METHODS), "VTK's filter", "its ms",
+            "times ours", "our triangles", "VTK's"]
     return [f"On {result['cpu']}, {result['cores']} cores, OpenCL device {result['device']}, beside VTK "
             f"{result['vtk']['version']} ({result['date']}):", table(head, map(brief_row, peers))] if peers else []
 
