@@ -94,13 +94,12 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     words += UNIFORM_BRICKS * BRICK_WORDS;
     RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK, number = n < end ? near[n] : 0, sign = bricks[number].sign;
-        const uint w = number % s.words_x, y0 = number / s.words_x % s.bricks_y * BRICK_ROWS;
-        const uint z0 = s.results.word_z + number / s.words_x / s.bricks_y * BRICK_PLANES;
+        const uint n = step + OWN_BRICK, number = near[min(n, end - 1)], sign = bricks[number].sign;
+        const brick_place p = brick_place_of(&s, number);
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
-            const bool exists = y0 + row % BRICK_ROWS < s.ny && z0 + row / BRICK_ROWS < s.z1;
+            const bool exists = p.y + row % BRICK_ROWS < s.ny && p.z + row / BRICK_ROWS < s.z1;
             global ulong *word = words + BRICK_WORDS * (ulong)number + row;
-            if (sign != SIGN_MIXED) *word = exists ? sign_word(sign) & word_valid(&s, w) : 0;
+            if (sign != SIGN_MIXED) *word = exists ? sign_word(sign) & word_valid(&s, p.w) : 0;
             word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
         }
         group_barrier();
