@@ -571,14 +571,48 @@ static void test_options(void) {
     tc_grid_destroy(made);
 }
 
+/* Windows of sign words reach so far beyond a slab that the samples there are snapped as in the whole. */
+static void test_slabs(tc_context_options options) {
+    enum { SIZE = 34 };
+    tc_grid_options grid;
+    tc_extract_options how;
+    tc_mesh_data whole, other;
+    uint32_t slabs = 0;
+    shape_make(WHITE_NOISE, SIZE, &grid, &how);
+    grid.dims[0] = 12, grid.dims[1] = 12, grid.dims[2] = (int64_t)SIZE * SIZE * SIZE / 144;
+    if (!device || !extract(reference, &grid, &how, &meshes[1], &whole)) return;
+    for (options.max_memory_bytes = 4 << 20; options.max_memory_bytes > 1 << 20;
+         options.max_memory_bytes -= options.max_memory_bytes / 40) {
+        tc_context *small = context_open(&options);
+        tc_grid *made = NULL;
+        if (!tc_grid_create(small, &grid, &made) && !tc_extract(made, &how, &meshes[2])) {
+            other = (tc_mesh_data){.struct_size = sizeof other};
+            EXPECT(!tc_mesh_get(meshes[2], &other), "%s", tc_message());
+            const char *difference = mesh_difference(&whole, &other);
+            EXPECT(!difference, "%u slabs: %s", other.slab_count, difference);
+            expect_within(small, options.max_memory_bytes, "slabs");
+            slabs = other.slab_count > slabs ? other.slab_count : slabs;
+        }
+        tc_grid_destroy(made);
+        tc_context_destroy(small);
+    }
+    EXPECT(slabs >= 3, "no budget makes more than %u slabs", slabs);
+}
+
+/* test_snap [groups] [SEED SMALL LARGE]: groups: kernels for groups of work-items, on fewer grids. */
 int main(int argc, char **argv) {
+    const bool groups = argc > 1 && !strcmp(argv[1], "groups");
+    argc -= groups, argv += groups;
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 1996;
-    const uint64_t small = argc > 2 ? strtoull(argv[2], NULL, 0) : 3000;
-    const uint64_t large = argc > 3 ? strtoull(argv[3], NULL, 0) : 40;
+    const uint64_t small = argc > 2 ? strtoull(argv[2], NULL, 0) : groups ? 300 : 3000;
+    const uint64_t large = argc > 3 ? strtoull(argv[3], NULL, 0) : groups ? 10 : 40;
     tc_context_options options;
-    tc_context_options_init(&options);
+    tc_expert_options expert;
+    options_init(&options, &expert);
+    if (groups) groups_begin(), expert.work_items = 32;
     reference = reference_open();
     if (device_exists()) device = context_open(&options);
+    test_slabs(options);
     const bool skipped = !device;
     for (uint64_t n = 0; n < small; n++) run(seed + n, false);
     for (uint64_t n = 0; n < large; n++) run(seed + n, true);
