@@ -61,7 +61,8 @@ inline_always uint nearest_inside(const slab *s, global const BITS *at, const lo
     return near_enough(s, sample, across) && across * ACROSS > along ? nearest_across : nearest;
 }
 
-/* Whether such a sample is near enough to a crossing. */
+/* Whether such a sample is near enough to a crossing: the sample of its link that differs most on the other side has
+ * the nearest one along its kind of edge. */
 inline_always bool wishes_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
     const REAL half_of = (REAL)0.5f, here = SAMPLE_VALUE(*at);
     REAL least = here, most = here;

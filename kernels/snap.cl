@@ -7,9 +7,8 @@
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
  * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
  * 4. snap_wish: which samples are near enough to a crossing of theirs;
- * 5. snap_even, once for each colour of even samples (link.h), then snap_odd: samples of the colour that wish it and
- * are regular points (regular_alone.cl, regular_groups.cl) become zeros. They do not see each other, so their order
- * does not matter;
+ * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: those that wish it and are regular points
+ *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other;
  * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
  */
 #ifndef SNAP_CL

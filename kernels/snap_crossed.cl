@@ -25,8 +25,9 @@ inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_s
 }
 #endif
 
-/* Which samples of a plane's rows have a crossing along which they may move: to the rows a step away in y and z, at the
- * same x in *along, at lower or higher x in *across. moves: those that may take this step in y and z; moves_x: in x. */
+/* Adds the samples of a plane's rows that have a crossing with a sample a step away in y and z: at the same x, where
+ * `straight`, to *along; at lower or higher x, where `aside`, to *across. Only those that may move there: `moves` in y
+ * and z, `moves_x` in x. */
 inline_always void crossed_beside(const slab *s, const brick_around *a, row_set r, int step_y, int step_z, lanes sign,
                                   lanes moves, lanes moves_x, bool straight, bool aside, lanes *along, lanes *across) {
     const lanes beside = words_beside(s, a, r, false, step_y, step_z, 0, false);
@@ -56,10 +57,12 @@ inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r
     return (along | (across & samples_even(s, r))) & samples_valid(s, r);
 }
 
-/* Of these the samples of which all cubes are present; none where a set is outside the grid or the window. */
+/* Of these the samples of which all cubes are present; none where a set is outside the grid, or in a plane at the end
+ * of the window whose neighbours are not there: a slab's own samples are further in. */
 inline_always lanes rows_wanted(const slab *s, const brick_around *a, row_set r, const borders *b,
                                 global const ulong *cells) {
-    if (r.y >= s->ny || r.z >= s->z1) return 0;
+    const bool cut_below = r.z == s->results.word_z && r.z > 0, cut_above = r.z + 1 == s->z1 && s->z1 < s->nz;
+    if (r.y >= s->ny || r.z >= s->z1 || cut_below || cut_above) return 0;
     lanes wanted = rows_crossed(s, a, r, b);
 #if MISSING
     if (lanes_any(wanted)) wanted &= cubes_around(s, cells, r);
