@@ -173,6 +173,27 @@ class Structured(GridCase):
         for key in ("euler_characteristic", "components", "nonmanifold_edges"):
             self.assertEqual(hybrid[key], tetra[key], key)
 
+    def test_snap(self):
+        """Of a smooth field: fewer triangles than marching cubes makes, hardly a sliver, the topology of tetra."""
+        volume = self.generate("gyroid", "g.nrrd", "40,40,40", "f32")
+        _, tetra = self.surface(volume, "--iso", "127.5")
+        _, hybrid = self.surface(volume, "--iso", "127.5", "--method", "hybrid")
+        for threshold, most in ((0.4, 0.3), (0.5, 0.25)):
+            report, snap = self.surface(volume, "--iso", "127.5", "--method", "snap", "--snap", str(threshold))
+            self.assertEqual(report["method"], "snap")
+            self.assertLess(snap["triangles"], most * tetra["triangles"])
+            self.assertLess(snap["triangles"], 0.75 * hybrid["triangles"])
+            self.assertGreater(snap["smallest_angle_median"], 44)
+            self.assertLess(snap["angles_below_10"], 0.02)
+            self.assertLess(snap["angles_below_10"], 0.2 * tetra["angles_below_10"])
+            for key in ("euler_characteristic", "components", "nonmanifold_edges", "nonmanifold_vertices",
+                        "misoriented_edges"):
+                self.assertEqual(snap[key], tetra[key], key)
+        _, usual = self.surface(volume, "--iso", "127.5", "--method", "snap")
+        self.assertEqual(usual["hash"], snap["hash"])
+        for wrong in ("0.6", "-0.1", "x", "nan", ""):
+            self.refuses(2, "extract", volume, "--iso", "1", "--method", "snap", "--snap", wrong, says="--snap")
+
     def test_parity_goes_by_extent(self):
         self.needs_xml()
         points = lattice(self.dims)
