@@ -287,7 +287,7 @@ MUTANTS = [
            ("host/lib/opencl/context.c", "test_fork", "context->process != getpid();", "context->process == 0;",
             "contexts of the parent are used by a child")),
     *point("memory budgets",
-           ("host/lib/structured/slab_plan.c", "test_budget", "(unsigned long long)plan_budget(context, grid));",
+           ("host/lib/structured/slab_plan.c", "test_budget", "(unsigned long long)plan_budget(context, grid, zeros));",
             "(unsigned long long)bytes);", "a budget is advised that does not suffice")),
     *point("inputs that change",
            ("host/lib/reference/reference.c", "test_changing", "if (r->mesh && r->vertex_count < r->mesh->vertex_count) {",
