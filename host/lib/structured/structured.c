@@ -99,11 +99,13 @@ static tc_status workspace_reserve(run *r) {
                                    {&w->state, state_bytes(r), "the scan"},
                                    {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
-    if (r->context->workspace_grid != r->grid && r->context->options.max_memory_bytes) {
+    const bool known = r->context->workspace_grid == r->grid && r->context->workspace_plan == plan;
+    if (!known && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
-        workspace_release(r->context); /* with buffers of another grid it could exceed the budget */
+        workspace_release(r->context); /* with buffers of another plan it could exceed the budget */
     }
     r->context->workspace_grid = r->grid;
+    r->context->workspace_plan = plan;
     windows_trim(r);
     tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
     for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
