@@ -26,8 +26,8 @@ void measure_begin(tc_context *context, const samples *s, tc_method method, doub
     m->first.method = method;
     m->second = m->first;
     m->second.isovalue = second_iso;
-    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s%s", s->name, dims[0], dims[1],
-             dims[2], tc_type_name(s->grid.type), method == TC_METHOD_HYBRID ? " hybrid" : "");
+    snprintf(m->label, sizeof m->label, "%.60s %" PRId64 "x%" PRId64 "x%" PRId64 " %s%s%s", s->name, dims[0], dims[1],
+             dims[2], tc_type_name(s->grid.type), method ? " " : "", method ? tc_method_name(method) : "");
     *result = (case_result){.field = s->name,
                             .type = s->grid.type,
                             .grid = bench_grid_names[s->placed],

@@ -107,8 +107,8 @@ static void print_row(const case_result *c) {
         snprintf(size, sizeof size, "%" PRId64 "^3", d[0]);
     else
         snprintf(size, sizeof size, "%" PRId64 "x%" PRId64 "x%" PRId64, d[0], d[1], d[2]);
-    snprintf(name, sizeof name, "%.24s %s %s%s", c->field, size, tc_type_name(c->type),
-             c->method == TC_METHOD_HYBRID ? " hybrid" : "");
+    snprintf(name, sizeof name, "%.24s %s %s%s%s", c->field, size, tc_type_name(c->type), c->method ? " " : "",
+             c->method ? tc_method_name(c->method) : "");
     snprintf(times, sizeof times, "%.2f (%.2f - %.2f)", c->extract_ms.median, c->extract_ms.min, c->extract_ms.max);
     double warm_ms = c->first_times.total_ms.median;
     printf("%-25s %11" PRIu64 " %22s %9.2f   %8.2f   %8.2f %7.2f %9.3f %6.2f %9.2f  %8.2f %9.1f\n", name,
