@@ -4,6 +4,7 @@ from mutant import group
 SLABS_MISSING = {"tests": ("test_device, slabs with missing",)}
 SCATTERED = {"tests": ("test_complex, scattered",)}
 SNAP = {"tests": ("test_snap",)}
+SNAP_SLABS = {"tests": ("test_device, snap in slabs", "test_device, snap in slabs with missing")}
 
 MUTANTS = [
     *group("host/lib/grid/tables.c",
@@ -385,6 +386,11 @@ MUTANTS = [
             "slabs: samples begin a plane late", SLABS_MISSING),
            ("plan->slab_layers + layers_before(plan) + layers_after(plan)", "plan->slab_layers + layers_before(plan)",
             "slabs: words without the next layer"),
+           ("return plan->zeros ? 2 : 0; }", "return 0; }", "snap: windows begin with the slab", SNAP_SLABS),
+           ("return plan->zeros ? 2 : 0; }", "return plan->zeros ? 1 : 0; }", "snap: windows begin one layer before the slab",
+            {**SNAP_SLABS, "same": "along z only colours of the other parity of k follow each other, odd samples aside: what "
+                                   "becomes of a sample depends on four planes"}),
+           ("return plan->zeros ? 2 : 1; }", "return 1; }", "snap: windows end one layer after the slab", SNAP_SLABS),
            ("min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES",
             "min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES - 1", "slabs end a plane early"),
            ("return *bytes <= budget && largest", "return *bytes / 4 <= budget && largest",
@@ -400,7 +406,12 @@ MUTANTS = [
            ("r->grid->device->missing = true;", "(void)0;", "samples that are not finite are not noticed",
             {"tests": ("test_random, f32",)}),
            ("brick_fill(r->context, words, sign, sign == SIGN_INSIDE ? UINT64_MAX : 0);", "brick_fill(r->context, words, sign, 0);",
-            "the constant words of inside bricks")),
+            "the constant words of inside bricks"),
+           ("status == TC_ERROR_MEMORY && whole && !grid->cl_samples", "false",
+            "snap: refused where its words do not fit beside all samples", SNAP_SLABS)),
+    *group("host/lib/structured/structured_snap.c",
+           ("for (cl_uint colour = 0; colour < COLOUR_ODD && !status; colour++) {",
+            "for (cl_uint colour = COLOUR_ODD; !status && colour-- > 0;) {", "colours: the last of the even ones first")),
     *group("host/lib/structured/structured_slab.c",
            ("s->results.word_z : s->z0 ? s->z0 - 1 : 0;", "s->results.word_z : s->z0;", "slabs: present cells begin a plane late",
             SLABS_MISSING),
