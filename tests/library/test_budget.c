@@ -53,6 +53,7 @@ static void grid_describe(const subject *s, tc_grid_options *grid) {
     grid->samples = s->type == TC_U8 ? (const void *)bytes : values;
     if (s->blanked) grid->blanked_samples = blanked_samples, grid->blanked_cells = blanked_cells;
     if (s->curvilinear) grid->points = points;
+    grid->first_index[2] = s->method == TC_METHOD_SNAP; /* then slabs depend on most of what follows them */
     for (int axis = 0; axis < 3 && s->rectilinear; axis++) grid->axes[axis] = axes;
 }
 
