@@ -162,6 +162,7 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
     uint64_t bytes;
     plan->words_whole = !plan->zeros; /* which go with all samples or with windows of them */
     if (plan->words_whole) plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
+    if (plan->samples_whole && !plan->words_whole) plan->overlaps = false; /* slabs share the window of words */
     return layers_fit(context, grid, plan, most, budget);
 }
 
