@@ -160,8 +160,9 @@ static const option table[] = {
      "others at 512 but sphere (u8, f32), gyroid and empty (u8). What does\n"
      "not fit the free memory is left out, with a notice"},
     {"--method", "M", take_method,
-     "tetra, five tetrahedra per cell (the default), or hybrid, marching\n"
-     "cubes with the same topology"},
+     "tetra, five tetrahedra per cell (the default); hybrid, marching cubes\n"
+     "with the same topology; or snap, tetrahedra with samples moved onto\n"
+     "the surface"},
     {"--grid", "G", take_grid,
      "uniform (the default), rectilinear or curvilinear: the last two move\n"
      "each sample a small step off its uniform position.\n"

@@ -108,6 +108,14 @@ class Wrong(DriverCase):
                      says="gives wrong results")
         self.falls_back("corrupt drop cells_mark", volume)
 
+    def test_snap_without_fp64(self):
+        """Method snap of samples that need double precision."""
+        for kind in ("f64", "i32", "u32"):
+            volume = self.generate("sphere", f"{kind}.nrrd", "30,20,10", kind)
+            self.refuses(1, "extract", volume, "--iso", "127.5", "--method", "snap", "-o", self.path("a.ply"),
+                         env=self.layer("lacks fp64"), says=f"no fp64.*{kind}.*reference")
+            self.falls_back("lacks fp64", volume, "--method", "snap", says="no fp64")
+
     def test_complexes(self):
         image = self.generate("sphere", "a.nrrd", "12,11,10", "f32")
         volume = self.path("a.vtu")

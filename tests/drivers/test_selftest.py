@@ -85,6 +85,14 @@ class Vectors(SelftestCase):
         self.refuses(2, "selftest", "--vectors", "a", "b", says="takes no 'b'")
         self.refuses(2, "selftest", "a", says="--vectors")
 
+    def test_without_fp64(self):
+        """What needs it is skipped."""
+        lines = self.right("noise 67 13 11 u8 127.5 snap", "noise 67 13 11 f64 128.1 snap",
+                           "gyroid 30 20 13 f64 127.5 tetra tetrahedra")
+        group, root = self.run_vectors(0, *lines, env=self.layer("lacks fp64"))
+        self.assertEqual((group["trials"], group["failed"], group["skipped"]), (1, 0, 2))
+        self.assertEqual([c.get("message") for c in root.iter("skipped")], ["the device has no fp64"] * 2)
+
     def test_file_of_the_tool(self):
         script = os.path.join(SOURCE, "host", "tool", "selftest", "vectors.py")
         done = subprocess.run([sys.executable, script, tool_case.TOOL, "--check"], stdout=subprocess.PIPE, text=True,

@@ -94,6 +94,32 @@ static void test_refusals(tc_context *context) {
     tc_grid_destroy(grid);
 }
 
+/* Method snap needs samples where vertices are made: of wide types it is refused, with the way out. */
+static void test_snap_refused(tc_context *context) {
+    static const tc_type wide[] = {TC_U32, TC_I32, TC_F64};
+    for (size_t n = 0; n < sizeof wide / sizeof *wide; n++) {
+        tc_grid_options options;
+        tc_extract_options how;
+        tc_counts counts = {.struct_size = sizeof counts};
+        tc_grid *grid = NULL;
+        tc_mesh *mesh = NULL;
+        grid_describe(&options, wide[n]);
+        tc_extract_options_init(&how);
+        how.isovalue = 500.25;
+        how.method = TC_METHOD_SNAP;
+        EXPECT(tc_grid_create(context, &options, &grid) == TC_OK, "a grid of %s: %s", tc_type_name(wide[n]),
+               tc_message());
+        EXPECT_REFUSED(tc_extract(grid, &how, &mesh), TC_ERROR_DEVICE, "snap without fp64");
+        EXPECT(!mesh && strstr(tc_message(), "fp64") && strstr(tc_message(), "reference") &&
+                   strstr(tc_message(), tc_type_name(wide[n])),
+               "%s", tc_message());
+        EXPECT_REFUSED(tc_count(grid, &how, &counts), TC_ERROR_DEVICE, "a count by snap without fp64");
+        how.method = TC_METHOD_TETRA;
+        EXPECT(tc_count(grid, &how, &counts) == TC_OK && counts.triangle_count > 1000, "after that: %s", tc_message());
+        tc_grid_destroy(grid);
+    }
+}
+
 /* The structured grid's own tetrahedra. */
 static void test_complex(tc_context *context) {
     static float points[3 * SAMPLES];
@@ -213,8 +239,10 @@ int main(void) {
         if (work_items == 1 || !tier_is_quick()) { /* of groups these are built for long */
             test_extract(context, work_items, TC_F64, TC_METHOD_HYBRID, false);
             test_extract(context, work_items, TC_F32, TC_METHOD_TETRA, true);
+            test_extract(context, work_items, TC_F32, TC_METHOD_SNAP, true);
         }
         test_refusals(context);
+        test_snap_refused(context);
         tc_context_destroy(context);
     }
     test_limits(layer);

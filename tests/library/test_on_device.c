@@ -192,6 +192,8 @@ static void test_refusals(const gpu *g, tc_grid *grid) {
     how.normals = 0;
     how.method = TC_METHOD_HYBRID;
     expect_refused(grid, &how, &mesh, "another method", "tc_count");
+    how.method = TC_METHOD_SNAP;
+    expect_refused(grid, &how, &mesh, "method snap", "tc_count");
     how.method = TC_METHOD_TETRA;
     EXPECT(!tc_emit(grid, &how, &mesh, NULL), "emission after refusals: %s", tc_message());
     EXPECT(!tc_extract(grid, &how, &host_mesh), "extraction: %s", tc_message());
@@ -285,6 +287,7 @@ int main(void) {
     test_surface(&g, grid, samples, 9000, 0, TC_METHOD_TETRA);
     test_surface(&g, grid, samples, 15000.5, 1, TC_METHOD_TETRA);
     test_surface(&g, grid, samples, 9000, 0, TC_METHOD_HYBRID);
+    test_surface(&g, grid, samples, 9000, 1, TC_METHOD_SNAP);
     test_surface(&g, grid, samples, 9000, 0, TC_METHOD_TETRA);
     test_refusals(&g, grid);
     test_grids_refused(&g, context, samples);

@@ -56,6 +56,12 @@ TESTS = {
     "test_hybrid, reference": test("surface/test_hybrid"),
     "test_snap": test("surface/test_snap"),
     "test_snap_links": test("surface/test_snap_links"),
+    "test_snap, u8": test("surface/test_snap", "*u8, *complete", device=True),
+    "test_device, snap": test("surface/test_device", "1 work-items*", ("snap",), device=True),
+    "test_device, snap in groups": test("surface/test_device", "32 work-items*", ("snap",), device=True),
+    "test_device, snap in slabs": test("surface/test_device", "gentle waves", ("snap",), device=True),
+    "test_device, snap in slabs with missing": test("surface/test_device", "gentle waves with missing samples", ("snap",),
+                                                    device=True),
     "test_patterns": test("surface/test_patterns", device=True),
     "test_random, u8": test("surface/test_random", "* u8, *nodata 0 *normals 0", device=True),
     "test_rare, alternating": test("surface/test_rare", "alternating*", device=True),
@@ -103,6 +109,7 @@ TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
 REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvilinear, reference",
              "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
 DEVICE = ["test_random, u8", "test_rare, one sample"]
+SNAPPED = ["test_snap, u8"]
 READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
 LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
@@ -132,6 +139,7 @@ FILES = {
     "host/lib/structured/slab_plan.c": ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_slab.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
+    "host/lib/structured/structured_snap.c": SNAPPED,
     "host/lib/structured/structured_emit.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/tetrahedra/complex_surface.c": ["test_complex, u8"],
     "host/lib/tetrahedra/complex_plan.c": ["test_complex, u8", "test_complex_slabs"],
@@ -153,6 +161,10 @@ FILES = {
     "host/common/far.h": ["test_far, reference"],
     "host/common/stored_types.c": READERS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
+    "kernels/snap": SNAPPED,
+    "kernels/regular.cl": SNAPPED,
+    "kernels/nearest.cl": SNAPPED,
+    "kernels/link.h": SNAPPED,
     "kernels/cells.cl": ["test_random, u8 with missing"],
     "kernels/": DEVICE,
 }

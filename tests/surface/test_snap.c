@@ -423,6 +423,31 @@ static void run(uint64_t seed, bool large) {
     expect_snapped(&grid, &how, kind, name);
 }
 
+/* The surface lies between bricks, each of which is on one side. */
+static void test_between_bricks(void) {
+    static const int64_t bricks[3] = {64, 8, 4};
+    static const double isovalues[3] = {120, 130, 140};
+    for (int axis = 0; axis < 3; axis++)
+        for (int n = 0; n < 3; n++) {
+            tc_grid_options grid;
+            tc_extract_options how;
+            char name[80];
+            tc_grid_options_init(&grid);
+            tc_extract_options_init(&how);
+            grid.dims[0] = 130, grid.dims[1] = 18, grid.dims[2] = 10;
+            grid.samples = memory;
+            for (int64_t m = 0; m < 130 * 18 * 10; m++) {
+                int64_t p[3];
+                grid_place(&grid, m, p);
+                sample_set(memory, TC_U8, m, p[axis] < bricks[axis] ? 100 : 160);
+            }
+            how.method = TC_METHOD_SNAP;
+            how.isovalue = isovalues[n];
+            snprintf(name, sizeof name, "between bricks along %c: u8, isovalue %g, complete", 'x' + axis, how.isovalue);
+            expect_snapped(&grid, &how, (grid_kind){true, true, true}, name);
+        }
+}
+
 /* ----------------------------------------------------------------------------------------------------------- figures
  */
 
@@ -616,6 +641,7 @@ int main(int argc, char **argv) {
     const bool skipped = !device;
     for (uint64_t n = 0; n < small; n++) run(seed + n, false);
     for (uint64_t n = 0; n < large; n++) run(seed + n, true);
+    test_between_bricks();
     test_figures();
     test_faults_are_found();
     test_options();

@@ -162,6 +162,7 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
     uint64_t bytes;
     plan->words_whole = !plan->zeros; /* which go with all samples or with windows of them */
     if (plan->words_whole) plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
+    if (plan->samples_whole && !plan->words_whole) plan->overlaps = false; /* slabs share the window of words */
     return layers_fit(context, grid, plan, most, budget);
 }
 
@@ -223,19 +224,20 @@ static tc_status plan_refuse(const tc_context *context, const tc_grid *grid, boo
                            (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid, zeros));
 }
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan) {
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool zeros, sample_place samples,
+                         slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     const uint64_t budget = context_budget(context);
-    *plan = plan_begin(grid, others != NULL);
+    *plan = plan_begin(grid, zeros);
     if (layer_samples > scan_samples)
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
                                (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
     const uint32_t most = layers_most(grid, plan);
     plan->samples_whole = plan->words_whole = true;
     plan->overlaps = !context->in_place;
-    if ((others && !others->samples_whole) || !plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
-        plan->samples_whole = others ? others->samples_whole : grid->cl_samples != NULL;
-        const uint64_t part = others && plan->samples_whole ? budget / 4 * 3 : budget / 2;
+    if (samples == SAMPLES_IN_WINDOWS || !plan_fits(context, grid, plan, most, budget / 4 * 3, &bytes)) {
+        plan->samples_whole = samples == SAMPLES_WHOLE || grid->cl_samples != NULL;
+        const uint64_t part = samples == SAMPLES_WHOLE ? budget / 4 * 3 : budget / 2;
         uint32_t layers = windows_fit(context, grid, plan, most, part);
         if (layers == 0 && plan->overlaps) {
             plan->overlaps = false;

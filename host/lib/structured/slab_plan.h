@@ -34,8 +34,12 @@ typedef struct slab_plan {
 uint64_t plan_budget(const tc_context *context, const tc_grid *grid, bool zeros);
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool zeros);
 
-/* others: the plan of the other methods, whose arrays the grid has on the device already; NULL: that one is made. */
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, const slab_plan *others, slab_plan *plan);
+/* Where a plan has the samples: whole where that fits; or as another plan of the grid has them. */
+typedef enum sample_place { SAMPLES_THAT_FIT, SAMPLES_WHOLE, SAMPLES_IN_WINDOWS } sample_place;
+
+/* zeros: of method snap. */
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool zeros, sample_place samples,
+                         slab_plan *plan);
 
 /* Shapes the tiles again where the context has changed to the other variant of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);

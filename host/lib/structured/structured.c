@@ -99,11 +99,13 @@ static tc_status workspace_reserve(run *r) {
                                    {&w->state, state_bytes(r), "the scan"},
                                    {&w->scratch, 8ull * plan->scratch_words * r->context->launch.work_groups, "halos"}};
     uint32_t word_windows = plan->words_whole ? 1 : plan_window_count(plan);
-    if (r->context->workspace_grid != r->grid && r->context->options.max_memory_bytes) {
+    const bool known = r->context->workspace_grid == r->grid && r->context->workspace_plan == plan;
+    if (!known && r->context->options.max_memory_bytes) {
         cl->Finish(r->context->queue);
-        workspace_release(r->context); /* with buffers of another grid it could exceed the budget */
+        workspace_release(r->context); /* with buffers of another plan it could exceed the budget */
     }
     r->context->workspace_grid = r->grid;
+    r->context->workspace_plan = plan;
     windows_trim(r);
     tc_status status = buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
     for (uint32_t n = 0; n < word_windows && !status; n++) status = word_buffers_reserve(r, &w->words[n]);
@@ -115,11 +117,30 @@ void structured_reshape(tc_grid *grid) {
     if (grid->device->snap_plan.layer_count) slab_plan_reshape(grid->context, grid, &grid->device->snap_plan);
 }
 
+/* Takes the whole arrays from the device: all methods have windows of them from now on. */
+static tc_status arrays_withdraw(tc_grid *grid) {
+    struct device_grid *device = grid->device;
+    slab_plan plan;
+    tc_status status = slab_plan_make(grid->context, grid, false, SAMPLES_IN_WINDOWS, &plan);
+    if (status) return status;
+    cl->Finish(grid->context->queue);
+    for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &device->arrays[array]);
+    grid->context->workspace_grid = NULL; /* its buffers are those of the plan before */
+    device->plan = plan;
+    return TC_OK;
+}
+
+/* Where the words of snap do not fit beside the whole arrays they may fit beside windows of them. */
 static tc_status plan_provide(tc_grid *grid, tc_method method) {
     struct device_grid *device = grid->device;
+    const bool whole = device->plan.samples_whole;
     if (method != TC_METHOD_SNAP || device->snap_plan.layer_count) return TC_OK;
     slab_plan plan;
-    tc_status status = slab_plan_make(grid->context, grid, &device->plan, &plan);
+    tc_status status = slab_plan_make(grid->context, grid, true, whole ? SAMPLES_WHOLE : SAMPLES_IN_WINDOWS, &plan);
+    if (status == TC_ERROR_MEMORY && whole && !grid->cl_samples) {
+        status = slab_plan_make(grid->context, grid, true, SAMPLES_IN_WINDOWS, &plan);
+        if (!status) status = arrays_withdraw(grid);
+    }
     if (!status) device->snap_plan = plan;
     return status;
 }

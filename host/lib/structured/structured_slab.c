@@ -105,7 +105,7 @@ tc_status structured_grid_create(tc_grid *grid) {
     grid->device = device;
     device->missing = grid->blanked_samples || grid->blanked_cells ||
                       (grid->has_nodata && value_bits(grid->type, grid->nodata, ignored));
-    tc_status status = slab_plan_make(grid->context, grid, NULL, &device->plan);
+    tc_status status = slab_plan_make(grid->context, grid, false, SAMPLES_THAT_FIT, &device->plan);
     uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");

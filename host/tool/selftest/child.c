@@ -100,10 +100,10 @@ static void name_trial(const trial *t, const launch *l, char *name, size_t bytes
                              [CHANGE_HUGE] = "huge",
                              [CHANGE_MIDPOINTS] = "midpoints"};
     const char *kinds[] = {"", ", rectilinear", ", curvilinear", ", tetrahedra"};
-    length +=
-        snprintf(name + length, bytes - (size_t)length, "%s%s%s%s%s%s%s", t->change ? ", " : "",
-                 t->change ? changes[t->change] : "", kinds[t->kind], t->method == TC_METHOD_HYBRID ? ", hybrid" : "",
-                 t->normals ? ", normals" : "", t->mirrored ? ", mirrored" : "", t->has_nodata ? ", nodata" : "");
+    length += snprintf(name + length, bytes - (size_t)length, "%s%s%s%s%s%s%s%s", t->change ? ", " : "",
+                       t->change ? changes[t->change] : "", kinds[t->kind], t->method ? ", " : "",
+                       t->method ? tc_method_name(t->method) : "", t->normals ? ", normals" : "",
+                       t->mirrored ? ", mirrored" : "", t->has_nodata ? ", nodata" : "");
     for (size_t n = 0; n < sizeof given / sizeof *given; n++)
         if (given[n].value)
             length += snprintf(name + length, bytes - (size_t)length, ", %s %" PRIu64, given[n].what, given[n].value);
@@ -144,18 +144,27 @@ static const char *launch_refusal(const group_run *r, const launch *l) {
     return l->division == TC_DIVISION_FP64 && !r->info.has_fp64 ? "the device has no fp64" : NULL;
 }
 
+/* Likewise for samples of a type. */
+static const char *samples_refusal(const tc_device_info *info, tc_type type, tc_method method, int is_complex) {
+    const int is_wide = type == TC_U32 || type == TC_I32 || type == TC_F64;
+    const int needs_fp64 = is_wide && (is_complex || method == TC_METHOD_SNAP);
+    return needs_fp64 && !info->has_fp64 ? "the device has no fp64" : NULL;
+}
+
 static int run_launch(group_run *r, const launch *l, int trial_count) {
     tc_context *device = NULL;
-    const char *refusal = launch_refusal(r, l);
     int status = 0;
     for (int t = 0; t < trial_count && !status; t++) {
         char name[300], text[700] = "";
         const int number = r->number++;
+        const trial *of = &r->group->trials[t];
+        const char *refusal = launch_refusal(r, l);
         if (number < r->job->first) continue;
-        name_trial(&r->group->trials[t], l, name, sizeof name);
+        if (!refusal) refusal = samples_refusal(&r->info, of->type, of->method, of->kind == KIND_COMPLEX);
+        name_trial(of, l, name, sizeof name);
         child_report("trial %d %s", number, name);
         if (!refusal && !device) status = open_device(r->job->device, l, &device);
-        if (!refusal && !status) status = run_trial(r, &r->group->trials[t], device, text, sizeof text);
+        if (!refusal && !status) status = run_trial(r, of, device, text, sizeof text);
         if (refusal)
             child_report("skipped %s", refusal);
         else if (!status)
@@ -199,8 +208,10 @@ static int is_quick(const vector *v) { return v->dims[0] * v->dims[1] * v->dims[
 static int run_vectors(const selftest_job *job) {
     vector_list list;
     tc_context *device = NULL;
+    tc_device_info info = {.struct_size = sizeof info};
     int number = 0, status = vectors_read(job->vectors, &list);
     if (!status) status = open_device(job->device, &(launch){0}, &device);
+    if (!status) status = library_status(tc_context_device(device, &info));
     for (int n = 0; n < list.count && !status; n++) {
         const vector *v = &list.vectors[n];
         char text[700] = "";
@@ -209,8 +220,12 @@ static int run_vectors(const selftest_job *job) {
         child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s, %s, %s", number - 1, v->field,
                      v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), shortest_number(v->isovalue).text,
                      tc_method_name(v->method), v->options);
-        status = vector_try(v, device, text, sizeof text);
-        if (!status) report_trial(text);
+        const char *refusal = samples_refusal(&info, v->type, v->method, v->is_complex);
+        if (!refusal) status = vector_try(v, device, text, sizeof text);
+        if (refusal)
+            child_report("skipped %s", refusal);
+        else if (!status)
+            report_trial(text);
     }
     tc_context_destroy(device);
     vectors_release(&list);

@@ -89,8 +89,8 @@ static int read_lines(FILE *file, const char *name, vector_list *list) {
         if (!*at || *at == '#') continue;
         status = parse_line(at, &v) ? append(list, &v)
                                     : fail(STATUS_INPUT,
-                                           "%s: line %d is no vector: FIELD NX NY NZ TYPE ISOVALUE tetra|hybrid "
-                                           "-|nodata=V|seed=S|tetrahedra VERTICES TRIANGLES HASH",
+                                           "%s: line %d is no vector: FIELD NX NY NZ TYPE ISOVALUE "
+                                           "tetra|hybrid|snap -|nodata=V|seed=S|tetrahedra VERTICES TRIANGLES HASH",
                                            name, number);
     }
     if (!status && ferror(file)) status = fail(STATUS_INPUT, "%s: %s", name, strerror(errno));

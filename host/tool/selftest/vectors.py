@@ -20,11 +20,11 @@ HEAD = """\
 # FIELD NX NY NZ TYPE ISOVALUE METHOD OPTIONS VERTICES TRIANGLES HASH
 #
 # FIELD: of `tetracubes generate --help`. Sample i of n along an axis lies at 2 i / (n - 1) - 1, computed in double; f32
-# rounds to nearest, integers truncate toward zero and saturate. METHOD: tetra (five tetrahedra per cube) or hybrid.
-# OPTIONS: - or, with commas between: nodata=V: samples equal to V are missing; seed=S of noise, else 0; tetrahedra: the
-# grid cut into tetrahedra and extracted as an unstructured one. Positions are in index space: sample (i, j, k) lies at
-# i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices, then the uint32 indices of all triangles, both
-# little-endian, in the order that kernels/README.md describes; 16 hexadecimal digits.
+# rounds to nearest, integers truncate toward zero and saturate. METHOD: tetra (five tetrahedra per cube), hybrid or snap
+# (threshold 0.5). OPTIONS: - or, with commas between: nodata=V: samples equal to V are missing; seed=S of noise, else 0;
+# tetrahedra: the grid cut into tetrahedra and extracted as an unstructured one. Positions are in index space: sample
+# (i, j, k) lies at i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices, then the uint32 indices of
+# all triangles, both little-endian, in the order that kernels/README.md describes; 16 hexadecimal digits.
 """
 TYPES = ["u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"]
 
@@ -35,18 +35,22 @@ def cases():
         iso = {"i8": "64", "f32": "0.1", "f64": "128.1"}.get(name, "127.5")
         yield "noise", (37, 22, 19), name, iso, "tetra", "-"
         yield "noise", (67, 13, 11), name, iso, "hybrid", "seed=7"
+        yield "noise", (67, 13, 11), name, iso, "snap", "seed=11"
     for dims in [(2, 2, 2), (2, 3, 130), (3, 257, 2), (63, 7, 3), (64, 8, 4), (65, 9, 5), (129, 17, 9), (1000, 3, 3)]:
         yield "noise", dims, "u8", "127.5", "tetra", "seed=1"
         yield "noise", dims, "f32", "127.5", "tetra", "seed=2"
         yield "noise", dims, "i16", "127.5", "hybrid", "seed=3"
+        yield "noise", dims, "u8", "127.5", "snap", "seed=4"
     yield "full", (20, 20, 20), "f32", "127.5", "tetra", "-"
     yield "empty", (20, 20, 20), "u8", "127.5", "tetra", "-"
     for iso in ("64", "128", "255"):  # equal to samples
         yield "noise", (67, 13, 11), "u8", iso, "tetra", "seed=5"
         yield "tangle", (50, 37, 29), "u16", iso, "hybrid", "-"
+        yield "noise", (67, 13, 11), "u8", iso, "snap", "seed=5"
     yield "noise", (67, 13, 11), "u8", "127.5", "tetra", "nodata=64"
     yield "gyroid", (67, 33, 20), "i16", "127.5", "tetra", "nodata=100"
     yield "gyroid", (67, 33, 20), "u8", "127.5", "hybrid", "nodata=100"
+    yield "gyroid", (67, 33, 20), "u8", "127.5", "snap", "nodata=100"
     for name in ("u8", "i16", "f32", "f64"):
         yield "gyroid", (30, 20, 13), name, "127.5", "tetra", "tetrahedra"
     for field in ("sphere", "torus", "gyroid", "marschner-lobb", "tangle"):
@@ -54,9 +58,11 @@ def cases():
             yield field, (size, size, size), "u8", "127.5", "tetra", "-"
             yield field, (size, size, size), "f32", "127.5", "hybrid", "-"
             yield field, (size, size - 1, size - 2), "f64", "100", "tetra", "-"
+            yield field, (size - 1, size, size - 2), "f32", "127.5", "snap", "-"
     yield "gyroid", (256, 256, 256), "u8", "127.5", "tetra", "-"
     yield "sphere", (256, 256, 256), "f32", "127.5", "hybrid", "-"
     yield "marschner-lobb", (256, 255, 254), "u16", "127.5", "tetra", "-"
+    yield "gyroid", (256, 256, 256), "u8", "127.5", "snap", "-"
     yield "sphere", (512, 512, 512), "u8", "127.5", "tetra", "-"
     yield "sphere", (512, 512, 512), "f32", "127.5", "hybrid", "-"
     yield "gyroid", (512, 512, 512), "u8", "127.5", "hybrid", "-"

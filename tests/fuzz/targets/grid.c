@@ -12,7 +12,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { SAMPLES_MOST = 1 << 11 };
+enum { SAMPLES_MOST = 1 << 11, NO_METHOD = TC_METHOD_SNAP + 1 };
 enum { HAS_AXES = 1, HAS_POINTS = 2, HAS_BLANKED = 4, HAS_BLANKED_CELLS = 8, HAS_MATRIX = 16, IS_LARGE = 32 };
 
 typedef struct arrays {
@@ -90,9 +90,11 @@ static void compare_complex(const tc_grid_options *from, const tc_extract_option
     free(zeros);
 }
 
-/* Hybrid tables cost a thousand small grids: one input in eight asks for them. */
+/* Hybrid tables cost a thousand small grids: one input in eight asks for them, one for snap, one for no method. */
 static tc_method method_of(uint8_t bits) {
-    return (bits & 0x70) == 0x70 ? TC_METHOD_HYBRID : (bits & 0x70) == 0x60 ? (tc_method)METHOD_COUNT : TC_METHOD_TETRA;
+    static const tc_method last[3] = {TC_METHOD_SNAP, (tc_method)NO_METHOD, TC_METHOD_HYBRID};
+    const uint8_t number = bits >> 4 & 7;
+    return number < 5 ? TC_METHOD_TETRA : last[number - 5];
 }
 
 static void extract(const tc_grid_options *from, tc_grid *grid, uint8_t bits, double isovalue) {
@@ -101,6 +103,7 @@ static void extract(const tc_grid_options *from, tc_grid *grid, uint8_t bits, do
     how.isovalue = isovalue;
     how.normals = bits & 1;
     how.method = method_of(bits);
+    if (how.method == TC_METHOD_SNAP && bits & 2) how.snap = bits & 4 ? isovalue : bits & 8 ? 0.25 : 0;
     uint64_t triangles = surface_check(grid, &how, from->type, from->samples);
     if (!(bits & 2) || how.method != TC_METHOD_TETRA) return;
     how.normals = 0;

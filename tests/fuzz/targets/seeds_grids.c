@@ -8,8 +8,10 @@ static void add_grid(int flags) {
     bytes b = {0};
     char name[32];
     int type = flags % 8;
+    static const unsigned char how[8] = {0x83, 0x02, 0x83, 0x02,
+                                         0x50, 0xf0, 0xd1, 0x02}; /* a complex too; snap, hybrid */
     bytes_put(&b, (uint64_t)flags, 1, 0);
-    bytes_put(&b, (uint64_t)(flags % 8 == 5 ? 0xf0 : flags & 1 ? 0x02 : 0x83), 1, 0); /* hybrid, or a complex too */
+    bytes_put(&b, how[flags % 8], 1, 0);
     bytes_put(&b, (uint64_t)type, 1, 0);
     for (int axis = 0; axis < 3; axis++) {
         static const unsigned char dims[3] = {5, 4, 3}, first[3] = {3, 0, 255};
