@@ -162,7 +162,7 @@ FILES = {
     "host/common/stored_types.c": READERS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
     "kernels/snap": SNAPPED,
-    "kernels/regular.cl": SNAPPED,
+    "kernels/regular_alone.cl": SNAPPED,
     "kernels/nearest.cl": SNAPPED,
     "kernels/link.h": SNAPPED,
     "kernels/cells.cl": ["test_random, u8 with missing"],
