@@ -76,7 +76,7 @@ def method_triangles(peer, method):
 def peers_table(peers):
     """With a column for each peer that any of them has."""
     present = [(key, title) for key, title in PEERS if any(f"{key}_ms" in peer for peer in peers)]
-    methods = [method for method in METHODS if any(f"{method}_ms" in peer for peer in peers)]
+    methods = methods_of(peers)
     head = ["samples", "Tetracubes, ms", *(title for _, title in present), *(f"{method}, ms" for method in methods),
             "triangles", "VTK's triangles", *(f"{method}'s triangles" for method in methods), "× memory limit"]
     rows = [[peer_name(peer), ms(peer["extract_ms"]), *(peer_cell(peer, key) for key, _ in present),
@@ -234,22 +234,28 @@ def headlines(result):
             *table1_text(result)]
 
 
-def brief_row(peer):
+def methods_of(peers):
+    """Those that any of the peers was measured with."""
+    return [method for method in METHODS if any(f"{method}_ms" in peer for peer in peers)]
+
+
+def brief_row(peer, methods):
     """The first of the other programs is the fastest of them."""
     key, title = next((key, title.removesuffix(", ms")) for key, title in PEERS + GRID_PEERS if f"{key}_ms" in peer)
     theirs, ours = peer[f"{key}_ms"]["median"], peer["extract_ms"]["median"]
-    methods = [number(peer[f"{method}_ms"]["median"]) if f"{method}_ms" in peer else "" for method in METHODS]
-    return [peer_name(peer), number(ours), *methods, title, number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
+    times = [number(peer[f"{method}_ms"]["median"]) if f"{method}_ms" in peer else "" for method in methods]
+    return [peer_name(peer), number(ours), *times, title, number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
             if "vtk_triangles" in peer else f"{peer[f'{key}_triangles']:,}"]
 
 
 def brief(result):
     """The section of a machine in the project's README: nothing of one without peers."""
     peers = list(filter(is_headline_peer, result.get("peers", [])))
-    head = ["samples", "Tetracubes, ms", *(f"{method}, ms" for method in METHODS), "VTK's filter", "its ms",
+    methods = methods_of(peers)
+    head = ["samples", "Tetracubes, ms", *(f"{method}, ms" for method in methods), "VTK's filter", "its ms",
             "times ours", "our triangles", "VTK's"]
     return [f"On {result['cpu']}, {result['cores']} cores, OpenCL device {result['device']}, beside VTK "
-            f"{result['vtk']['version']} ({result['date']}):", table(head, map(brief_row, peers))] if peers else []
+            f"{result['vtk']['version']} ({result['date']}):", table(head, [brief_row(peer, methods) for peer in peers])] if peers else []
 
 
 def everything(result):
