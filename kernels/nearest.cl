@@ -13,6 +13,7 @@
 
 #ifdef REAL
 
+/* Without the sign. */
 inline_always REAL difference_of(REAL a, REAL b) {
     REAL difference = a - b;
     return difference < 0 ? -difference : difference;

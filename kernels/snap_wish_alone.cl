@@ -26,24 +26,24 @@ typedef struct wish_room {
 } wish_room;
 
 inline_always void rows_enter(const slab *s, row_set r, lanes crossed_any, lanes border, global const BITS *samples,
-                              wish_list *room) {
+                              wish_list *l) {
     ulong crossed_rows[BRICK_ROWS], even_rows_of[BRICK_ROWS], border_rows[BRICK_ROWS];
     const uint plane = r.z % BRICK_PLANES;
-    if (plane == 0) room->count[0] = room->count[1] = 0;
+    if (plane == 0) l->count[0] = l->count[1] = 0;
     vstore8(crossed_any & ~border, 0, crossed_rows), vstore8(samples_even(s, r), 0, even_rows_of);
     vstore8(crossed_any & border, 0, border_rows);
     for (uint y = 0; y < BRICK_ROWS; y++) {
         const uint row = BRICK_ROWS * plane + y;
-        room->wishes[row] = border_rows[y] ? border_wishes(s, r.y + y, r.z, r.w, border_rows[y], samples) : 0;
+        l->wishes[row] = border_rows[y] ? border_wishes(s, r.y + y, r.z, r.w, border_rows[y], samples) : 0;
         if (!crossed_rows[y]) continue;
         for (uint odd = 0; odd < 2; odd++) {
             ulong rest = crossed_rows[y] & (odd ? ~even_rows_of[y] : even_rows_of[y]);
-            uint count = room->count[odd], end = count + (uint)popcount(rest);
+            uint count = l->count[odd], end = count + (uint)popcount(rest);
             do {
-                room->list[odd][count++] = (ushort)(row << 6 | (lowest_bit(rest) & 63));
+                l->list[odd][count++] = (ushort)(row << 6 | (lowest_bit(rest) & 63));
                 rest &= rest - 1;
             } while (rest);
-            room->count[odd] = end;
+            l->count[odd] = end;
         }
     }
 }

@@ -103,7 +103,7 @@ static void pieces_sum(const side *sides, size_t count, joined *j, pieces *p) {
         if (end - n > 1) continue;
         p->sides[p->side_count][0] = sides[n].low, p->sides[p->side_count++][1] = sides[n].high;
         join(j->borders, root(j->fans, from), root(j->fans, corner_next(from)));
-        borders[root(j->pieces, from)]++; /* sides, for now */
+        borders[root(j->pieces, from)]++; /* a side; below, each fan that one joins takes one back */
     }
     for (uint32_t n = 0; n < count; n++) {
         euler[root(j->pieces, n)] += (n % 3 == 0) + (j->fans[n] == n);

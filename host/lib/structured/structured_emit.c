@@ -89,6 +89,8 @@ static uint8_t edge_item(const run *r, uint8_t edge) {
  * (edge_item). */
 static tc_status cases_make(const run *r, void **out, uint64_t *bytes) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
+    _Static_assert(CASE_COUNT(VERTEX_SAMPLE) == CASES_TWO_SIGNS && CASE_COUNT(VERTEX_TYPES_MOST) == CASES_THREE_SIGNS,
+                   "kernels count them so");
     const size_t count = 2 * (size_t)CASE_COUNT(methods[r->method].vertex_types);
     cube_case *cases = malloc(count * sizeof *cases + 256 * sizeof(uint16_t));
     if (!cases) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the case table");
@@ -208,9 +210,8 @@ static tc_status step_emit(run *r, uint32_t n) {
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
-    const bool marked =
-        r->plan->slab_count == 1 || (r->plan->zeros && r->plan->words_whole); /* for kernel 1, and nothing
-                                                                                has overwritten that */
+    const bool snapped_whole = r->plan->zeros && r->plan->words_whole;
+    const bool marked = r->plan->slab_count == 1 || snapped_whole; /* for kernel 1, and nothing has overwritten that */
     tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->ref, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);
     if (status) return status;

@@ -65,13 +65,17 @@ word_buffers *slab_words(const run *r, slab_ref ref);
 /* Brings the slab's samples and the arrays of blanked items to the device; for kernel 2 its points too. */
 tc_status slab_load(run *r, slab_ref ref, bool emits);
 
+/* The tiles of kernel 1 in planes z0 <= z < z1, shaped as the slab's are. */
+uint32_t tile_count_of(const slab *s);
+
 /* The slab's parameters; its samples are loaded. */
 void slab_describe(const run *r, slab_ref ref, slab *out);
 
 /* Marks the slab's present cells, where samples may be missing. */
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s);
 
-/* Makes samples of a window to vertices, before kernel 1 counts there (structured_snap.c). */
+/* Method snap: marks the samples of the slab's window that become vertices, before kernel 1 counts (structured_snap.c).
+ */
 tc_status window_snap(run *r, slab_ref ref, const slab *s);
 
 /* Moves kernel 1's results of a slab from or to the store, where windows are in use. */

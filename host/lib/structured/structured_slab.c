@@ -181,6 +181,12 @@ static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
     s->arrays.blanked_cell_count = (cell_end - begin) * (s->nx - 1) * (s->ny - 1);
 }
 
+uint32_t tile_count_of(const slab *s) {
+    const uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
+    return (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows *
+           ((layers + s->tiling.tile_layers - 1) / s->tiling.tile_layers);
+}
+
 void slab_describe(const run *r, slab_ref ref, slab *out) {
     const uint32_t slab_index = ref.slab_index;
     slab *s = out;
@@ -194,9 +200,7 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     s->results.head_offset = slab_index * STATE_WORDS;
     s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
     s->results.active_offset = (uint32_t)((s->z0 - s->results.word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    uint32_t layers = (s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES;
-    s->tiling.tile_count = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows *
-                           ((layers + s->tiling.tile_layers - 1) / s->tiling.tile_layers);
+    s->tiling.tile_count = tile_count_of(s);
     s->snapping.zero_bricks = plan_zero_bricks(r->plan);
     slab_offsets(r, slab_index, s);
 }

@@ -11,9 +11,7 @@ static slab window_of(const run *r, slab_ref ref, const slab *s) {
     slab w = *s;
     w.z0 = s->results.word_z;
     w.z1 = slab_words_end(r->plan, r->grid, ref.slab_index);
-    const uint32_t layers = (w.z1 - w.z0 + BRICK_PLANES - 1) / BRICK_PLANES;
-    w.tiling.tile_count = (w.bricks_y + w.tiling.tile_rows - 1) / w.tiling.tile_rows *
-                          ((layers + w.tiling.tile_layers - 1) / w.tiling.tile_layers);
+    w.tiling.tile_count = tile_count_of(&w);
     return w;
 }
 
