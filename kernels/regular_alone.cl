@@ -54,9 +54,12 @@ inline_always lanes ring_regular(const ring *r) {
     return ((r->whole & two) | (~r->whole & one)) & ~r->more & ~r->wrong;
 }
 
-inline_always ring ring_begin(void) {
+/* Around a ring of samples, each joined to the next and the last to the first. */
+inline_always lanes ring_walk(const link_signs *l, const uint *n, uint count) {
     ring r = {0, 0, 0, 0, ~(lanes)0};
-    return r;
+#pragma unroll
+    for (uint m = 0; m < count; m++) ring_step(&r, l, n[(m + count - 1) % count], n[m], n[(m + 1) % count]);
+    return ring_regular(&r);
 }
 
 /* The ring around a sample across from the middle: along axis a to the side up_a, and likewise b; c is the third axis.
@@ -64,20 +67,14 @@ inline_always ring ring_begin(void) {
 inline_always lanes ring_around_across(const link_signs *l, uint a, uint up_a, uint b, uint up_b, uint c) {
     const uint n[6] = {LINK_AXIS(a, up_a), link_across(a, up_a, c, 1), link_across(b, up_b, c, 1),
                        LINK_AXIS(b, up_b), link_across(b, up_b, c, 0), link_across(a, up_a, c, 0)};
-    ring r = ring_begin();
-#pragma unroll
-    for (uint m = 0; m < 6; m++) ring_step(&r, l, n[(m + 5) % 6], n[m], n[(m + 1) % 6]);
-    return ring_regular(&r);
+    return ring_walk(l, n, 6);
 }
 
 /* The ring around a sample of an odd link; a is its axis. It is also the ring in the plane across axis a. */
 inline_always lanes ring_odd(const link_signs *l, uint a) {
     const uint b = (a + 1) % 3, c = (a + 2) % 3;
     const uint n[4] = {LINK_AXIS(b, 0), LINK_AXIS(c, 0), LINK_AXIS(b, 1), LINK_AXIS(c, 1)};
-    ring r = ring_begin();
-#pragma unroll
-    for (uint m = 0; m < 4; m++) ring_step(&r, l, n[(m + 3) % 4], n[m], n[(m + 1) % 4]);
-    return ring_regular(&r);
+    return ring_walk(l, n, 4);
 }
 
 /* The ring of an even link in the plane across axis a. */
@@ -85,10 +82,7 @@ inline_always lanes ring_even(const link_signs *l, uint a) {
     const uint b = (a + 1) % 3, c = (a + 2) % 3;
     const uint n[8] = {LINK_AXIS(b, 0), link_across(b, 0, c, 0), LINK_AXIS(c, 0), link_across(b, 1, c, 0),
                        LINK_AXIS(b, 1), link_across(b, 1, c, 1), LINK_AXIS(c, 1), link_across(b, 0, c, 1)};
-    ring r = ring_begin();
-#pragma unroll
-    for (uint m = 0; m < 8; m++) ring_step(&r, l, n[(m + 7) % 8], n[m], n[(m + 1) % 8]);
-    return ring_regular(&r);
+    return ring_walk(l, n, 8);
 }
 
 /* ------------------------------------------------------------------------------------------------------- connection */

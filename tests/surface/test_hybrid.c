@@ -12,6 +12,7 @@
 #include "engines.h"
 #include "mesh_check.h"
 #include "random.h"
+#include "random_field.h"
 #include "samples.h"
 
 #include <inttypes.h>
@@ -160,18 +161,10 @@ static void test_patterns(int64_t size) {
 
 /* ----------------------------------------------------------------------------------------------------- random grids */
 
-enum { NOISE, SMOOTH, TIES, KINDS };
-
-static double field_value(int kind, const double wave[4], double x, double y, double z) {
-    if (kind == NOISE) return 60 + random_between(-50, 50);
-    if (kind == SMOOTH) return 60 + 50 * sin(wave[0] * x + wave[3]) * cos(wave[1] * y) + 10 * sin(wave[2] * z);
-    return 58 + random_below(4);
-}
-
 static void samples_choose(tc_grid_options *grid, int kind) {
     double wave[4];
     int64_t n = 0;
-    for (int m = 0; m < 4; m++) wave[m] = random_between(0.05, 1.5);
+    wave_choose(wave);
     for (int64_t z = 0; z < grid->dims[2]; z++)
         for (int64_t y = 0; y < grid->dims[1]; y++)
             for (int64_t x = 0; x < grid->dims[0]; x++)
@@ -203,7 +196,7 @@ static void run(uint64_t seed, bool large) {
         grid_begin(&grid, &how, xs[random_below(10)], ys[random_below(8)], zs[random_below(7)], type);
     else
         grid_begin(&grid, &how, 2 + random_below(6), 2 + random_below(6), 2 + random_below(6), TC_F32);
-    int kind = (int)random_below(KINDS);
+    int kind = (int)random_below(RANDOM_FIELDS);
     samples_choose(&grid, kind);
     how.isovalue = kind == TIES ? 58 + 0.5 * random_below(8) : 60 + random_between(-20, 20);
     /* combinations of type, missing samples and normals that are built anyway */

@@ -13,6 +13,7 @@
  */
 #include "engines.h"
 #include "random.h"
+#include "random_field.h"
 #include "samples.h"
 #include "snapped.h"
 
@@ -299,7 +300,7 @@ static void expect_snapped(const tc_grid_options *options, const tc_extract_opti
 /* ------------------------------------------------------------------------------------------------------ random grids
  */
 
-typedef enum field_kind { NOISE, SMOOTH, TIES, EXTREMES, FIELD_KINDS } field_kind;
+enum { EXTREMES = RANDOM_FIELDS, FIELD_KINDS };
 
 /* Without those so small that a half of them is rounded. */
 static double extreme_value(tc_type type) {
@@ -309,16 +310,10 @@ static double extreme_value(tc_type type) {
     return type_is_floating(type) ? floats[random_below(7)] : integers[random_below(5)];
 }
 
-static double field_value(field_kind kind, const double wave[4], double x, double y, double z) {
-    if (kind == NOISE) return 60 + random_between(-50, 50);
-    if (kind == SMOOTH) return 60 + 50 * sin(wave[0] * x + wave[3]) * cos(wave[1] * y) + 10 * sin(wave[2] * z);
-    return 58 + random_below(4);
-}
-
-static void samples_choose(tc_grid_options *grid, field_kind kind) {
+static void samples_choose(tc_grid_options *grid, int kind) {
     double wave[4];
     int64_t n = 0;
-    for (int m = 0; m < 4; m++) wave[m] = random_between(0.05, 1.5);
+    wave_choose(wave);
     for (int64_t z = 0; z < grid->dims[2]; z++)
         for (int64_t y = 0; y < grid->dims[1]; y++)
             for (int64_t x = 0; x < grid->dims[0]; x++)
@@ -406,7 +401,7 @@ static void run(uint64_t seed, bool large) {
     grid.samples = memory;
     for (int axis = 0; axis < 3; axis++)
         if (random_below(2)) grid.first_index[axis] = (int64_t)random_below(2001) - 1000;
-    const field_kind field = (field_kind)random_below(FIELD_KINDS);
+    const int field = (int)random_below(FIELD_KINDS);
     samples_choose(&grid, field);
     kind.plain = places_choose(&grid);
     kind.complete = parts_remove(&grid);
