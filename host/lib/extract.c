@@ -5,6 +5,7 @@
 
 #include "opencl/context.h"
 #include "failure.h"
+#include "grid/method.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
 #include "structured/structured.h"
@@ -37,7 +38,7 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
  */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!surface_needs_kernels(grid, options)) return TC_OK;
-    if (options->method == TC_METHOD_SNAP && !device_makes_vertices(grid->context, grid->type))
+    if (method_has_zeros(options->method) && !device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: method snap takes %s samples by the reference engine",
                                grid->context->info.name, tc_type_name(grid->type));
     tc_status status = call_vet(grid->context, surface_kind(grid, options, emits));

@@ -6,6 +6,9 @@
 
 #include "grid/tables.h"
 #include "methods.h"
+#include "tetracubes.h"
+
+#include <stdbool.h>
 
 typedef struct method_row {
     const char *name;
@@ -14,5 +17,8 @@ typedef struct method_row {
 } method_row;
 
 extern const method_row methods[METHOD_COUNT]; /* by tc_method */
+
+/* Whether samples can be vertices, and so have a third sign, 0. */
+static inline bool method_has_zeros(tc_method method) { return methods[method].vertex_types > VERTEX_SAMPLE; }
 
 #endif

@@ -322,7 +322,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
-    if (r->method == TC_METHOD_SNAP) samples_snap(r);
+    if (method_has_zeros(r->method)) samples_snap(r);
     return TC_OK;
 }
 

@@ -134,7 +134,7 @@ static tc_status arrays_withdraw(tc_grid *grid) {
 static tc_status plan_provide(tc_grid *grid, tc_method method) {
     struct device_grid *device = grid->device;
     const bool whole = device->plan.samples_whole;
-    if (method != TC_METHOD_SNAP || device->snap_plan.layer_count) return TC_OK;
+    if (!method_has_zeros(method) || device->snap_plan.layer_count) return TC_OK;
     slab_plan plan;
     tc_status status = slab_plan_make(grid->context, grid, true, whole ? SAMPLES_WHOLE : SAMPLES_IN_WINDOWS, &plan);
     if (status == TC_ERROR_MEMORY && whole && !grid->cl_samples) {

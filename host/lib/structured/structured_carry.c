@@ -355,7 +355,7 @@ void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
-    if (inside_range_of(grid->type, options->isovalue).uniform || options->method == TC_METHOD_SNAP) return true;
+    if (inside_range_of(grid->type, options->isovalue).uniform || method_has_zeros(options->method)) return true;
     return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
            device->classified_options.method == options->method &&
            (device->plan.words_whole || device->store.words != NULL);
@@ -366,7 +366,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     const struct device_grid *device = grid->device;
     carry_job j = {.grid = grid, .plan = &device->plan, .carry = c, .isovalue = options->isovalue};
     mapping m;
-    if (options->method == TC_METHOD_SNAP) return reference_carry(grid, options, c, vertex_count);
+    if (method_has_zeros(options->method)) return reference_carry(grid, options, c, vertex_count);
     *vertex_count = 0;
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];

@@ -9,6 +9,7 @@
 #include "grid/inside.h"
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
+#include "grid/method.h"
 #include "slab.h"
 #include "structured/slab_plan.h"
 
@@ -50,7 +51,7 @@ typedef struct run {
 } run;
 
 static inline const slab_plan *plan_of_method(const struct device_grid *device, tc_method method) {
-    return method == TC_METHOD_SNAP ? &device->snap_plan : &device->plan;
+    return method_has_zeros(method) ? &device->snap_plan : &device->plan;
 }
 
 /* A slab and the window that it is in: below plan_window_count. */
