@@ -200,7 +200,7 @@ void samples_snap(reference *r) {
 void snapped_edge(const reference *r, const int64_t p[3], int64_t a[3], int64_t b[3]) {
     const surroundings s = surroundings_of(r, NULL, p);
     int n = nearest_crossing(r, &s, p);
-    if (n < 0) n = 0; /* only where the caller changes samples meanwhile */
+    if (n < 0) n = p[0] + 1 < r->dims[0] ? 1 : 0; /* only where the caller changes samples meanwhile */
     const bool up = link_steps[n][2] > 0 || (link_steps[n][2] == 0 &&
                                              (link_steps[n][1] > 0 || (link_steps[n][1] == 0 && link_steps[n][0] > 0)));
     memcpy(up ? a : b, p, 3 * sizeof *p);
