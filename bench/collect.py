@@ -57,7 +57,7 @@ def versions(tool, peers):
         "linux": platform.release().split("-")[0],
     }
     if peers:
-        told.update(vtk=peers["vtk"]["version"], skimage=peers["skimage"])
+        told.update(vtk=peers["vtk"]["version"], **peers["versions"])
     return told
 
 

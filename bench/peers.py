@@ -1,10 +1,10 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """peers.py - Tetracubes and other isosurface filters on the very same samples, in turns
 
 For every case tetracubes-bench writes the samples to one file; then that file is what all read: Tetracubes maps it, the
 others wrap a numpy memmap of it. Tetracubes verifies its mesh against its reference before anything is timed. Then they
-take turns, in the reverse order on every other repeat, so that all see the same state of the machine. The two marching
-cubes have turns with ours of their own (beside_ms): they use gigabytes, after which the system has to find the pages of
+take turns, in the reverse order on every other repeat, so that all see the same state of the machine. The slow
+ones have turns with ours of their own (beside_ms): they use gigabytes, after which the system has to find the pages of
 any new mesh anew.
 
   ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
@@ -20,6 +20,7 @@ any new mesh anew.
           isovalue (second_ms): ours on a grid that an isovalue has been extracted from before, VTK's with a scalar tree
           that one has built
   skimage skimage.measure.marching_cubes, up to 256^3 samples; it has one thread, and always makes normals and values
+  meshlib MeshLib's marchingCubes, up to 256^3 samples, of floats that are made before
 
 A peer whose first turn, which does not count, takes over a second has three turns, over five seconds one. Of a cube of
 1024 or more, ours at half the size takes turns too (half_ms), so that one run shows how time grows with size.
@@ -28,7 +29,7 @@ On a device with memory of its own our mesh is complete there, not yet on the ho
 is released is released outside the timed parts. Medians and their ratios to ours are printed; above 1 Tetracubes is
 faster, though it makes about 2.4 times the triangles. What free memory does not allow is left out, with a notice.
 
-Needs Debian's own Python with VTK, numpy and scikit-image: bench/peers-setup installs them.
+bench/peers-setup installs the newest of each; build-peers/bin/python3 is the Python that has them.
 """
 
 import argparse
@@ -54,22 +55,16 @@ SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many
 HALVED_FROM = 1024
 METHODS = ["hybrid", "snap"]  # beside tetra
 METHODS_MOST = 512 ** 3  # samples
-LARGE_PEERS = ("vtk_mc", "skimage")  # which have turns of their own
+LARGE_PEERS = ("vtk_mc", "skimage", "meshlib")  # which have turns of their own
 MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
 
 try:
     import numpy
-    import skimage
-    from skimage.measure import marching_cubes
-    from vtkmodules.util.numpy_support import get_vtk_array_type, numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools, vtkVersion
-    from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkImageData, vtkStructuredGrid,
-                                               vtkUnstructuredGrid)
-    from vtkmodules.vtkFiltersCore import (vtkContour3DLinearGrid, vtkContourFilter, vtkFlyingEdges3D,
-                                              vtkMarchingCubes)
+
+    import peer_filters
 except ImportError as missing:
     if not {"-h", "--help"} & set(sys.argv):
-        sys.exit(f"peers.py: {missing}; run bench/peers-setup, then start this script by /usr/bin/python3")
+        sys.exit(f"peers.py: {missing}; run bench/peers-setup, then start this script by build-peers/bin/python3")
 
 NUMPY_TYPES = {"u8": "u1", "i8": "i1", "u16": "u2", "i16": "i2", "u32": "u4", "i32": "i4", "f32": "f4", "f64": "f8"}
 
@@ -77,9 +72,8 @@ NUMPY_TYPES = {"u8": "u1", "i8": "i1", "u16": "u2", "i16": "i2", "u32": "u4", "i
 # Corners x + 2 y + 4 z of a cube's tetrahedra, by parity
 TETRAHEDRA = [[[0, 5, 3, 6], [1, 0, 5, 3], [2, 0, 3, 6], [4, 0, 6, 5], [7, 3, 5, 6]],
               [[1, 2, 4, 7], [0, 4, 1, 2], [3, 2, 1, 7], [5, 7, 1, 4], [6, 4, 2, 7]]]
-UNSTRUCTURED = {"tetrahedra": 10, "hexahedra": 12}  # VTK's types of cells
+UNSTRUCTURED = ("tetrahedra", "hexahedra")
 CELL_BYTES = {"tetrahedra": 240, "hexahedra": 190}  # per sample, VTK's and ours
-SECOND_RATIO = 1.05  # tetracubes-bench's own default for its second isovalue
 
 
 class Failure(Exception):
@@ -172,72 +166,6 @@ class Ours:
             self.process.wait()
 
 
-class VtkFilter:
-    """An isosurface filter of VTK on a data set that wraps the samples."""
-
-    def __init__(self, kind, samples, iso):
-        values = samples.array().reshape(-1)
-        scalars = numpy_to_vtk(values, deep=0, array_type=get_vtk_array_type(values.dtype))
-        self.keep = values
-        self.image = vtkImageData() if samples.grid == "uniform" else vtkStructuredGrid()
-        self.image.SetDimensions(samples.dims)
-        if samples.grid != "uniform":
-            self.coordinates = samples.points()
-            points = vtkPoints()
-            points.SetData(numpy_to_vtk(self.coordinates, deep=0))
-            self.image.SetPoints(points)
-        self.image.GetPointData().SetScalars(scalars)
-        self.kind, self.iso = kind, iso
-        self.triangles = 0
-
-    def turn(self):
-        """Milliseconds of Update() of a new filter."""
-        surface = self.kind()
-        surface.SetInputData(self.image)
-        surface.ComputeNormalsOff()
-        surface.ComputeGradientsOff()
-        surface.ComputeScalarsOff()
-        surface.SetValue(0, self.iso)
-        begin = time.perf_counter()
-        surface.Update()
-        ms = 1e3 * (time.perf_counter() - begin)
-        self.triangles = surface.GetOutput().GetNumberOfPolys()
-        return ms
-
-
-class VtkLinear:
-    """vtkContour3DLinearGrid on an unstructured grid."""
-
-    def __init__(self, samples, iso):
-        self.values, self.points, self.cells = samples.array().reshape(-1), samples.points(), samples.cells()
-        points, cells, self.mesh = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
-        points.SetData(numpy_to_vtk(self.points, deep=0))
-        cells.SetData(self.cells.shape[1], numpy_to_vtkIdTypeArray(self.cells.reshape(-1), deep=0))
-        self.mesh.SetPoints(points)
-        self.mesh.SetCells(UNSTRUCTURED[samples.grid], cells)
-        self.mesh.GetPointData().SetScalars(numpy_to_vtk(self.values, deep=0))
-        self.iso, self.triangles = iso, 0
-
-    def turn(self, second=False):
-        """Milliseconds of Update() of a new filter; second: of a second isovalue, the first has built a scalar tree."""
-        surface = vtkContour3DLinearGrid()
-        surface.SetInputData(self.mesh)
-        surface.MergePointsOn()
-        surface.InterpolateAttributesOff()
-        surface.ComputeNormalsOff()
-        surface.SetUseScalarTree(second)
-        if second:
-            surface.SetValue(0, self.iso)
-            surface.Update()
-        surface.SetValue(0, self.iso * SECOND_RATIO if second else self.iso)
-        begin = time.perf_counter()
-        surface.Update()
-        ms = 1e3 * (time.perf_counter() - begin)
-        if not second:
-            self.triangles = surface.GetOutput().GetNumberOfPolys()
-        return ms
-
-
 class Second:
     """A side's turns with the second isovalue."""
 
@@ -246,36 +174,6 @@ class Second:
 
     def turn(self):
         return self.side.turn(second=True)
-
-
-class ScikitImage:
-    """skimage.measure.marching_cubes on the samples."""
-
-    def __init__(self, samples, iso):
-        self.values, self.iso = samples.array(), iso
-        self.triangles = 0
-
-    def turn(self):
-        """Milliseconds of one call."""
-        begin = time.perf_counter()
-        mesh = marching_cubes(self.values, self.iso)
-        ms = 1e3 * (time.perf_counter() - begin)
-        self.triangles = len(mesh[1])
-        return ms
-
-
-def peers_of(samples, iso):
-    """Those that can do it in seconds, by the key of their results."""
-    if samples.grid in UNSTRUCTURED:
-        return {"vtk_linear": VtkLinear(samples, iso)}
-    if samples.grid == "curvilinear":
-        return {"vtk_contour": VtkFilter(vtkContourFilter, samples, iso)}
-    peers = {"vtk": VtkFilter(vtkFlyingEdges3D, samples, iso)}
-    if samples.count() <= 512 ** 3:
-        peers["vtk_mc"] = VtkFilter(vtkMarchingCubes, samples, iso)
-    if samples.count() <= 256 ** 3:
-        peers["skimage"] = ScikitImage(samples, iso)
-    return peers
 
 
 def progress(text):
@@ -356,7 +254,7 @@ def run_case(arguments, case, folder):
         for method in METHODS if samples.count() <= METHODS_MOST and case.grid == "uniform" else []:
             progress(f"{case.name}: verifying method {method}")
             ours[method] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, method)
-        peers = peers_of(samples, case.iso)
+        peers = peer_filters.filters_of(samples, case.iso)
         large = {key: peer for key, peer in peers.items() if key in LARGE_PEERS}
         fast = {key: peer for key, peer in peers.items() if key not in large}
         times = take_turns(case.name, {**ours, **fast}, arguments.repeat)
@@ -386,20 +284,20 @@ def shown_ratio(result, key):
     return f"{median:.1f} ({median / ours['median']:.2f})"
 
 
-COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
+COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
 
 
 PEER_TRIANGLES = ("vtk_triangles", "vtk_contour_triangles", "vtk_linear_triangles")
 
 
 def print_head():
-    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "of this grid",
-                         "triangles", "of VTK", "limit ratio"))
+    print(COLUMNS.format("case", "Tetracubes", "vtkFlyingEdges3D", "vtkMarchingCubes", "scikit-image", "MeshLib",
+                         "of this grid", "triangles", "of VTK", "limit ratio"))
 
 
 def print_row(result):
     print(COLUMNS.format(result["case"], shown(result["extract_ms"]), shown_ratio(result, "vtk"),
-                         shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"),
+                         shown_ratio(result, "vtk_mc"), shown_ratio(result, "skimage"), shown_ratio(result, "meshlib"),
                          shown_ratio(result, "vtk_linear" if result["grid"] in UNSTRUCTURED else "vtk_contour"),
                          result["triangles"], next(result[key] for key in PEER_TRIANGLES if key in result),
                          f"{result['limit_ratio']:.2f}"), flush=True)
@@ -512,11 +410,9 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     cases = cases_of(arguments)
-    vtkSMPTools.Initialize(arguments.threads)
-    vtk = {"version": vtkVersion.GetVTKVersion(), "threads": vtkSMPTools.GetEstimatedNumberOfThreads(),
-           "backend": vtkSMPTools.GetBackend()}
-    print(f"VTK {vtk['version']}, {vtk['threads']} threads ({vtk['backend']}), scikit-image {skimage.__version__}; "
-          "milliseconds: median (min - max), of the others median (times ours)\n")
+    vtk, versions = peer_filters.vtk_start(arguments.threads), peer_filters.versions()
+    print(f"VTK {vtk['version']}, {vtk['threads']} threads ({vtk['backend']}), scikit-image {versions['skimage']}, "
+          f"MeshLib {versions['meshlib']}; milliseconds: median (min - max), of the others median (times ours)\n")
     print_head()
     results = []
     with tempfile.TemporaryDirectory(prefix="tetracubes-peers-", dir=arguments.folder) as folder:
@@ -525,7 +421,7 @@ def main():
             print_row(results[-1])
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
-            json.dump({"vtk": vtk, "skimage": skimage.__version__, "cases": results}, file, indent=2)
+            json.dump({"vtk": vtk, "versions": versions, "cases": results}, file, indent=2)
             file.write("\n")
 
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """plot.py - time against size, from bench/results/*.json: one bench/pictures/<name>.svg for each
 
 A panel per kind of samples, both axes logarithmic: medians of Tetracubes and of the peers, and the limit of the
@@ -19,14 +19,14 @@ try:
     from matplotlib import pyplot
     from matplotlib.ticker import FuncFormatter, NullLocator
 except ImportError as missing:
-    sys.exit(f"plot.py: {missing}; run bench/peers-setup, then start this script by /usr/bin/python3")
+    sys.exit(f"plot.py: {missing}; run bench/peers-setup, then start this script by build-peers/bin/python3")
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PANELS = [("sphere", "u8"), ("gyroid", "u8"), ("sphere", "f32")]
 OURS = [("extract_ms", "Tetracubes, new mesh", "#c1440e", "o-"), ("extract_warm_ms", "kept mesh", "#e58a45", "o-"),
         ("second_warm_ms", "second isovalue", "#e3b23c", "o-"), ("limit_ms", "memory limit", "#222222", "--")]
 PEERS = [("vtk_ms", "vtkFlyingEdges3D", "#1f6fa8", "s-"), ("vtk_mc_ms", "vtkMarchingCubes", "#58a36c", "^-"),
-         ("skimage_ms", "scikit-image", "#8a6bb1", "v-")]
+         ("skimage_ms", "scikit-image", "#8a6bb1", "v-"), ("meshlib_ms", "MeshLib", "#b18a3a", "d-")]
 STYLE = {"svg.hashsalt": "tetracubes", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"}
 
 
