@@ -8,7 +8,8 @@
  * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
  * 4. snap_wish: which samples are near enough to a crossing of theirs;
  * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: those that wish it and are regular points
- *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other;
+ *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
+ *    that another group stores to meanwhile has the same bits for its readers before and after;
  * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
  */
 #ifndef SNAP_CL

@@ -10,50 +10,64 @@
 #include <string.h>
 
 const bytes_case cases[] = {
-    {CASE_UNIFORM, TC_U8, 0, 2, true},
-    {CASE_UNIFORM, TC_I8, 0, 0, false},
-    {CASE_UNIFORM, TC_U16, 0, 0, false},
-    {CASE_UNIFORM, TC_I16, 0, 0, true},
-    {CASE_UNIFORM, TC_U32, 0, 0, false},
-    {CASE_UNIFORM, TC_I32, 0, 0, false},
-    {CASE_UNIFORM, TC_F32, CASE_NORMALS, 9, true},
-    {CASE_UNIFORM, TC_F64, 0, 1, false},
-    {CASE_UNIFORM, TC_U8, CASE_MISSING | CASE_NORMALS, 0, true},
-    {CASE_UNIFORM, TC_I8, CASE_MISSING | CASE_NORMALS, 0, false},
-    {CASE_UNIFORM, TC_U16, CASE_MISSING | CASE_NORMALS, 1, false},
-    {CASE_UNIFORM, TC_I16, CASE_MISSING | CASE_NORMALS, 0, false},
-    {CASE_UNIFORM, TC_U32, CASE_MISSING | CASE_NORMALS, 0, false},
-    {CASE_UNIFORM, TC_I32, CASE_MISSING | CASE_NORMALS, 1, true},
-    {CASE_UNIFORM, TC_F32, CASE_MISSING | CASE_NORMALS, 9, true},
-    {CASE_UNIFORM, TC_F64, CASE_MISSING | CASE_NORMALS, 0, false},
-    {CASE_UNIFORM, TC_F32, CASE_NORMALS | CASE_EXTREMES, 1, true},
-    {CASE_UNIFORM, TC_F64, CASE_EXTREMES, 0, false},
-    {CASE_UNIFORM, TC_U8, CASE_DEEP, 2, true},
-    {CASE_UNIFORM, TC_F32, CASE_DEEP | CASE_MISSING | CASE_NORMALS, 1, true},
-    {CASE_UNIFORM, TC_F32, CASE_BLANKED | CASE_NORMALS, 1, false},
-    {CASE_UNIFORM, TC_U8, CASE_HYBRID, 0, true},
-    {CASE_UNIFORM, TC_I8, CASE_HYBRID, 0, false},
-    {CASE_UNIFORM, TC_U16, CASE_HYBRID, 0, false},
-    {CASE_UNIFORM, TC_I16, CASE_HYBRID, 0, false},
-    {CASE_UNIFORM, TC_U32, CASE_HYBRID, 0, false},
-    {CASE_UNIFORM, TC_I32, CASE_HYBRID, 0, false},
-    {CASE_UNIFORM, TC_F32, CASE_HYBRID | CASE_MISSING | CASE_NORMALS, 1, false},
-    {CASE_UNIFORM, TC_F64, CASE_HYBRID, 0, false},
-    {CASE_RECTILINEAR, TC_F32, CASE_NORMALS, 0, true},
-    {CASE_RECTILINEAR, TC_F32, CASE_MISSING | CASE_NORMALS, 1, false},
-    {CASE_RECTILINEAR, TC_U8, CASE_HYBRID, 0, false},
-    {CASE_CURVILINEAR, TC_F32, CASE_NORMALS, 1, true},
-    {CASE_CURVILINEAR, TC_F32, CASE_BLANKED | CASE_NORMALS, 1, false},
-    {CASE_CURVILINEAR, TC_F64, CASE_NORMALS, 0, false},
-    {CASE_CURVILINEAR, TC_U8, CASE_HYBRID, 0, false},
-    {CASE_COMPLEX, TC_U8, 0, 3, true},
-    {CASE_COMPLEX, TC_I8, 0, 0, false},
-    {CASE_COMPLEX, TC_U16, 0, 0, false},
-    {CASE_COMPLEX, TC_I16, 0, 0, false},
-    {CASE_COMPLEX, TC_U32, 0, 0, false},
-    {CASE_COMPLEX, TC_I32, 0, 0, false},
-    {CASE_COMPLEX, TC_F32, CASE_MISSING, 3, true},
-    {CASE_COMPLEX, TC_F64, CASE_MISSING, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, 0, 2, true},
+    {CASE_UNIFORM, TC_I8, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_TETRA, 0, 0, true},
+    {CASE_UNIFORM, TC_U32, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_UNIFORM, TC_I32, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_NORMALS, 9, true},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, 0, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 0, true},
+    {CASE_UNIFORM, TC_I8, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 0, false},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 0, false},
+    {CASE_UNIFORM, TC_U32, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 0, false},
+    {CASE_UNIFORM, TC_I32, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 1, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 9, true},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 0, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_NORMALS | CASE_EXTREMES, 1, true},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, CASE_EXTREMES, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_DEEP, 2, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_DEEP | CASE_MISSING | CASE_NORMALS, 1, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_BLANKED | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_HYBRID, 0, 0, true},
+    {CASE_UNIFORM, TC_I8, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_U32, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_I32, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_HYBRID, CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_SNAP, 0, 2, true},
+    {CASE_UNIFORM, TC_I8, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_U32, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_I32, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_SNAP, CASE_MISSING | CASE_NORMALS, 1, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_SNAP, CASE_NORMALS | CASE_EXTREMES, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_SNAP, CASE_DEEP, 0, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_SNAP, CASE_DEEP | CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_SNAP, CASE_BLANKED | CASE_NORMALS, 0, false},
+    {CASE_RECTILINEAR, TC_F32, TC_METHOD_TETRA, CASE_NORMALS, 0, true},
+    {CASE_RECTILINEAR, TC_F32, TC_METHOD_TETRA, CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_RECTILINEAR, TC_U8, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_RECTILINEAR, TC_U8, TC_METHOD_SNAP, 0, 0, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_NORMALS, 1, true},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_BLANKED | CASE_NORMALS, 1, false},
+    {CASE_CURVILINEAR, TC_F64, TC_METHOD_TETRA, CASE_NORMALS, 0, false},
+    {CASE_CURVILINEAR, TC_U8, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_SNAP, CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_COMPLEX, TC_U8, TC_METHOD_TETRA, 0, 3, true},
+    {CASE_COMPLEX, TC_I8, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_COMPLEX, TC_U16, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_COMPLEX, TC_I16, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_COMPLEX, TC_U32, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_COMPLEX, TC_I32, TC_METHOD_TETRA, 0, 0, false},
+    {CASE_COMPLEX, TC_F32, TC_METHOD_TETRA, CASE_MISSING, 3, true},
+    {CASE_COMPLEX, TC_F64, TC_METHOD_TETRA, CASE_MISSING, 1, false},
 };
 
 const int case_count = sizeof cases / sizeof *cases;
@@ -61,10 +75,11 @@ const int case_count = sizeof cases / sizeof *cases;
 const char *case_name(const bytes_case *c) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear", "complex"};
     static char name[120];
-    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+    const bool named = c->method != TC_METHOD_TETRA;
+    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
              c->flags & CASE_DEEP ? ", deep" : "", c->flags & CASE_MISSING ? ", missing" : "",
              c->flags & CASE_BLANKED ? ", blanked" : "", c->flags & CASE_EXTREMES ? ", extremes" : "",
-             c->flags & CASE_NORMALS ? ", normals" : "", c->flags & CASE_HYBRID ? ", hybrid" : "");
+             c->flags & CASE_NORMALS ? ", normals" : "", named ? ", " : "", named ? tc_method_name(c->method) : "");
     return name;
 }
 
@@ -106,7 +121,7 @@ static void how_fill(const bytes_case *c, tc_extract_options *how) {
     tc_extract_options_init(how);
     how->isovalue = c->flags & CASE_EXTREMES ? 1e-3 : ISOVALUE;
     how->normals = c->flags & CASE_NORMALS ? 1 : 0;
-    how->method = c->flags & CASE_HYBRID ? TC_METHOD_HYBRID : TC_METHOD_TETRA;
+    how->method = c->method;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- grids */
@@ -138,10 +153,13 @@ static void blanks_fill(case_data *data, int64_t count, int64_t cell_count) {
 
 static void grid_fill(const bytes_case *c, bool small, case_data *data) {
     static const double matrix[3][4] = {{0.5, 0.1, 0, 7}, {0, -1.25, 0.3, -3}, {0.2, 0, 4, 100}};
-    const int64_t dims[4][3] = {{70, 19, 26}, {66, 9, 5}, {67, 46, 97}, {64, 32, 145}};
+    /* usual, deep, deep for windows of more layers; each large and small */
+    const int64_t dims[3][2][3] = {
+        {{70, 19, 26}, {66, 9, 5}}, {{67, 46, 97}, {64, 32, 145}}, {{67, 92, 297}, {64, 32, 145}}};
+    const int depth = !(c->flags & CASE_DEEP) ? 0 : c->method != TC_METHOD_SNAP ? 1 : 2;
     tc_grid_options *g = &data->grid;
     tc_grid_options_init(g);
-    memcpy(g->dims, dims[(c->flags & CASE_DEEP ? 2 : 0) + small], sizeof g->dims);
+    memcpy(g->dims, dims[depth][small], sizeof g->dims);
     const int64_t *d = g->dims, count = d[0] * d[1] * d[2];
     memcpy(g->matrix, matrix, sizeof matrix);
     for (int axis = 0; axis < 3; axis++) g->first_index[axis] = 4 * axis - 5;

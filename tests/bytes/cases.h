@@ -11,12 +11,11 @@
 #include <stdbool.h>
 
 enum {
-    CASE_MISSING = 1,   /* NaN, or the value of has_nodata */
-    CASE_NORMALS = 2,   /* not of complexes */
-    CASE_HYBRID = 4,    /* not of complexes */
-    CASE_BLANKED = 8,   /* samples and cells */
-    CASE_EXTREMES = 16, /* floats of all exponents */
-    CASE_DEEP = 32      /* many layers of bricks, for slabs */
+    CASE_MISSING = 1,  /* NaN, or the value of has_nodata */
+    CASE_NORMALS = 2,  /* not of complexes */
+    CASE_BLANKED = 4,  /* samples and cells */
+    CASE_EXTREMES = 8, /* floats of all exponents */
+    CASE_DEEP = 16     /* many layers of bricks, for slabs */
 };
 
 typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_COMPLEX } case_kind;
@@ -24,6 +23,7 @@ typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_
 typedef struct bytes_case {
     case_kind kind;
     tc_type type;
+    tc_method method; /* tetra, of complexes */
     unsigned flags;
     unsigned groups; /* bit n: is extracted by groups of 32 << n work-items, too */
     bool sampled;    /* is one of the few that are tried where time is short */

@@ -116,6 +116,7 @@ static bool case_wanted(const bytes_case *c, tier t) {
 static bool variant_wanted(const bytes_case *c, const variant *v, tier t, bool groups) {
     if (groups != (v->work_items != 1) || (!groups && !takes_alone)) return false;
     if (v->memory && !(c->flags & CASE_DEEP)) return false;
+    if (v->memory && t >= SMALL && c->method == TC_METHOD_SNAP) return false; /* slabs of a small grid are the whole */
     if (t >= SMALL && c->flags & CASE_DEEP && !v->memory && v != variants) return false;
     if (v->division && (c->kind == CASE_COMPLEX || c->type != TC_F32 || t != WHOLE)) return false;
     if (t >= SMALL && !v->small) return false;

@@ -1,16 +1,20 @@
 #!/bin/sh
-# run_with_cache.sh WARM OWN COMMAND... - runs COMMAND with a kernel cache of its own, OWN: a copy of all those in WARM,
-# and of WARM_TOO in the environment, the cache of a test before, if that is there
+# run_with_cache.sh POOL OWN COMMAND... - runs COMMAND with a cache of PoCL's of its own, OWN: the kernels that tests
+# before it built. Those that it builds itself are left in POOL for tests after it.
 #
-# Processes that run at once have raced in one cache, and an empty one costs seconds per kernel.
+# Processes that run at once have raced in one cache, and an empty one costs seconds per kernel. PoCL writes kernels as
+# new files, so links to them will do. A part of the pool appears whole, as it is renamed.
 set -eu
-warm=$1 own=$2
+pool=$1 own=$2
 shift 2
 rm -rf "$own"
-mkdir -p "$own"
-for part in "$warm"/* "${WARM_TOO:-$warm}"; do
-    if [ "$part" != "$warm" ] && [ -d "$part" ]; then cp -R "$part/." "$own/"; fi
+mkdir -p "$pool" "$own"
+for part in "$pool"/*; do
+    if [ -d "$part" ]; then cp -Rlf "$part/." "$own/"; fi
 done
-POCL_CACHE_DIR=$own
-export POCL_CACHE_DIR
-exec "$@"
+touch "$own.begun"
+POCL_CACHE_DIR=$own "$@" || exit
+built=$pool/.$$
+mkdir "$built"
+(cd "$own" && find . \( -name '*.so' -o -name '*.bc' \) -newer "$own.begun" -exec cp -l --parents -t "$built" {} +)
+rmdir "$built" 2>/dev/null || mv "$built" "$pool/$(basename "$own").$$"

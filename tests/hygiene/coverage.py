@@ -37,8 +37,8 @@ def build(source, folder, jobs):
 
 
 def test(build_folder, folder, jobs, more):
-    for part in (build_folder / "tests" / "kernel_cache").glob("*"):
-        shutil.copytree(part, folder / "tests" / "kernel_cache" / part.name, dirs_exist_ok=True)
+    for part in (build_folder / "tests" / "kernel_pool").glob("*"):
+        shutil.copytree(part, folder / "tests" / "kernel_pool" / part.name, dirs_exist_ok=True)
     plain = {name: value for name, value in os.environ.items() if name != "TETRACUBES_RESULTS"}
     done = run(["ctest", "--test-dir", folder, "-j", jobs, "--timeout", "1800", "-E", LEFT_OUT, *more], check=False,
                env=plain)  # samples of what the long tier runs whole are no results of it

@@ -184,8 +184,8 @@ class Hygiene:
     def tests_sanitized(self, *more):
         """The whole ctest but for what preloads a library, with the kernels that the build at hand has compiled."""
         folder = self.sanitized("sanitizers", SANITIZED, [])
-        for part in (self.build / "tests" / "kernel_cache").glob("*"):
-            shutil.copytree(part, folder / "tests" / "kernel_cache" / part.name, dirs_exist_ok=True)
+        for part in (self.build / "tests" / "kernel_pool").glob("*"):
+            shutil.copytree(part, folder / "tests" / "kernel_pool" / part.name, dirs_exist_ok=True)
         plain = {name: value for name, value in os.environ.items() if name != "TETRACUBES_RESULTS"}  # of a sample, here
         return run(["ctest", "--test-dir", folder, "--output-on-failure", "-j", self.jobs, "--timeout", "1800", *more,
                     "-E", "^(test_install|test_readme|test_sanitized|test_static|test_data|test_endings)$"], check=False,

@@ -7,8 +7,8 @@
  *        test_topology faults
  *
  * Random grids have the seeds from SEED on. One in EVERY (1: all, 0: none) is extracted on the OpenCL device too, whose
- * bytes must be the reference's; without `any` only where kernels are among those that warm_cache builds. A failure
- * prints the command that repeats its grid alone.
+ * bytes must be the reference's; without `any` only where other tests build the kernels as well. A failure prints
+ * the command that repeats its grid alone.
  */
 #include "surface.h"
 
@@ -32,7 +32,7 @@ typedef struct tally {
     uint64_t grids, surfaces, incomplete, on_device;
 } tally;
 
-/* Whether warm_cache builds the kernels for it. */
+/* Whether other tests build the kernels for it as well. */
 static bool kernels_are_ready(const subject *s) {
     const bool missing = s->grid.has_nodata || s->grid.blanked_samples || s->grid.blanked_cells;
     if (!kind_is_structured(s->kind)) return true;

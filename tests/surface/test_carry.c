@@ -207,23 +207,32 @@ static void test_mode(const tc_context_options *options, tc_context *reference, 
     tc_context_destroy(context);
 }
 
+/* In how many slabs the kind is extracted, 0 where memory does not suffice; and the memory that it takes. */
+static uint32_t slabs_within(const tc_context_options *options, kind k, tc_type type, const tc_extract_options *how,
+                             uint64_t *bytes) {
+    uint32_t slabs = 0;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_context *context = context_open(options);
+    tc_grid *grid = open_grid(context, k, type);
+    if (tc_extract(grid, how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK) slabs = data.slab_count;
+    tc_context_device_bytes(context, bytes);
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    tc_context_destroy(context);
+    return slabs;
+}
+
 /* The most memory, of some, in which the kind is extracted in several slabs. Windows of snap are nearly the whole grid,
  * so it has to be little less than for that. */
 static uint64_t slabs_memory(tc_context_options options, kind k, tc_type type, const tc_extract_options *how) {
     const uint64_t part = how->method == TC_METHOD_SNAP ? 100 : 4;
-    for (uint64_t bytes = 16 << 20; bytes > 1 << 14; bytes -= bytes / part) {
-        uint32_t slabs = 0;
-        tc_mesh *mesh = NULL;
-        tc_mesh_data data = {.struct_size = sizeof data};
-        options.max_memory_bytes = bytes;
-        tc_context *context = context_open(&options);
-        tc_grid *grid = open_grid(context, k, type);
-        if (tc_extract(grid, how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK) slabs = data.slab_count;
-        tc_mesh_destroy(mesh);
-        tc_grid_destroy(grid);
-        tc_context_destroy(context);
-        if (slabs > 1) return bytes;
-    }
+    uint64_t taken;
+    options.max_memory_bytes = 0;
+    slabs_within(&options, k, type, how, &taken);
+    for (options.max_memory_bytes = 2 * taken; options.max_memory_bytes > 1 << 14;
+         options.max_memory_bytes -= options.max_memory_bytes / part)
+        if (slabs_within(&options, k, type, how, &taken) > 1) return options.max_memory_bytes;
     EXPECT(0, "never in slabs");
     return 0;
 }

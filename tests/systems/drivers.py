@@ -2,7 +2,7 @@
 """drivers.py TEST_BYTES [--out FILE] [--folder FOLDER] [--rusticl FOLDER] [--only NAME] [--cases quick]
 
 The same bytes from every driver of OpenCL on this machine. Each that is installed runs test_bytes' cases (all types of
-samples, both methods, all kinds of grids, small) in each variant of the kernels that it takes: for a work-item alone, with
+samples, all methods, all kinds of grids, small) in each variant of the kernels that it takes: for a work-item alone, with
 and without AVX-512, and for groups. Every mesh is compared with the reference's there; here the hashes of all drivers
 are compared, case by case. A driver that is not installed is told, and one that the library refuses for a known fault;
 of the latter only quick cases count, which it gets right. Status 77 where there is none.
@@ -83,7 +83,7 @@ def drivers_list(folder, rusticl_folder):
 
 # Cases that go different ways through the kernels.
 QUICK = ["u8 uniform", "f32 uniform, normals", "f32 uniform, missing, normals", "f64 uniform, hybrid",
-         "f32 curvilinear, blanked", "u8 complex"]
+         "u8 uniform, snap", "f32 curvilinear, blanked", "u8 complex"]
 
 
 def cases_run(program, library, texts, work_items, environment, cache):
