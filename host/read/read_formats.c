@@ -31,6 +31,11 @@ static int begins_as_metaimage(const char *path, const mapping *file) {
     return file_starts_with(file, "ObjectType") || file_starts_with(file, "NDims");
 }
 
+static int begins_as_npy(const char *path, const mapping *file) {
+    (void)path;
+    return file_starts_with(file, "\x93NUMPY");
+}
+
 /* By the size of the header, which begins every NIfTI header, in either byte order. What is packed on standard input,
  * and has no ending, is taken for it. */
 static int begins_as_nifti(const char *path, const mapping *file) {
@@ -55,7 +60,7 @@ static int begins_as_vtk_xml(const char *path, const mapping *file) {
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
 
 /* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
 const read_format read_formats[FORMAT_COUNT] = {
@@ -81,6 +86,7 @@ const read_format read_formats[FORMAT_COUNT] = {
                .instead = "convert it to NRRD",
                .has_frames = 1,
                .may_be_half = 1},
+    [NPY] = {.name = "numpy", .endings = "|.npy|", .begins = begins_as_npy, .read = npy_read, .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
     [VTK_XML] = {.name = "VTK XML",
                  .library = LIBRARY_EXPAT,

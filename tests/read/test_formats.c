@@ -94,7 +94,7 @@ static void expect_missing(const char *name, const char *text, const char *libra
 
 static void test_absent(void) {
     char text[FORMATS_TEXT];
-    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, VTK legacy, Plot3D (grid and solution)"), "%s",
+    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, numpy, VTK legacy, Plot3D (grid and solution)"), "%s",
            text);
     expect_missing("a.nii", "x", "libnifti2", "TETRACUBES_NIFTI");
     expect_missing("a.vtu", "<VTKFile>", "expat", "libexpat1-dev");

@@ -27,7 +27,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D };
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY };
 
 typedef struct format {
     const char *paths[4];
@@ -42,6 +42,7 @@ static const format formats[] = {
     [VTK_LEGACY] = {{"in/a.vtk", "in/a.vtk", "in/a.vtk", "in/a.vtk"}, .read = vtk_legacy_read},
     [VTK_XML] = {{"in/a.vtu", "in/a.vti", "in/a.vts", "in/a.vtr"}, .read = vtk_xml_read},
     [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
+    [NPY] = {{"in/a.npy", "in/a.npy", "in/a.npy", "in/a.npy"}, .read = npy_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading

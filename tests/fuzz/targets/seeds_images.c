@@ -239,6 +239,27 @@ static void add_nifti_loose(void) {
     bytes_free(&samples);
 }
 
+/* Every type, both orders of axes and bytes; frames and components. */
+static void add_npy(void) {
+    static const char *const kinds[] = {"|u1", ">i1", "<u2", ">i2", "<u4", ">i4", "<f4", ">f8", "<i8", ">u8"};
+    static const char *const shapes[] = {"(2, 3, 4)", "(24,)", "(2, 1, 3, 4)", "(1, 2, 4, 3)", "(2, 1, 2, 3, 2)"};
+    for (int type = 0; type < 10; type++) {
+        char dictionary[120], name[32];
+        bytes file = {0}, samples = test_samples(type, 24, type & 1);
+        snprintf(dictionary, sizeof dictionary, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }\n", kinds[type],
+                 type % 3 ? "False" : "True", shapes[type % 5]);
+        bytes_text(&file, "\x93NUMPY%c", 1 + type % 3);
+        bytes_put(&file, 0, 1, 0);
+        bytes_put(&file, strlen(dictionary), type % 3 ? 4 : 2, 0);
+        bytes_text(&file, "%s", dictionary);
+        bytes_add(&file, samples.data, samples.size);
+        snprintf(name, sizeof name, "type-%d", type);
+        seed_file("npy", name, file.data, file.size, NULL, 0, type % 5 < 2 ? plain : second_of_both);
+        bytes_free(&file);
+        bytes_free(&samples);
+    }
+}
+
 /* Headers that ask for a thousand million bytes, of eight packed ones. */
 static void add_bombs(void) {
     bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
@@ -275,5 +296,6 @@ void seeds_images(void) {
     add_metaimage();
     add_metaimage_loose();
     add_nifti_loose();
+    add_npy();
     for (int n = 0; n < 16; n++) add_nifti(1 + (n & 1), n >> 1 & 1, n >> 2 & 1, n >> 3);
 }
