@@ -35,7 +35,7 @@ typedef struct format {
 } format;
 
 static const format formats[] = {
-    [RAW] = {.paths = {"in/a.raw", "in/a.bin", "in/a.xyz", "in/a.img"}}, /* what begins as another format is that */
+    [RAW] = {.paths = {"in/a.raw", "in/a.raw.gz", "in/a.xyz", "in/a.img"}}, /* what begins as another format is that */
     [NRRD] = {{"in/a.nrrd", "in/a.nhdr", "in/a.nrrd", "in/a.nhdr"}, .read = nrrd_read},
     [METAIMAGE] = {{"in/a.mha", "in/a.mhd", "in/a.mha", "in/a.mhd"}, .read = metaimage_read},
     [NIFTI] = {{"in/a.nii", "in/a.nii.gz", "in/a.hdr", "in/a.img"}, .read = nifti_read},

@@ -25,6 +25,28 @@ static void add_raw(void) {
     }
 }
 
+/* Files packed as a whole, of formats that are found by what they begin with, and of none. */
+static void add_packed(void) {
+    static const char *const files[] = {
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n12345678",
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nPOINT_DATA 8\nSCALARS a "
+        "int\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\n",
+        "2 2 2\n0 1 0 1 0 1 0 1 0 0 1 1 0 0 1 1 0 0 0 0 1 1 1 1\n", "12345678"};
+    static const char by_ending[4] = {-1, -1, 2, 0}, as_raw[4] = {-1, -1, 1, 0};
+    for (int n = 0; n < 4; n++) {
+        char name[32];
+        bytes file = {0}, packed = gzipped((const unsigned char *)files[n], strlen(files[n]), AS_GZIP);
+        for (int a = 0; a < 3; a++) bytes_put(&file, n == 3 ? 2 : 0, 8, 0);
+        for (int byte = 0; byte < 56; byte++) bytes_put(&file, 0, 1, 0);
+        bytes_put(&file, n == 3 ? 0 : 255, 2, 0); /* no type: the format is to be found */
+        bytes_add(&file, packed.data, packed.size);
+        snprintf(name, sizeof name, "packed-%d", n);
+        seed_file("raw", name, file.data, file.size, NULL, 0, n == 3 ? as_raw : by_ending);
+        bytes_free(&file);
+        bytes_free(&packed);
+    }
+}
+
 static const char nrrd_common[] = "NRRD0005\n# a comment\ncontent: a test\ndimension: 3\nsizes: 4 3 2\nendian: big\n"
                                   "labels: \"x\" \"y\" \"z\"\nkey:=value\n";
 
@@ -289,6 +311,7 @@ static void add_bombs(void) {
 void seeds_images(void) {
     add_bombs();
     add_raw();
+    add_packed();
     add_nrrd_types();
     add_nrrd_encodings();
     add_nrrd_axes();
