@@ -203,8 +203,7 @@ int dataset_read(const read_request *request, dataset *out) {
                     "give the names of both",
                     mapping_is_standard_input(request->path) ? request->path : request->path2);
     if (request->path2 && !may_be_plot3d(read_format_of_ending(request->path))) return refuse_pair(request);
-    int status = unpack_second(request, out);
-    if (!status) status = map_unpacked(request, request->path, out, &file);
+    int status = map_unpacked(request, request->path, out, &file);
     if (status) {
         restore_names(request);
         dataset_release(out);
@@ -215,7 +214,7 @@ int dataset_read(const read_request *request, dataset *out) {
     if ((status = refuse_encoding(request, &file))) {
     } else if (request->path2 && format != plot3d_format) {
         status = refuse_pair(request);
-    } else {
+    } else if (!(status = unpack_second(request, out))) {
         status = format ? read_as(format, request, &file, out) : refuse_unknown(request->path, &file);
     }
     mapping_close(&file);

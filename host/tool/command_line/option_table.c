@@ -46,9 +46,10 @@ const option option_table[] = {
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl or obj, whatever FILE ends in"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
-     "field to contour, of data with several, see 'tetracubes info'; values of\n"
-     "cells are averaged to the points between them; point:NAME and cell:NAME\n"
-     "choose where both have a field of that name (else that of the points)"},
+     "field to contour, of data with several, see 'tetracubes info' (default:\n"
+     "the file's active scalars, if it has such); values of cells are averaged\n"
+     "to the points between them; point:NAME and cell:NAME choose where both\n"
+     "have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
      "other fields, interpolated onto the vertices (PLY, VTP); a name that the\n"
      "file needs itself, as Normals, gets _ behind"},
