@@ -105,6 +105,7 @@ TESTS = {
     "test_dropped": test("tool/test_dropped.py", "", ("reference",)),
     "test_nodata": test("surface/test_nodata"),
     "test_cli_images": test("tool/test_cli_images.py"),
+    "test_cli_written": test("tool/test_cli_written.py", "", ("reference",)),
 }
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
