@@ -37,8 +37,8 @@ const option option_table[] = {
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb or .npz (left out: only\n"
      "the report); with several isovalues, % in FILE stands for the isovalue as\n"
-     "typed; - is standard output (give --format): the report then goes to standard\n"
-     "error"},
+     "typed; - is standard output (give --format): the report then goes to\n"
+     "standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
