@@ -8,6 +8,7 @@
 #include "failure.h"
 #include "file/gunzip.h"
 #include "file/mapping.h"
+#include "image/slices.h"
 #include "read_formats.h"
 
 #include <stdio.h>
@@ -194,9 +195,19 @@ static void restore_names(const read_request *request) {
     if (request->path2) mapping_restore(request->path2);
 }
 
+/* What was read, unless notices were lost or a status says that it failed; then nothing. */
+static int finish(const read_request *request, dataset *out, int status) {
+    if (!status && out->notice_lost)
+        status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
+    if (status) dataset_release(out);
+    return status;
+}
+
 int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
-    mapping file;
+    mapping file = {0};
+    if (!request->path2 && !is_raw(request) && slices_are_named(request->path))
+        return finish(request, out, read_as(tiff_format, request, &file, out));
     if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
         return fail(STATUS_USAGE,
                     "%s: standard input is one file, and two inputs are a Plot3D grid and its solution: "
@@ -206,8 +217,7 @@ int dataset_read(const read_request *request, dataset *out) {
     int status = map_unpacked(request, request->path, out, &file);
     if (status) {
         restore_names(request);
-        dataset_release(out);
-        return status;
+        return finish(request, out, status);
     }
     const read_format *format = find_format(request, &file);
     if (request->path2 && may_be_plot3d(format)) format = plot3d_format;
@@ -219,8 +229,5 @@ int dataset_read(const read_request *request, dataset *out) {
     }
     mapping_close(&file);
     restore_names(request);
-    if (!status && out->notice_lost)
-        status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
-    if (status) dataset_release(out);
-    return status;
+    return finish(request, out, status);
 }

@@ -29,6 +29,14 @@ static int begins_as_metaimage(const mapping *file) {
 
 static int begins_as_npy(const mapping *file) { return file_starts_with(file, "\x93NUMPY"); }
 
+/* Either byte order, the classic form and BigTIFF. */
+static int begins_as_tiff(const mapping *file) {
+    static const char beginnings[4][4] = {"II*", {'M', 'M', 0, '*'}, "II+", {'M', 'M', 0, '+'}};
+    for (int i = 0; i < 4; i++)
+        if (file->size >= 8 && memcmp(file->bytes, beginnings[i], 4) == 0) return 1;
+    return 0;
+}
+
 /* By the size of the header, which begins every NIfTI header, in either byte order. */
 static int begins_as_nifti(const mapping *file) {
     static const char sizes[4][4] = {{92, 1, 0, 0}, {0, 0, 1, 92}, {28, 2, 0, 0}, {0, 0, 2, 28}};
@@ -48,7 +56,7 @@ static int begins_as_vtk_xml(const mapping *file) {
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
 
 /* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
 const read_format read_formats[FORMAT_COUNT] = {
@@ -76,6 +84,14 @@ const read_format read_formats[FORMAT_COUNT] = {
                .unpacks = 1,
                .may_be_half = 1},
     [NPY] = {.name = "numpy", .endings = "|.npy|", .begins = begins_as_npy, .read = npy_read, .has_frames = 1},
+    [TIFF] = {.name = "TIFF",
+              .library = LIBRARY_TIFF,
+              .notes = {{"stacks and slices", LIBRARY_NONE}},
+              .endings = "|.tif|.tiff|",
+              .begins = begins_as_tiff,
+              .read = IF_BUILT(HAVE_TIFF, tiff_read),
+              .instead = "convert it to NRRD",
+              .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
     [VTK_XML] = {.name = "VTK XML",
                  .library = LIBRARY_EXPAT,
@@ -95,7 +111,8 @@ const read_format read_formats[FORMAT_COUNT] = {
 };
 
 const int read_format_count = FORMAT_COUNT;
-const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D];
+const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D],
+                         *const tiff_format = &read_formats[TIFF];
 
 const read_format *read_format_of_content(const mapping *file) {
     for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++)

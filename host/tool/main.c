@@ -46,6 +46,7 @@ static const command commands[] = {
      "What gzip has packed is unpacked into memory.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
+     "  tetracubes extract slices/%04d.tif --spacing 0.2,0.2,1 --iso 90 -o cells.glb\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
      "  tetracubes extract ct.nrrd --iso 300 --roi 100:228,:,40: --step 2,2,1 -o part.ply\n"

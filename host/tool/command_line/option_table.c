@@ -52,8 +52,8 @@ const option option_table[] = {
      "to the points between them; point:NAME and cell:NAME choose where both\n"
      "have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
-     "other fields, interpolated onto the vertices (PLY, VTP, NPZ); a name that the\n"
-     "file needs itself, as Normals, gets _ behind"},
+     "other fields, interpolated onto the vertices (PLY, VTP, NPZ); a name that\n"
+     "the file needs itself, as Normals, gets _ behind"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},

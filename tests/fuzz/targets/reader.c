@@ -27,7 +27,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY };
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF };
 
 typedef struct format {
     const char *paths[4];
@@ -43,6 +43,7 @@ static const format formats[] = {
     [VTK_XML] = {{"in/a.vtu", "in/a.vti", "in/a.vts", "in/a.vtr"}, .read = vtk_xml_read},
     [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
     [NPY] = {{"in/a.npy", "in/a.npy", "in/a.npy", "in/a.npy"}, .read = npy_read},
+    [TIFF] = {{"in/a.tif", "in/a.tiff", "in/a.tif", "in/a.tif"}, .read = tiff_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading

@@ -1,7 +1,7 @@
 /* seeds_images.c - raw, NRRD, MetaImage and NIfTI files; see seeds.h */
 #include "seeds.h"
 
-#include "read_files.h"
+#include "tiff_files.h"
 
 static const char plain[4] = {-1, -1, 0, 0}, detached[4] = {-1, -1, 1, 0}, second_value[4] = {1, -1, 0, 0},
                   second_frame[4] = {-1, 1, 0, 0}, second_of_both[4] = {1, 1, 0, 0}, length[4] = {-2, -1, 0, 0},
@@ -282,6 +282,29 @@ static void add_npy(void) {
     }
 }
 
+/* Every type, packing and order of bytes, strips and tiles; what ImageJ notes. */
+static void add_tiff(void) {
+    static const int packings[] = {TIFF_NONE, TIFF_DEFLATE, TIFF_PACKBITS};
+    for (int n = 0; n < 24; n++) {
+        const tiff_form form = {.type = n % 10,
+                                .is_big_endian = n & 1,
+                                .is_big_tiff = n >> 1 & 1,
+                                .compression = packings[n % 3],
+                                .width = 4,
+                                .height = 3,
+                                .samples = n % 8 == 6 ? 3 : 1,
+                                .rows = 1 + n % 3,
+                                .tile = n & 4 ? 16 : 0,
+                                .description = n & 8 ? "ImageJ=1.53t\nimages=2\nslices=1\nframes=2\nspacing=2\n" : NULL,
+                                .resolution = {2, 3}};
+        char name[32];
+        bytes file = tiff_file(&form, 1 + n % 3, 0);
+        snprintf(name, sizeof name, "form-%d", n);
+        seed_file("tiff", name, file.data, file.size, NULL, 0, form.samples > 1 ? second_value : plain);
+        bytes_free(&file);
+    }
+}
+
 /* Headers that ask for a thousand million bytes, of eight packed ones. */
 static void add_bombs(void) {
     bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
@@ -320,5 +343,6 @@ void seeds_images(void) {
     add_metaimage_loose();
     add_nifti_loose();
     add_npy();
+    add_tiff();
     for (int n = 0; n < 16; n++) add_nifti(1 + (n & 1), n >> 1 & 1, n >> 2 & 1, n >> 3);
 }
