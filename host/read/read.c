@@ -6,7 +6,9 @@
 #include "dataset/part.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "file/gunzip.h"
 #include "file/mapping.h"
+#include "image/slices.h"
 #include "read_formats.h"
 
 #include <stdio.h>
@@ -20,7 +22,7 @@ static int is_raw(const read_request *request) {
 
 static const read_format *find_format(const read_request *request, const mapping *file) {
     if (is_raw(request) && !request->raw_else) return raw_format;
-    const read_format *format = read_format_of_content(request->path, file);
+    const read_format *format = read_format_of_content(file);
     if (!format) format = read_format_of_ending(request->path);
     return format || !request->raw_else ? format : raw_format;
 }
@@ -160,31 +162,72 @@ static int refuse_pair(const read_request *request) {
                 request->path, request->path2);
 }
 
+/* Whether a file is packed as a whole. A NIfTI file's reader unpacks it itself, and samples without a header may begin
+ * like anything. */
+static int is_packed(const read_request *request, const char *path, const mapping *file) {
+    if (!gunzip_begins(file)) return 0;
+    if (mapping_is_stream(path)) return !is_raw(request) || request->raw_else;
+    if (is_raw(request) && !request->raw_else) return path_ends_with(path, ".gz");
+    const read_format *format = read_format_of_ending(path);
+    return !format || !format->unpacks;
+}
+
+/* Maps a file of the input, unpacked where it is packed. */
+static int map_unpacked(const read_request *request, const char *path, dataset *out, mapping *file) {
+    int status = dataset_map(out, path, file);
+    if (status || !is_packed(request, path, file)) return status;
+    status = gunzip(path, file);
+    mapping_close(file);
+    return status ? status : dataset_map(out, path, file);
+}
+
+/* The same of the second input, which its reader maps. */
+static int unpack_second(const read_request *request, dataset *out) {
+    mapping file;
+    int status = request->path2 ? map_unpacked(request, request->path2, out, &file) : 0;
+    if (request->path2 && !status) mapping_close(&file);
+    return status;
+}
+
+/* Names stand for their own files again. */
+static void restore_names(const read_request *request) {
+    mapping_restore(request->path);
+    if (request->path2) mapping_restore(request->path2);
+}
+
+/* What was read, unless notices were lost or a status says that it failed; then nothing. */
+static int finish(const read_request *request, dataset *out, int status) {
+    if (!status && out->notice_lost)
+        status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
+    if (status) dataset_release(out);
+    return status;
+}
+
 int dataset_read(const read_request *request, dataset *out) {
     *out = (dataset){0};
-    mapping file;
+    mapping file = {0};
+    if (!request->path2 && !is_raw(request) && slices_are_named(request->path))
+        return finish(request, out, read_as(tiff_format, request, &file, out));
     if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
         return fail(STATUS_USAGE,
                     "%s: standard input is one file, and two inputs are a Plot3D grid and its solution: "
                     "give the names of both",
                     mapping_is_standard_input(request->path) ? request->path : request->path2);
     if (request->path2 && !may_be_plot3d(read_format_of_ending(request->path))) return refuse_pair(request);
-    int status = dataset_map(out, request->path, &file);
+    int status = map_unpacked(request, request->path, out, &file);
     if (status) {
-        dataset_release(out);
-        return status;
+        restore_names(request);
+        return finish(request, out, status);
     }
     const read_format *format = find_format(request, &file);
     if (request->path2 && may_be_plot3d(format)) format = plot3d_format;
     if ((status = refuse_encoding(request, &file))) {
     } else if (request->path2 && format != plot3d_format) {
         status = refuse_pair(request);
-    } else {
+    } else if (!(status = unpack_second(request, out))) {
         status = format ? read_as(format, request, &file, out) : refuse_unknown(request->path, &file);
     }
     mapping_close(&file);
-    if (!status && out->notice_lost)
-        status = fail(STATUS_FAILED, "%s: no memory for what is to be told", request->path);
-    if (status) dataset_release(out);
-    return status;
+    restore_names(request);
+    return finish(request, out, status);
 }

@@ -21,41 +21,42 @@ int file_starts_with(const mapping *file, const char *text) {
     return file->size >= length && memcmp(file->bytes, text, length) == 0;
 }
 
-static int begins_as_nrrd(const char *path, const mapping *file) {
-    (void)path;
-    return file_starts_with(file, "NRRD0");
-}
+static int begins_as_nrrd(const mapping *file) { return file_starts_with(file, "NRRD0"); }
 
-static int begins_as_metaimage(const char *path, const mapping *file) {
-    (void)path;
+static int begins_as_metaimage(const mapping *file) {
     return file_starts_with(file, "ObjectType") || file_starts_with(file, "NDims");
 }
 
-/* By the size of the header, which begins every NIfTI header, in either byte order. What is packed on standard input,
- * and has no ending, is taken for it. */
-static int begins_as_nifti(const char *path, const mapping *file) {
+static int begins_as_npy(const mapping *file) { return file_starts_with(file, "\x93NUMPY"); }
+
+/* Either byte order, the classic form and BigTIFF. */
+static int begins_as_tiff(const mapping *file) {
+    static const char beginnings[4][4] = {"II*", {'M', 'M', 0, '*'}, "II+", {'M', 'M', 0, '+'}};
+    for (int i = 0; i < 4; i++)
+        if (file->size >= 8 && memcmp(file->bytes, beginnings[i], 4) == 0) return 1;
+    return 0;
+}
+
+/* By the size of the header, which begins every NIfTI header, in either byte order. */
+static int begins_as_nifti(const mapping *file) {
     static const char sizes[4][4] = {{92, 1, 0, 0}, {0, 0, 1, 92}, {28, 2, 0, 0}, {0, 0, 2, 28}};
     for (int i = 0; i < 4; i++)
         if (file->size >= 348 && memcmp(file->bytes, sizes[i], 4) == 0) return 1;
-    return mapping_is_stream(path) && file_starts_with(file, "\x1f\x8b");
+    return 0;
 }
 
-static int begins_as_vtk_legacy(const char *path, const mapping *file) {
-    (void)path;
-    return file_starts_with(file, "# vtk DataFile Version");
-}
+static int begins_as_vtk_legacy(const mapping *file) { return file_starts_with(file, "# vtk DataFile Version"); }
 
 /* The element VTKFile, after a prolog and comments if there are any. */
-static int begins_as_vtk_xml(const char *path, const mapping *file) {
+static int begins_as_vtk_xml(const mapping *file) {
     enum { PROLOG = 4096 };
     size_t size = file->size < PROLOG ? file->size : PROLOG;
-    (void)path;
     return size && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
 
 /* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
 const read_format read_formats[FORMAT_COUNT] = {
@@ -80,7 +81,17 @@ const read_format read_formats[FORMAT_COUNT] = {
                .read = IF_BUILT(HAVE_NIFTI, nifti_read),
                .instead = "convert it to NRRD",
                .has_frames = 1,
+               .unpacks = 1,
                .may_be_half = 1},
+    [NPY] = {.name = "numpy", .endings = "|.npy|", .begins = begins_as_npy, .read = npy_read, .has_frames = 1},
+    [TIFF] = {.name = "TIFF",
+              .library = LIBRARY_TIFF,
+              .notes = {{"stacks and slices", LIBRARY_NONE}},
+              .endings = "|.tif|.tiff|",
+              .begins = begins_as_tiff,
+              .read = IF_BUILT(HAVE_TIFF, tiff_read),
+              .instead = "convert it to NRRD",
+              .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
     [VTK_XML] = {.name = "VTK XML",
                  .library = LIBRARY_EXPAT,
@@ -100,11 +111,12 @@ const read_format read_formats[FORMAT_COUNT] = {
 };
 
 const int read_format_count = FORMAT_COUNT;
-const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D];
+const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D],
+                         *const tiff_format = &read_formats[TIFF];
 
-const read_format *read_format_of_content(const char *path, const mapping *file) {
+const read_format *read_format_of_content(const mapping *file) {
     for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++)
-        if (f->begins && f->begins(path, file)) return f;
+        if (f->begins && f->begins(file)) return f;
     return NULL;
 }
 
@@ -113,6 +125,8 @@ const read_format *read_format_of_ending(const char *path) {
         for (const char *at = f->endings + 1; *at; at += strcspn(at, "|") + 1) {
             char ending[16];
             snprintf(ending, sizeof ending, "%.*s", (int)strcspn(at, "|"), at);
+            if (path_ends_with(path, ending)) return f;
+            strncat(ending, ".gz", sizeof ending - strlen(ending) - 1);
             if (path_ends_with(path, ending)) return f;
         }
     return NULL;

@@ -20,14 +20,14 @@ typedef struct read_format {
     } notes[FORMAT_NOTES]; /* shown in parentheses where their library was found; ends with one without text */
     const char *endings;   /* of its files, with a bar before, between and after them */
 
-    /* Whether the file begins as the format does; NULL: the format has no certain beginning. path tells streams apart.
-     */
-    int (*begins)(const char *path, const mapping *file);
+    /* Whether the file begins as the format does; NULL: the format has no certain beginning. */
+    int (*begins)(const mapping *file);
 
     /* Given the mapped file, fills a zeroed dataset; on failure the caller releases it. NULL: without the library. */
     int (*read)(const read_request *request, const mapping *file, dataset *out);
     const char *instead; /* what helps where that is NULL */
     int has_frames;      /* request->frame is the reader's; grids have one frame */
+    int unpacks;         /* the reader unpacks files that are packed as a whole */
     int may_be_half;     /* of two inputs, Plot3D's grid and solution, the first may look like this */
 } read_format;
 
@@ -35,10 +35,10 @@ extern const read_format read_formats[];
 extern const int read_format_count;
 
 /* The rows that are chosen without looking at the table. */
-extern const read_format *const raw_format, *const plot3d_format;
+extern const read_format *const raw_format, *const plot3d_format, *const tiff_format;
 
-/* The format by the first bytes, or by the ending; NULL where that tells none. */
-const read_format *read_format_of_content(const char *path, const mapping *file);
+/* The format by the first bytes, or by the ending, .gz behind it or not; NULL where that tells none. */
+const read_format *read_format_of_content(const mapping *file);
 const read_format *read_format_of_ending(const char *path);
 
 /* The formats this program was built with, one line: "raw, NRRD (gzip, bzip2), MetaImage, NIfTI". Returns text. */

@@ -43,13 +43,15 @@ static const command commands[] = {
      "tetrahedra, from uniform, rectilinear, curvilinear and unstructured grids. Vertices are\n"
      "shared, triangles face the lower values, and the same input gives the same bytes on every\n"
      "device. Two INPUTs are a Plot3D grid and its solution or function file; - is standard input.\n"
+     "What gzip has packed is unpacked into memory.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
+     "  tetracubes extract slices/%04d.tif --spacing 0.2,0.2,1 --iso 90 -o cells.glb\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
      "  tetracubes extract ct.nrrd --iso 300 --roi 100:228,:,40: --step 2,2,1 -o part.ply\n"
      "  tetracubes extract dem.mha --iso 0 --nodata -9999 --verify --json\n"
-     "  gzip -dc ct.nrrd.gz | tetracubes extract - --iso 300 -o ct.ply\n"
+     "  xz -dc ct.nrrd.xz | tetracubes extract - --iso 300 -o ct.ply\n"
      "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"
      "  tetracubes extract engine.vtu --field temperature --iso 400 -o hot.ply"},
     {"info", COMMAND_INFO, info_run, NULL, "what a file holds, and isovalues worth trying",

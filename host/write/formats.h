@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-#define FORMAT_LIMIT UINT32_MAX /* vertices in a PLY, OBJ or VTP file, triangles in an STL file */
+#define FORMAT_LIMIT UINT32_MAX /* vertices in a file, or triangles where they are what the format counts */
 
 /* Consecutive vertices whose coordinates in the file differ from those of the mesh by the same offset. */
 typedef struct shown_part {
@@ -32,11 +32,14 @@ typedef struct shown_mesh {
     int is_moved;   /* some offset is not 0: coordinates are doubles where the format has them */
 } shown_mesh;
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "PLY, STL and VTP are written as numbers lie in memory");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary formats are written as numbers lie in memory");
 
 #define WRITER(name, ...) void name##_write(output *o, const shown_mesh *s);
 MESH_FORMATS(WRITER)
 #undef WRITER
+
+/* Whether the file's size, beside its counts, can be told in the format. */
+int glb_fits(const shown_mesh *s);
 
 /* Whether some of the arrays has that role. */
 static inline int shows_role(const shown_mesh *s, vertex_role role) {
@@ -73,6 +76,14 @@ static inline const double *shown_offset(const shown_mesh *s, uint64_t vertex) {
 static inline void shown_position(const shown_mesh *s, uint64_t vertex, double out[3]) {
     const double *offset = shown_offset(s, vertex);
     for (uint64_t axis = 0; axis < 3; axis++) out[axis] = offset[axis] + (double)s->mesh->positions[3 * vertex + axis];
+}
+
+/* The same rounded to float32, which they are where the mesh is not moved. */
+static inline void shown_position_f32(const shown_mesh *s, uint64_t vertex, float out[3]) {
+    double position[3] = {0};
+    if (s->is_moved) shown_position(s, vertex, position);
+    for (uint64_t axis = 0; axis < 3; axis++)
+        out[axis] = s->is_moved ? (float)position[axis] : s->mesh->positions[3 * vertex + axis];
 }
 
 /* Copies to an address of any alignment; returns the address behind. */

@@ -14,19 +14,23 @@
 /*
  * The table of formats that are written (host/README.md says what a new one needs). ROW is applied to each:
  *
- *     ROW(name, label, roles, has_doubles, counts)
+ *     ROW(name, label, roles, has_doubles, counts, fits)
  *
  *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
  *     roles        of values that vertices have beside their positions
  *     has_doubles  of coordinates
  *     counts       what the format counts in 32 bits, vertices or triangles
+ *     fits         of a format whose files have a limit of size: the function that tells whether a mesh keeps it
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices)                                                               \
-    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, vertices)                                                               \
-    ROW(stl, "STL", 0, 0, triangles)                                                                                   \
-    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices)
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
+    ROW(stl, "STL", 0, 0, triangles, NULL)                                                                             \
+    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL)                                                                    \
+    ROW(off, "OFF", 0, 1, vertices, NULL)                                                                              \
+    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits)                                                                \
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")

@@ -13,45 +13,17 @@
 #include "file_text.h"
 #include "formats.h"
 #include "stored_types.h"
+#include "value_names.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4, NAME_BYTES = 128, NAME_KEPT = 100 };
-
-typedef char property_name[NAME_BYTES];
+enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4 };
 
 /* The properties that the format knows; others are called like their array. */
-static const char *const known[ROLE_COUNT][3] = {
-    [ROLE_POSITIONS] = {"x", "y", "z"}, [ROLE_NORMALS] = {"nx", "ny", "nz"}};
-
-static int is_taken(const char *name, const property_name *names, size_t count) {
-    for (int role = 0; role < ROLE_COUNT; role++)
-        for (int c = 0; c < 3; c++)
-            if (known[role][c] && strcmp(name, known[role][c]) == 0) return 1;
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(name, names[i]) == 0) return 1;
-    return 0;
-}
-
-/* Makes names[count] of the array's name: letters, digits and '_', other than every name before it. */
-static void name_property(const vertex_array *array, int component, property_name *names, size_t count) {
-    char *name = names[count];
-    size_t length = 0;
-    for (const char *c = array->name; *c && length < NAME_KEPT; c++) {
-        int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
-        name[length++] = (char)(is_word ? *c : '_');
-    }
-    name[length] = 0;
-    if (!length) length = (size_t)sprintf(name, "field");
-    if (array->components > 1) length += (size_t)sprintf(name + length, "_%d", component);
-    while (is_taken(name, names, count) && length < NAME_BYTES - 1) {
-        name[length++] = '_';
-        name[length] = 0;
-    }
-}
+static const char *const known[] = {"x", "y", "z", "nx", "ny", "nz", NULL}, *const normals[] = {"nx", "ny", "nz"};
 
 static int value_count(const shown_mesh *s) {
     int count = 0;
@@ -60,14 +32,16 @@ static int value_count(const shown_mesh *s) {
 }
 
 static void add_properties(file_text *header, const shown_mesh *s) {
-    property_name *names = malloc(((size_t)value_count(s) + 1) * sizeof *names);
+    value_name *names = malloc(((size_t)value_count(s) + 1) * sizeof *names);
     size_t count = 0;
     if (!names) header->has_failed = 1;
     for (int i = 0; i < s->array_count && names; i++)
         for (int c = 0; c < s->arrays[i].components; c++) {
-            const char *const *own = known[s->arrays[i].role];
-            if (!own[0]) name_property(&s->arrays[i], c, names, count);
-            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, own[0] ? own[c] : names[count++]);
+            const int is_normal = s->arrays[i].role == ROLE_NORMALS;
+            char number[16] = "";
+            if (s->arrays[i].components > 1) snprintf(number, sizeof number, "_%d", c);
+            if (!is_normal) value_name_make(s->arrays[i].name, number, known, names, count++);
+            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, is_normal ? normals[c] : names[count - 1]);
         }
     free(names);
 }

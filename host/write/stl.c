@@ -29,15 +29,11 @@ static unsigned char *encode_triangles(const void *source, uint64_t first, uint6
     const tc_mesh_data *mesh = s->mesh;
     for (uint64_t t = first; t < end; t++) {
         const uint32_t *vertices = mesh->triangles + 3 * t;
-        const double *offset = shown_offset(s, vertices[0]);
         const float *corners[3];
         float vectors[4][3];
         for (int c = 0; c < 3; c++) corners[c] = mesh->positions + 3 * (uint64_t)vertices[c];
         facet_normal(corners[0], corners[1], corners[2], vectors[0]);
-        for (int c = 0; c < 3; c++)
-            for (int axis = 0; axis < 3; axis++)
-                vectors[1 + c][axis] =
-                    s->is_moved ? (float)(offset[axis] + (double)corners[c][axis]) : corners[c][axis];
+        for (int c = 0; c < 3; c++) shown_position_f32(s, vertices[c], vectors[1 + c]);
         to = put_bytes(to, vectors, sizeof vectors);
         to = put_bytes(to, &(uint16_t){0}, 2);
     }

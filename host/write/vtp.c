@@ -5,7 +5,7 @@
  * connectivity and offsets are Int32 where that is enough, else Int64. Arrays that lie in the mesh as they should lie
  * in the file are written without a copy.
  */
-#include "formats.h"
+#include "shown_records.h"
 #include "vtk_appended.h"
 
 #include <errno.h>
@@ -13,30 +13,6 @@
 
 /* The attributes of points that the format knows; other arrays have names of their own. */
 static const char *const attributes[ROLE_COUNT] = {[ROLE_NORMALS] = "Normals"};
-
-/* An array, and the mesh that says in which order it is shown. */
-typedef struct shown_array {
-    const shown_mesh *shown;
-    vertex_array array;
-} shown_array;
-
-static unsigned char *encode_values(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
-    const shown_array *s = source;
-    size_t components = (size_t)s->array.components;
-    for (uint64_t v = first; v < end; v++)
-        to = put_bytes(to, s->array.values + components * source_vertex(s->shown, v), components * sizeof(float));
-    return to;
-}
-
-static unsigned char *encode_positions(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
-    const shown_mesh *s = source;
-    for (uint64_t v = first; v < end; v++) {
-        double position[3];
-        shown_position(s, source_vertex(s, v), position);
-        to = put_bytes(to, position, sizeof position);
-    }
-    return to;
-}
 
 static int is_wide(const shown_mesh *s) { return vtk_needs_wide(file_vertex_count(s), 3 * s->mesh->triangle_count); }
 
@@ -54,15 +30,15 @@ static unsigned char *encode_ends(const void *source, uint64_t first, uint64_t e
 }
 
 static vtk_array file_array(const shown_array *s) {
-    int is_plain = !s->shown->soup;
     const char *attribute = attributes[s->array.role];
+    const record_array records = records_of_values(s);
     return (vtk_array){.name = attribute ? attribute : s->array.name,
                        .type = TC_F32,
                        .components = s->array.components,
-                       .record_count = file_vertex_count(s->shown),
-                       .record_bytes = (size_t)s->array.components * sizeof(float),
-                       .encode = is_plain ? NULL : encode_values,
-                       .source = is_plain ? (const void *)s->array.values : s};
+                       .record_count = records.count,
+                       .record_bytes = records.record_bytes,
+                       .encode = records.encode,
+                       .source = records.source};
 }
 
 static void add_arrays(vtk_file *f, const shown_mesh *s, shown_array *shown) {
@@ -92,7 +68,7 @@ static void add_positions(vtk_file *f, const shown_mesh *s, const shown_array *p
                                   .components = 3,
                                   .record_count = file_vertex_count(s),
                                   .record_bytes = 3 * sizeof(double),
-                                  .encode = encode_positions,
+                                  .encode = encode_positions_f64,
                                   .source = s});
 }
 

@@ -21,9 +21,11 @@ typedef struct format {
     int roles;       /* bits, HAS_... */
     int has_doubles; /* for coordinates */
     enum counted counted;
+    int (*fits)(const shown_mesh *s); /* NULL: whatever the counts allow */
 } format;
 
-#define FORMAT(name, label, roles, has_doubles, counts) {#name, name##_write, roles, has_doubles, COUNTS_##counts},
+#define FORMAT(name, label, roles, has_doubles, counts, fits)                                                          \
+    {#name, name##_write, roles, has_doubles, COUNTS_##counts, fits},
 static const format formats[] = {MESH_FORMATS(FORMAT)};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
@@ -45,6 +47,8 @@ static int is_any(const format *f) {
 static int has_role(const format *f, vertex_role role) { return f->roles >> role & 1; }
 
 static int has_data(const format *f) { return has_role(f, ROLE_DATA); }
+
+static int is_of_any_size(const format *f) { return !f->fits && f->counted == COUNTS_vertices; }
 
 /* Makes "ply, vtp, stl or obj" of the formats that are meant, with `before` in front of each name. */
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
@@ -106,6 +110,15 @@ static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, co
                     (unsigned long long)count, by_triangles ? "triangles" : "vertices", f->name,
                     by_triangles ? "; write ply or obj instead" : "; extract a part of the volume");
     return 0;
+}
+
+/* Whether the file's size fits the format. */
+static int check_size(const char *path, const shown_mesh *s, const format *f) {
+    char list[LIST_BYTES];
+    if (!f->fits || f->fits(s)) return 0;
+    return fail(STATUS_FAILED, "%s: %llu vertices and %llu triangles take more than the 4 GiB that %s holds; write %s",
+                path, (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count, f->name,
+                list_formats(is_of_any_size, "", list));
 }
 
 int mesh_write_check(const char *path, const mesh_write_options *options) {
@@ -186,6 +199,7 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);
     if (!status) status = set_arrays(&shown, options, f, &arrays);
+    if (!status) status = check_size(path, &shown, f);
     if (!status) status = output_open(&o, path);
     if (!status) {
         f->write(&o, &shown);

@@ -3,9 +3,12 @@
 Readers give the points, the triangles as numbers of points, and the three types of a point's coordinates, as struct
 names them.
 """
+import ast
+import json
 import math
 import re
 import struct
+import zipfile
 from typing import NamedTuple
 
 
@@ -83,10 +86,66 @@ def read_stl(path):
     return points, [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(count)], "fff"
 
 
-READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
+def read_off(path):
+    with open(path, encoding="ascii") as f:
+        words = f.read().split()
+    vertices, faces = int(words[1]), int(words[2])
+    numbers, corners = words[4:4 + 3 * vertices], words[4 + 3 * vertices:]
+    assert words[0] == "OFF" and len(corners) == 4 * faces and set(corners[::4]) <= {"3"}
+    return (list(zip(*[iter(map(float, numbers))] * 3)),
+            [tuple(map(int, corners[n + 1:n + 4])) for n in range(0, len(corners), 4)], "ddd")
 
 
-READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl}
+def glb_parts(path):
+    """(what its JSON describes, its binary chunk)"""
+    with open(path, "rb") as f:
+        content = f.read()
+    magic, version, length, json_bytes, json_kind = struct.unpack_from("<4sIII4s", content)
+    assert (magic, version, length, json_kind, json_bytes % 4) == (b"glTF", 2, len(content), b"JSON", 0)
+    rest = content[20 + json_bytes:]
+    if rest:
+        assert struct.unpack_from("<I4s", rest) == (len(rest) - 8, b"BIN\0") and len(rest) % 4 == 0
+    return json.loads(content[20:20 + json_bytes]), rest[8:]
+
+
+def read_glb(path):
+    description, binary = glb_parts(path)
+    if not binary:
+        return [], [], "fff"
+    primitive = description["meshes"][0]["primitives"][0]
+    vectors = description["bufferViews"][primitive["attributes"]["POSITION"]]
+    indices = description["bufferViews"][primitive["indices"]]
+    points, corners = (struct.unpack_from(f"<{view['byteLength'] // 4}{code}", binary, view["byteOffset"])
+                       for view, code in ((vectors, "f"), (indices, "I")))
+    return list(zip(*[iter(points)] * 3)), list(zip(*[iter(corners)] * 3)), "fff"
+
+
+def npz_arrays(path):
+    """Type, shape and values of each array, in the order of the file; zipfile looks at their check sums."""
+    arrays = {}
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        for name in archive.namelist():
+            content = archive.read(name)
+            length = struct.unpack_from("<H", content, 8)[0]
+            header = ast.literal_eval(content[10:10 + length].decode())
+            assert name.endswith(".npy") and content[:8] == b"\x93NUMPY\1\0" and (10 + length) % 64 == 0
+            assert not header["fortran_order"]
+            code = {"<f4": "f", "<f8": "d", "<u4": "I"}[header["descr"]]
+            values = struct.unpack_from(f"<{math.prod(header['shape'])}{code}", content, 10 + length)
+            assert len(content) == 10 + length + struct.calcsize(code) * len(values)
+            arrays[name[:-4]] = (header["descr"], header["shape"], values)
+    return arrays
+
+
+def read_npz(path):
+    arrays = npz_arrays(path)
+    return (list(zip(*[iter(arrays["vertices"][2])] * 3)), list(zip(*[iter(arrays["faces"][2])] * 3)),
+            {"<f4": "fff", "<f8": "ddd"}[arrays["vertices"][0]])
+
+
+READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl, "off": read_off, "glb": read_glb,
+           "npz": read_npz}
 
 
 def measures(points, faces, at=(0, 0, 0)):

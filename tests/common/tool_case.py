@@ -98,9 +98,10 @@ class Case(unittest.TestCase):
 
 
 class GridCase(Case):
-    def write(self, name, text):
-        with open(self.path(name), "w") as f:
-            f.write(text)
+    def write(self, name, data):
+        """A file of this text, or of these bytes."""
+        with open(self.path(name), "wb") as f:
+            f.write(data if isinstance(data, bytes) else data.encode())
         return self.path(name)
 
     def raw(self, name, kind, dims, values):

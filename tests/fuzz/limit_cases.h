@@ -12,13 +12,15 @@ typedef struct limit_case {
     const char *name, *text, *part; /* part: of the failure's text; NULL: the file is read */
 } limit_case;
 
-#define META    "NDims = 3\nElementType = MET_DOUBLE\n"
-#define LOCAL   "ElementDataFile = LOCAL\n12345678"
-#define LEGACY  "# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET "
-#define POINTS4 LEGACY "UNSTRUCTURED_GRID\nPOINTS 0 float\n"
-#define IMAGE   LEGACY "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"
-#define XML(t)  "<VTKFile type=\"" t "\" version=\"1.0\" byte_order=\"LittleEndian\">"
-#define HUGE    "9223372036854775807"
+#define META     "NDims = 3\nElementType = MET_DOUBLE\n"
+#define LOCAL    "ElementDataFile = LOCAL\n12345678"
+#define LEGACY   "# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET "
+#define POINTS4  LEGACY "UNSTRUCTURED_GRID\nPOINTS 0 float\n"
+#define IMAGE    LEGACY "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"
+#define XML(t)   "<VTKFile type=\"" t "\" version=\"1.0\" byte_order=\"LittleEndian\">"
+#define BLANKS64 "                                                                "
+#define NPY288   "\x93NUMPY\1 \40\1" /* 288 bytes of header follow */
+#define HUGE     "9223372036854775807"
 
 static const limit_case size_cases[] = {
     {"a.mha", META "DimSize = 4294967296 4294967296 4294967296\n" LOCAL, "2^64"},
@@ -65,6 +67,9 @@ static const limit_case size_cases[] = {
                       "format=\"appended\" offset=\"" HUGE "\"/></PointData></Piece></ImageData>"
                       "<AppendedData encoding=\"raw\">_1234</AppendedData></VTKFile>",
      "'a'"},
+    {"a.npy",
+     NPY288 "{'descr':'<f8','fortran_order':True,'shape':(" HUGE "," HUGE ",2)}" BLANKS64 BLANKS64 BLANKS64 "        ",
+     "2^64"},
     {"a.xyz", "2147483647 2147483647 2147483647\n1 2 3\n", "numbers"},
     {"a.xyz", "2 2 2\n9999999999*1\n", "repeat counts"},
 };

@@ -6,7 +6,7 @@
  * Memory is measured: nothing is taken for what a header only says.
  */
 #include "limit_cases.h"
-#include "read_files.h"
+#include "tiff_files.h"
 
 #include "dataset/dataset.h"
 
@@ -94,6 +94,28 @@ static void test_bombs(void) {
         check_file("a NIfTI bomb", file_write("bomb.nii.gz", packed.data, packed.size), "cannot hold");
         bytes_free(&plain);
         bytes_free(&packed);
+    }
+}
+
+/* Pages and tiles of sizes that their few bytes cannot hold. */
+static void test_pages(void) {
+    static const unsigned char tags[3][8] = {
+        {0, 1, 4, 0, 1, 0, 0, 0}, {0x42, 1, 4, 0, 1, 0, 0, 0}, {0x43, 1, 4, 0, 1, 0, 0, 0}}; /* width, sides of tiles */
+    for (int n = 0; n < 6; n++) {
+        const int compression = n & 1 ? TIFF_DEFLATE : TIFF_NONE, is_tiled = n / 2 > 0;
+        const tiff_form f = {.type = TC_U8,
+                             .compression = compression,
+                             .width = 16,
+                             .height = 16,
+                             .samples = 1,
+                             .rows = 16,
+                             .tile = is_tiled ? 16 : 0};
+        bytes file = tiff_file(&f, 1, 0);
+        unsigned char *at = memmem(file.data, file.size, tags[n / 2], 8);
+        EXPECT(at != NULL, "no such tag");
+        if (at) memcpy(at + 8, &(uint32_t){1u << 28}, 4);
+        check_file("a large page", file_write("large.tif", file.data, file.size), "large.tif");
+        bytes_free(&file);
     }
 }
 
@@ -329,6 +351,7 @@ int main(void) {
     folder_make("limits");
     test_sizes();
     test_bombs();
+    test_pages();
     test_headers();
     test_names();
     test_numbers();

@@ -39,6 +39,9 @@ TESTS = {
     "test_read": test("read/test_read"),
     "test_read_lenient": test("read/test_read_lenient"),
     "test_nrrd_lenient": test("read/test_nrrd_lenient"),
+    "test_npy": test("read/test_npy"),
+    "test_gzip": test("read/test_gzip"),
+    "test_tiff": test("read/test_tiff"),
     "test_vtk_xml": test("read/test_vtk_xml"),
     "test_vtk_legacy": test("read/test_vtk_legacy"),
     "test_vtk_legacy_odd": test("read/test_vtk_legacy_odd"),
@@ -103,6 +106,7 @@ TESTS = {
     "test_dropped": test("tool/test_dropped.py", "", ("reference",)),
     "test_nodata": test("surface/test_nodata"),
     "test_cli_images": test("tool/test_cli_images.py"),
+    "test_cli_written": test("tool/test_cli_written.py", "", ("reference",)),
 }
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
@@ -156,6 +160,11 @@ FILES = {
     "host/read/vtk_xml/": ["test_vtk_xml", "test_vtk_xml_hostile"],
     "host/read/vtk_legacy/": LEGACY,
     "host/read/plot3d/": ["test_plot3d"],
+    "host/read/file/gunzip.c": ["test_gzip"],
+    "host/read/file/unpack_deflate.c": ["test_gzip"],
+    "host/read/image/npy.c": ["test_npy"],
+    "host/read/image/tiff": ["test_tiff"],
+    "host/read/image/slices.c": ["test_tiff"],
     "host/read/field/average.c": ["test_dataset", "test_vtk_legacy"],
     "host/read/": READERS,
     "host/common/far.h": ["test_far, reference"],

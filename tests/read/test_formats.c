@@ -94,9 +94,10 @@ static void expect_missing(const char *name, const char *text, const char *libra
 
 static void test_absent(void) {
     char text[FORMATS_TEXT];
-    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, VTK legacy, Plot3D (grid and solution)"), "%s",
-           text);
+    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, numpy, VTK legacy, Plot3D (grid and solution)"),
+           "%s", text);
     expect_missing("a.nii", "x", "libnifti2", "TETRACUBES_NIFTI");
+    expect_missing("a.tif", "x", "libtiff", "libtiff-dev");
     expect_missing("a.vtu", "<VTKFile>", "expat", "libexpat1-dev");
     expect_missing("a.nrrd", NRRD_222 "gzip\n\n12345678", "zlib", "zlib1g-dev");
     expect_missing("b.nrrd", NRRD_222 "bzip2\n\n12345678", "libbz2", "TETRACUBES_BZIP2");

@@ -332,13 +332,18 @@ class Description(ImageCase):
                           + f"SCALARS t float\nLOOKUP_TABLE default\n{values}\nVECTORS v float\n"
                           + numbers(value for vector in VECTORS for value in vector) + "\n")
         info = self.report("info", path)
-        self.assertEqual(info["choices"], [{"option": "--field", "names": ["s", "t", "v"]}])
-        self.assertRegex(self.expect(0, "info", path).stdout, "(?m)^choose .* --field NAME")
+        self.assertEqual(info["choices"], [{"option": "--field", "names": ["s", "t", "v"], "taken": "s"}])
+        self.assertEqual((info["field"], info["range"]), ("s", [0, 59]))
+        self.assertRegex(self.expect(0, "info", path).stdout, "(?m)^choose .* --field NAME.* without it 's' is taken$")
         self.assertEqual(self.report("info", path, "--field", "s")["choices"], [])
         vector = self.report("info", path, "--field", "v")
         self.assertEqual(vector["choices"], [{"option": "--component", "count": 3, "meaning": ""}])
         self.assertIn("--component 0 to 2", self.expect(0, "info", path, "--field", "v").stdout)
         self.refuses(2, "info", path, "--field", "none", says="none")
+        said = self.expect(0, "extract", path, "--iso", "30", "--engine", "reference").stderr
+        self.assertIn("'s' is taken, its active scalars", said)
+        said = self.expect(0, "extract", path, "--iso", "30", "--engine", "reference", "--field", "s").stderr
+        self.assertNotIn("is taken", said)
 
 
 class Reports(ImageCase):

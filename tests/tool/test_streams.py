@@ -4,6 +4,7 @@
 A mesh on a stream is the same bytes as in a file, and whatever else is said goes to the other stream. Where the OpenCL
 implementation cannot write its cache, the message names the folder.
 """
+import gzip
 import json
 import os
 import subprocess
@@ -30,7 +31,7 @@ class Streams(GridCase):
         return subprocess.run([*self.words, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=400, **how)
 
     def test_mesh_on_standard_output(self):
-        for ending in ("stl", "ply", "vtp", "obj"):
+        for ending in ("stl", "ply", "vtp", "obj", "off", "glb", "npz"):
             good = self.expected(ending)
             for name in ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"):
                 for more in ([], ["--json"], ["--quiet"]):
@@ -40,6 +41,27 @@ class Streams(GridCase):
         report = json.loads(self.run_split("-o", "-", "--format", "obj", "--json").stderr)
         self.assertEqual(report["surfaces"][0]["iso"], 127.5)
         self.assertNotIn("-", self.files())
+
+    def test_packed_input(self):
+        """Packed by gzip: a file, standard input, a mask; samples without a header by their ending alone."""
+        if "gzip" not in self.expect(0, "--version").stdout:
+            self.skipTest("built without zlib")
+        good = self.expected("ply")
+        with open(self.volume, "rb") as file:
+            packed = gzip.compress(file.read())
+        self.write("s.nrrd.gz", packed)
+        self.write("mask.raw.gz", gzip.compress(bytes([1]) * 12 * 11 * 10))
+        raw = self.write("s.raw.gz", gzip.compress(bytes(range(8))))
+        done = self.run_split("-o", "-", "--format", "ply", "--mask", self.path("mask.raw.gz"))
+        self.assertEqual((done.returncode, done.stdout), (0, good), done.stderr)
+        for volume, data in ((self.path("s.nrrd.gz"), b""), ("-", packed), ("/dev/stdin", packed)):
+            done = subprocess.run([*self.words[:2], volume, *self.words[3:], "-o", "-", "--format", "ply"], input=data,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=400)
+            self.assertEqual((done.returncode, done.stdout), (0, good), done.stderr)
+        facts = json.loads(self.expect(0, "info", raw, "--dims", "2,2,2", "--type", "u8", "--json").stdout)
+        self.assertEqual(facts["format"], "raw")
+        done = self.expect(4, "info", self.write("cut.vtk.gz", packed[:100]))
+        self.assertIn("cut.vtk.gz: its compressed data is damaged (it is cut)", done.stderr)
 
     def test_file_that_the_shell_opened(self):
         good = self.expected("ply")

@@ -7,7 +7,7 @@
 #include "expect.h"
 #include "failure.h"
 #include "folder.h"
-#include "mesh_files.h"
+#include "mesh_packages.h"
 #include "mesh_write.h"
 
 #include <dirent.h>
@@ -95,8 +95,11 @@ static int holds(const char *path, const char *text) {
 static const struct {
     const char *ending;
     tc_mesh_data (*parse)(const char *text, size_t bytes);
-} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl}, {"vtp", parse_vtp},
-               {"PLY", parse_ply}, {"Obj", parse_obj}, {"sTL", parse_stl}, {"VTP", parse_vtp}};
+} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl}, {"vtp", parse_vtp}, {"off", parse_off},
+               {"glb", parse_glb}, {"npz", parse_npz}, {"PLY", parse_ply}, {"Obj", parse_obj}, {"sTL", parse_stl},
+               {"VTP", parse_vtp}, {"Off", parse_off}, {"GLB", parse_glb}, {"nPZ", parse_npz}};
+
+enum { FORMAT_COUNT = 7 }; /* in lower case */
 
 /* The right-hand rule in long double. Slivers are let pass: rounding decides where they face. */
 static int is_facet_normal(const float normal[3], const float *corners, uint64_t *sliver_count) {
@@ -148,7 +151,9 @@ static void test_read_back(const tc_mesh_data *mesh, int soup, size_t which) {
         is.normals = NULL;
     }
     tc_mesh_data compared = should;
-    if (is_stl || (formats[which].parse == parse_obj && should.vertex_count == 0)) compared.normals = NULL;
+    const int has_no_normals = is_stl || formats[which].parse == parse_off;
+    if (has_no_normals || (formats[which].parse == parse_obj && !should.vertex_count)) compared.normals = NULL;
+    if (formats[which].parse == parse_glb && !mesh->triangle_count) compared = (tc_mesh_data){0}; /* none is empty */
     expect_mesh(name, &is, &compared);
     EXPECT(count_files() == 1, "%s: %d files", name, count_files());
     if (soup || is_stl) free_mesh(&should);
@@ -164,7 +169,7 @@ static void test_meshes(void) {
         for (int with_normals = 0; with_normals < 2; with_normals++) {
             tc_mesh_data mesh = make_mesh(sizes[i][0], sizes[i][1], with_normals);
             for (int soup = 0; soup < 2; soup++)
-                for (size_t f = 0; f < (sizes[i][1] > 4 ? 4 : sizeof formats / sizeof *formats); f++)
+                for (size_t f = 0; f < (sizes[i][1] > 4 ? FORMAT_COUNT : sizeof formats / sizeof *formats); f++)
                     test_read_back(&mesh, soup, f);
             free_mesh(&mesh);
         }
@@ -232,7 +237,8 @@ static void test_formats_named(const tc_mesh_data *mesh) {
     }
     mesh_write_options vtk = {.format = "vtk"}, stl = {.format = "STL"};
     expect_failure("format vtk", mesh_write_check("mesh.ply", &vtk), STATUS_USAGE, "\"vtk\"");
-    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE, "ply, vtp, stl or obj");
+    expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE,
+                   "ply, vtp, stl, obj, off, glb or npz");
     EXPECT(mesh_write_check("a.b/mesh.Ply", NULL) == 0, "ending in mixed case");
     EXPECT(mesh_write_check("/dev/stdout", &stl) == 0, "named format without an ending");
 
@@ -255,6 +261,12 @@ static void test_limits(void) {
     expect_failure("triangles", mesh_write(path_of("a.stl"), &many_triangles, NULL), STATUS_FAILED, "2^32 - 1");
     expect_failure("soup", mesh_write(path_of("a.ply"), &third, &soup), STATUS_FAILED, "2^32 - 1");
     expect_failure("soup", mesh_write(path_of("a.obj"), &third, &soup), STATUS_FAILED, "2^32 - 1");
+    tc_mesh_data large = {.vertex_count = 180000000, .triangle_count = 180000000}, fits = large;
+    expect_failure("4 GiB", mesh_write(path_of("a.glb"), &large, NULL), STATUS_FAILED,
+                   "write ply, vtp, obj, off or npz");
+    expect_failure("4 GiB", mesh_write(path_of("a.glb"), &third, &soup), STATUS_FAILED, "2^32 - 1");
+    fits.vertex_count = 177900000; /* its file would have 4,294,800,000 bytes and a few: the folder is looked for */
+    expect_failure("less", mesh_write(path_of("none/a.glb"), &fits, NULL), STATUS_FAILED, "create the folder");
     EXPECT(count_files() == 0, "%d files", count_files());
 }
 

@@ -145,9 +145,9 @@ static void test_fields(void) {
 static void test_refusals(void) {
     vertex_array field = {"f", 1, (float[]){0}, ROLE_DATA}, wide = {"f", 1 << 20, (float[]){0}, ROLE_DATA};
     mesh_write_options with = {.fields = &field, .field_count = 1}, too_many = {.fields = &wide, .field_count = 1};
-    EXPECT(mesh_write_check("a.stl", &with) == STATUS_USAGE && strstr(failure_text(), "ply or vtp"), "STL: %s",
+    EXPECT(mesh_write_check("a.stl", &with) == STATUS_USAGE && strstr(failure_text(), "ply, vtp or npz"), "STL: %s",
            failure_text());
-    EXPECT(mesh_write_check("a.obj", &with) == STATUS_USAGE && strstr(failure_text(), "ply or vtp"), "OBJ: %s",
+    EXPECT(mesh_write_check("a.obj", &with) == STATUS_USAGE && strstr(failure_text(), "ply, vtp or npz"), "OBJ: %s",
            failure_text());
     EXPECT(mesh_write_check("a.vtp", &too_many) == STATUS_USAGE && strstr(failure_text(), "4096"), "many: %s",
            failure_text());

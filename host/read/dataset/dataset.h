@@ -16,6 +16,7 @@ typedef struct dataset_field {
     int on_cells;     /* a tuple per cell, not per point */
     int components;   /* values per tuple: 1 for a scalar */
     tc_type type;     /* f64 where the file has 64-bit integers */
+    int is_active;    /* the file's active scalars: taken where none of several fields is chosen */
     int is_rounded;   /* no double holds some of these integers: the nearest stands for them */
     int is_scaled;    /* f64, made of stored values by a slope and an intercept that have the precision of f32 */
     const void *values;

@@ -21,6 +21,7 @@ enum association { ANY_ASSOCIATION = -1, AT_POINTS, ON_CELLS };
 typedef struct choice {
     const char *name; /* NULL: none */
     enum association association;
+    int is_active; /* made by the file: its active scalars */
 } choice;
 
 static const dataset_field *chosen_field(const dataset_block *b, choice c) {
@@ -35,7 +36,7 @@ static const dataset_field *chosen_field(const dataset_block *b, choice c) {
 }
 
 const dataset_field *block_field(const dataset_block *b, const char *name) {
-    return chosen_field(b, (choice){name, ANY_ASSOCIATION});
+    return chosen_field(b, (choice){name, ANY_ASSOCIATION, 0});
 }
 
 static int is_common(const dataset *d, choice c) {
@@ -53,7 +54,7 @@ int common_field_names(const dataset *d, const char ***names) {
         const char *name = first->fields[n].name;
         int is_new = 1;
         for (int m = 0; m < count; m++) is_new = is_new && strcmp((*names)[m], name) != 0;
-        if (is_new && is_common(d, (choice){name, ANY_ASSOCIATION})) (*names)[count++] = name;
+        if (is_new && is_common(d, (choice){name, ANY_ASSOCIATION, 0})) (*names)[count++] = name;
     }
     return count;
 }
@@ -69,12 +70,23 @@ size_t field_prefix(const char *text) {
 static choice find_choice(const dataset *d, const char *const *names, int count, const char *text) {
     const size_t prefix = field_prefix(text);
     for (int n = 0; n < count; n++)
-        if (strcmp(names[n], text) == 0) return (choice){names[n], ANY_ASSOCIATION};
+        if (strcmp(names[n], text) == 0) return (choice){names[n], ANY_ASSOCIATION, 0};
     for (int n = 0; n < count && prefix; n++) {
-        const choice c = {names[n], text[0] == 'c' ? ON_CELLS : AT_POINTS};
+        const choice c = {names[n], text[0] == 'c' ? ON_CELLS : AT_POINTS, 0};
         if (strcmp(names[n], text + prefix) == 0 && is_common(d, c)) return c;
     }
-    return (choice){NULL, ANY_ASSOCIATION};
+    return (choice){NULL, ANY_ASSOCIATION, 0};
+}
+
+/* The file's active scalars, of points before those of cells, where every block has such a field. */
+static choice active_choice(const dataset *d) {
+    choice c = {NULL, ANY_ASSOCIATION, 0};
+    for (int n = 0; d->block_count && n < d->blocks->field_count; n++) {
+        const dataset_field *f = &d->blocks->fields[n];
+        const choice own = {f->name, f->on_cells ? ON_CELLS : AT_POINTS, 1};
+        if (f->is_active && (!c.name || c.association > own.association) && is_common(d, own)) c = own;
+    }
+    return c;
 }
 
 /* Adds "density (point)" or "velocity (point, 3 components)" to a list; "cell:density (cell)" of a field that its name
@@ -94,8 +106,8 @@ static void list_field(const dataset *d, choice c, char *text, size_t bytes) {
 static void list_fields(const dataset *d, const char *const *names, int count, char *text, size_t bytes) {
     text[0] = '\0';
     for (int n = 0; n < count; n++) {
-        const choice cells = {names[n], ON_CELLS};
-        list_field(d, (choice){names[n], ANY_ASSOCIATION}, text, bytes);
+        const choice cells = {names[n], ON_CELLS, 0};
+        list_field(d, (choice){names[n], ANY_ASSOCIATION, 0}, text, bytes);
         if (!block_field(d->blocks, names[n])->on_cells && is_common(d, cells)) list_field(d, cells, text, bytes);
     }
 }
@@ -115,7 +127,9 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     int status = 0, count = common_field_names(d, &names);
     if (count < 0) return STATUS_FAILED;
     list_fields(d, names, count, list, sizeof list);
-    *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANY_ASSOCIATION};
+    *out = wanted ? find_choice(d, names, count, wanted) : (choice){count ? names[0] : NULL, ANY_ASSOCIATION, 0};
+    const choice active = active_choice(d);
+    if (!wanted && count > 1 && active.name) *out = active;
     const int is_unknown = wanted && !out->name;
     const dataset_absent *absent = is_unknown ? find_absent(d, wanted) : NULL;
     if (!count && !absent) absent = find_absent(d, NULL);
@@ -131,7 +145,7 @@ static int choose(const dataset *d, const char *path, const char *option, const 
     else if (is_unknown)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);
-    else if (!wanted && count > 1)
+    else if (!wanted && count > 1 && !active.name)
         status = fail(STATUS_USAGE, "%s: holds several fields: choose by --field NAME one of: %s", path, list);
     free(names);
     return status;
@@ -281,6 +295,7 @@ int scalar_select(dataset *d, const read_request *request, scalar *out) {
     int status = choose(d, request->path, "--field takes", request->field, &chosen);
     if (status) return status;
     out->name = chosen.name;
+    out->is_active = chosen.is_active;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;
     for (int n = 0; n < d->block_count && !status; n++) {
@@ -301,11 +316,13 @@ int scalar_components(const dataset *d, const read_request *request, int *compon
     *components = 0;
     if (count < 0) return STATUS_FAILED;
     free(names);
-    if (!request->field && count != 1) return 0;
+    if (!request->field && count != 1 && !active_choice(d).name) return 0;
     if ((status = choose(d, request->path, "--field takes", request->field, &chosen))) return status;
     *components = chosen_field(d->blocks, chosen)->components;
     return 0;
 }
+
+const char *active_field(const dataset *d) { return active_choice(d).name; }
 
 /* The field at the points of a block. */
 static int field_at_points(dataset *d, const dataset_block *b, const dataset_field *f, dataset_field *out) {

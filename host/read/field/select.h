@@ -2,7 +2,8 @@
  * select.h - which field of a dataset is contoured, and its samples: one number per point of every block
  *
  * A field is chosen by its name. Where points and cells have fields of one name, that of the points is taken;
- * point:NAME and cell:NAME choose. A field whose own name begins like that has precedence. Values of cells are averaged
+ * point:NAME and cell:NAME choose. A field whose own name begins like that has precedence. Where no name is given, the
+ * only field is taken, or of several the file's active scalars, as VTK's files name them. Values of cells are averaged
  * to points (average.h). New arrays lie in the dataset's memory; values that need no change are used where they are.
  */
 #ifndef SELECT_H
@@ -23,6 +24,7 @@ typedef struct scalar_block {
 
 typedef struct scalar {
     const char *name;
+    int is_active;   /* not chosen by the request: the file's active scalars */
     int component;   /* -1 of a field that has one; or COMPONENT_MAGNITUDE */
     int is_averaged; /* of cells */
     int is_rounded;  /* as that of dataset_field, in some block */
@@ -43,8 +45,11 @@ typedef struct point_field {
  * field, or STATUS_FAILED. */
 int scalar_select(dataset *d, const read_request *request, scalar *out);
 
-/* *components: of the field that is named, or the only one; 0 where that choice is open, or there is none. Returns as
- * scalar_select where a name is not there. */
+/* The name of the field that is taken where several are there and none is named; NULL: none is. */
+const char *active_field(const dataset *d);
+
+/* *components: of the field that is named, active or the only one; 0 where that choice is open, or there is none.
+ * Returns as scalar_select where a name is not there. */
 int scalar_components(const dataset *d, const read_request *request, int *components);
 
 /* The field of that name with all its components. path is the input's name for messages. Returns as scalar_select;

@@ -14,6 +14,7 @@ static const struct {
     [LIBRARY_LZMA] = {"liblzma", "liblzma-dev", "TETRACUBES_LZMA", HAVE_LZMA},
     [LIBRARY_NIFTI] = {"libnifti2", "libnifti2-dev", "TETRACUBES_NIFTI", HAVE_NIFTI},
     [LIBRARY_EXPAT] = {"expat", "libexpat1-dev", "TETRACUBES_EXPAT", HAVE_EXPAT},
+    [LIBRARY_TIFF] = {"libtiff 4.5", "libtiff-dev", "TETRACUBES_TIFF", HAVE_TIFF},
 };
 
 int library_is_built(enum library library) { return libraries[library].is_built; }

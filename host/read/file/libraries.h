@@ -7,7 +7,16 @@
 #ifndef LIBRARIES_H
 #define LIBRARIES_H
 
-enum library { LIBRARY_NONE, LIBRARY_ZLIB, LIBRARY_BZIP2, LIBRARY_LZ4, LIBRARY_LZMA, LIBRARY_NIFTI, LIBRARY_EXPAT };
+enum library {
+    LIBRARY_NONE,
+    LIBRARY_ZLIB,
+    LIBRARY_BZIP2,
+    LIBRARY_LZ4,
+    LIBRARY_LZMA,
+    LIBRARY_NIFTI,
+    LIBRARY_EXPAT,
+    LIBRARY_TIFF
+};
 
 /* The function, or NULL. */
 #define IF_BUILT(have, function)  IF_BUILT_(have, function)

@@ -36,14 +36,14 @@ int mapping_is_stream(const char *path) {
     return mapping_is_standard_input(path) || is_pipe(path);
 }
 
-/* Standard input and pipes as files in memory. */
+/* Standard input and pipes as files in memory; and files that others stand for, for a while. */
 enum { STREAMS_KEPT = 8 };
 
 static struct {
     pthread_mutex_t lock;
     struct stream {
         file_identity of;
-        int is_standard_input, file;
+        int is_standard_input, is_replaced, file;
     } kept[STREAMS_KEPT];
     int count;
 } streams = {.lock = PTHREAD_MUTEX_INITIALIZER};
@@ -139,8 +139,43 @@ static int open_stream(const char *path, int *file) {
     return status;
 }
 
+/* Whether another file stands for it. */
+static int is_replaced(const char *path) {
+    pthread_mutex_lock(&streams.lock);
+    const struct stream *s = streams.count ? find_stream(path) : NULL;
+    pthread_mutex_unlock(&streams.lock);
+    return s != NULL;
+}
+
+int mapping_replace(const char *path, int instead) {
+    struct stat about = {0};
+    pthread_mutex_lock(&streams.lock);
+    struct stream *s = find_stream(path);
+    if (s) {
+        close(s->file);
+    } else if (streams.count < STREAMS_KEPT && stat(path, &about) == 0) {
+        s = &streams.kept[streams.count++];
+        *s = (struct stream){.of = {about.st_dev, about.st_ino}, .is_replaced = 1};
+    }
+    if (s) s->file = instead;
+    pthread_mutex_unlock(&streams.lock);
+    if (s) return 0;
+    close(instead);
+    return fail(STATUS_FAILED, "%s: is one file too many that has to be taken into memory; unpack it", path);
+}
+
+void mapping_restore(const char *path) {
+    pthread_mutex_lock(&streams.lock);
+    struct stream *s = streams.count ? find_stream(path) : NULL;
+    if (s && s->is_replaced) {
+        close(s->file);
+        *s = streams.kept[--streams.count];
+    }
+    pthread_mutex_unlock(&streams.lock);
+}
+
 static int open_file(const char *path, int *file) {
-    if (mapping_is_standard_input(path) || is_pipe(path)) return open_stream(path, file);
+    if (mapping_is_standard_input(path) || is_pipe(path) || is_replaced(path)) return open_stream(path, file);
     /* without O_NONBLOCK, opening a device may wait */
     *file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     return *file < 0 ? fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno)) : 0;

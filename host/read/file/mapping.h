@@ -23,6 +23,12 @@ int mapping_is_standard_input(const char *path);
  * no other file lies beside it. */
 int mapping_is_stream(const char *path);
 
+/* From now on path, a file that can be opened, stands for another one: an open descriptor, taken over. 0, or a status
+ * with its message, and the descriptor is closed. mapping_restore ends that, but for standard input and pipes, whose
+ * bytes came only once. */
+int mapping_replace(const char *path, int instead);
+void mapping_restore(const char *path);
+
 /* Unmaps and zeroes. Accepts a zeroed mapping. */
 void mapping_close(mapping *m);
 

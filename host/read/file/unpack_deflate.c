@@ -22,8 +22,8 @@ int inflate_stream(const char *path, const unsigned char *in, size_t in_bytes, t
         left -= given - stream.avail_in;
         if (target_took(t, room - stream.avail_out)) break;
         if (code == Z_STREAM_END) {
-            if (!t->skip && !t->bytes) break;
             int another = left > 2 && stream.next_in[0] == 0x1f && stream.next_in[1] == 0x8b;
+            if (!t->skip && !t->bytes && !another) break;
             if (another && inflateReset(&stream) == Z_OK) continue;
             status = stream_ended(path, t, wanted);
             break;
@@ -31,7 +31,8 @@ int inflate_stream(const char *path, const unsigned char *in, size_t in_bytes, t
         if (code == Z_MEM_ERROR)
             status = fail(STATUS_FAILED, "zlib: out of memory");
         else if (code == Z_BUF_ERROR && !left)
-            status = stream_ends_early(path, wanted - t->bytes - t->skip, wanted);
+            status = t->is_counted ? unpack_damaged(path, "it is cut")
+                                   : stream_ends_early(path, wanted - t->bytes - t->skip, wanted);
         else if (code != Z_OK)
             status = unpack_damaged(path, stream.msg ? stream.msg : "zlib");
         if (status) break;

@@ -318,6 +318,17 @@ static void describe(const source *from, const layout *l, dataset *out) {
     out->frames = l->frames;
 }
 
+/* Takes over the stored array: the samples, or what they are gathered from. */
+static int take(const source *from, const layout *l, unsigned char *stored, dataset *out) {
+    if (layout_is_plain(l, stored)) {
+        out->blocks->fields->values = stored + l->offset * element_bytes(l->element);
+        return dataset_keep(out, stored);
+    }
+    int status = gather(from, l, stored, out);
+    free(stored);
+    return status;
+}
+
 static int load(const source *from, const layout *l, dataset *out) {
     int64_t parts = from->files.count ? from->files.count : 1;
     int status = 0;
@@ -334,11 +345,7 @@ static int load(const source *from, const layout *l, dataset *out) {
         }
         if (!stored && !(stored = samples_allocate(l->bytes))) return no_memory(from->header_path, l->bytes);
     }
-    if (layout_is_plain(l, stored)) {
-        out->blocks->fields->values = stored + l->offset * element_bytes(l->element);
-        return dataset_keep(out, stored);
-    }
-    status = gather(from, l, stored, out);
+    return take(from, l, stored, out);
 cleanup:
     free(stored);
     return status;
@@ -351,4 +358,13 @@ int source_load(const read_request *request, const source *from, const layout *s
     describe(from, stored, out);
     status = part_cut_image(request, out, &cut);
     return status ? status : load(from, &cut, out);
+}
+
+int source_take(const read_request *request, const source *from, const layout *stored, void *array, dataset *out) {
+    layout cut = *stored;
+    describe(from, stored, out);
+    int status = part_cut_image(request, out, &cut);
+    if (!status) return take(from, &cut, array, out);
+    free(array);
+    return status;
 }

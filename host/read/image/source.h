@@ -30,4 +30,7 @@ typedef struct source {
  * frames; of the part that the request asks for (part.h). A notice says where files hold more than is used. */
 int source_load(const read_request *request, const source *from, const layout *stored, dataset *out);
 
+/* The same of an array that its format's library has brought into memory from samples_allocate, which is taken over. */
+int source_take(const read_request *request, const source *from, const layout *stored, void *array, dataset *out);
+
 #endif

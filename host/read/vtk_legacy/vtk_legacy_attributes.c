@@ -78,6 +78,15 @@ static int read_array(legacy *r, const char *name, int type, int64_t components)
     return add_field(r, name, wanted, components, values, rounded > 0);
 }
 
+/* The array that was added since is the section's active scalars, if it is its first. */
+static void note_active(const legacy *r, int fields_before) {
+    const int on_cells = r->section == SECTION_CELLS;
+    dataset_block *b = r->block;
+    for (int n = 0; n < fields_before; n++)
+        if (b->fields[n].is_active && b->fields[n].on_cells == on_cells) return;
+    if (b->field_count > fields_before) b->fields[fields_before].is_active = 1;
+}
+
 /* NAME TYPE, then the values. */
 static int read_named(legacy *r, int64_t components) {
     char name[LEGACY_WORD];
@@ -193,9 +202,12 @@ int legacy_attribute(legacy *r, const char *keyword, int *known) {
     *known = 1;
     for (size_t i = 0; i < sizeof attributes / sizeof *attributes; i++) {
         if (strcasecmp(keyword, attributes[i].name)) continue;
+        const int before = r->block->field_count;
         if (r->section == SECTION_GEOMETRY && attributes[i].read != read_field)
             return legacy_fail(r, "has %s before POINT_DATA or CELL_DATA, so that it belongs to neither", keyword);
-        return attributes[i].read ? attributes[i].read(r) : read_named(r, attributes[i].components);
+        int status = attributes[i].read ? attributes[i].read(r) : read_named(r, attributes[i].components);
+        if (attributes[i].read == read_scalars || attributes[i].read == read_colors) note_active(r, before);
+        return status;
     }
     *known = 0;
     return 0;

@@ -130,6 +130,7 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
     dataset_field *added, field = {.name = names + array->name,
                                    .on_cells = array->section == SECTION_CELL_DATA,
                                    .components = (int)array->components,
+                                   .is_active = array->is_active,
                                    .type = element_sample_type(array->element)};
     if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
     if (wide) {

@@ -41,6 +41,7 @@ typedef struct header_parser {
     const char *grid_name; /* of the element that holds the pieces */
     int depth, in_grid, in_piece, in_array;
     enum xml_section section;
+    char scalars[256];         /* the name of its active scalars; "": none */
     const unsigned char *text; /* where the text of the array begins that is being parsed */
     int status, has_ended;
 } header_parser;
@@ -197,6 +198,12 @@ static enum xml_section find_section(const char *name) {
     return SECTION_NONE;
 }
 
+/* A name that is longer than any sensible one is taken for none. */
+static void note_scalars(header_parser *p, const char *name) {
+    const int is_there = name && strlen(name) < sizeof p->scalars;
+    snprintf(p->scalars, sizeof p->scalars, "%s", is_there ? name : "");
+}
+
 static int find_element_type(const char *type) {
     for (int element = 0; type && element < ELEMENT_COUNT; element++)
         if (strcmp(type, stored_types[element].vtk_xml) == 0) return element;
@@ -225,6 +232,7 @@ static int begin_array(header_parser *p, const char **attributes) {
     doc->arrays = arrays;
     xml_array *array = &arrays[doc->array_count++];
     *array = (xml_array){.section = p->section, .element = find_element_type(type), .components = 1};
+    array->is_active = *p->scalars && name && strcmp(name, p->scalars) == 0;
     array->is_bits = type && strcmp(type, "Bit") == 0;
     snprintf(array->type, sizeof array->type, "%s", type ? type : "");
     doc->pieces[doc->piece_count - 1].array_count++;
@@ -305,6 +313,7 @@ static void start_element(void *user, const char *name, const char **attributes)
         p->status = begin_piece(p, attributes);
     } else if (p->depth == LEVEL_SECTION && p->in_piece) {
         p->section = find_section(name);
+        note_scalars(p, attribute(attributes, "Scalars"));
     } else if (p->depth == LEVEL_ARRAY && p->section &&
                (strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0)) {
         p->status = begin_array(p, attributes);

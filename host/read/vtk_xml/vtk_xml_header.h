@@ -31,6 +31,7 @@ typedef struct xml_array {
     int is_bits;        /* TC_U8 as text; else eight values to a byte, the first in the highest bit */
     char type[24];      /* as the file names it */
     int64_t components; /* at least 1 */
+    int is_active;      /* the section's Scalars */
     enum xml_format format;
     uint64_t offset;                      /* appended: from the first byte of the appended data */
     const unsigned char *text, *text_end; /* inline: without white space around it; both NULL: none */

@@ -16,7 +16,8 @@ int open_choices_find(const read_request *request, const dataset *d, open_choice
     if (d->frames > 1) c->frames = d->frames;
     if (components > 1 && request->component == COMPONENT_OPEN) c->components = components;
     c->can_select = components && !c->components;
-    if (components) return 0;
+    c->taken = request->field ? NULL : active_field(d);
+    if (components && !c->taken) return 0;
     c->field_count = common_field_names(d, &c->fields);
     return c->field_count < 0 ? STATUS_FAILED : 0;
 }
@@ -29,7 +30,11 @@ void open_choices_release(open_choices *c) {
 json_t *open_choices_json(const open_choices *c) {
     json_t *array = json_array(), *names = json_array();
     for (int n = 0; n < c->field_count; n++) json_array_append_new(names, string_json(c->fields[n]));
-    if (c->field_count > 1) json_array_append_new(array, json_pack("{s:s, s:O}", "option", "--field", "names", names));
+    if (c->field_count > 1) {
+        json_t *fields = json_pack("{s:s, s:O}", "option", "--field", "names", names);
+        if (c->taken) json_object_set_new(fields, "taken", string_json(c->taken));
+        json_array_append_new(array, fields);
+    }
     if (c->components)
         json_array_append_new(array, json_pack("{s:s, s:i, s:s}", "option", "--component", "count", c->components,
                                                "meaning", c->meaning));
@@ -42,7 +47,8 @@ json_t *open_choices_json(const open_choices *c) {
 void open_choices_text(const open_choices *c) {
     if (c->field_count > 1)
         printf("choose        a field by --field NAME, of those with several components one by --component C, or "
-               "their length by --component magnitude\n");
+               "their length by --component magnitude%s%s%s\n",
+               c->taken ? "; without it '" : "", c->taken ? c->taken : "", c->taken ? "' is taken" : "");
     if (c->components)
         printf("choose        one of %d values per sample%s%s%s by --component 0 to %d, or their length by --component "
                "magnitude\n",

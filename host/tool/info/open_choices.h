@@ -13,7 +13,8 @@ typedef struct open_choices {
     const char *meaning; /* of the components, "" where unknown */
     const char **fields; /* names, of which one is to be chosen; NULL: none */
     int field_count;
-    int can_select; /* whether the samples of one field can be had as it is: of frame 0 where frames are open */
+    const char *taken; /* of several, where none is chosen: the file's active scalars; NULL: one has to be chosen */
+    int can_select;    /* whether the samples of one field can be had as it is: of frame 0 where frames are open */
 } open_choices;
 
 /* Returns 0, with *c to be released, or a status with its text: where --field names what is not there. */

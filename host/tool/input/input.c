@@ -71,6 +71,9 @@ void input_tell_rounded(const char *name) {
 
 int input_select(const read_request *request, dataset *d, scalar *out) {
     int status = scalar_select(d, request, out);
+    if (!status && out->is_active && !request->describe)
+        notice("%s: holds several fields: '%s' is taken, its active scalars; --field takes another", request->path,
+               out->name);
     if (!status && out->is_rounded) input_tell_rounded(out->name);
     if (!status && out->is_averaged) input_tell_average(d, out->name);
     if (!status && request->has_nodata && !out->has_nodata)

@@ -18,6 +18,7 @@ static struct {
     const uint8_t *bytes[FILES_MOST];
     size_t sizes[FILES_MOST];
     int count;
+    uint8_t *replaced[FILES_MOST]; /* from malloc */
     const void *mapped[FILES_MOST * 4];
     int mapped_count;
 } files;
@@ -39,7 +40,10 @@ void files_open(const char *path, const uint8_t *input, size_t size, uint8_t opt
     }
 }
 
-void files_close(void) { CHECK(files.mapped_count == 0); }
+void files_close(void) {
+    CHECK(files.mapped_count == 0);
+    for (int n = 0; n < FILES_MOST; n++) free(files.replaced[n]);
+}
 
 /* Which file a name stands for; -1 where there is none. Readers must have refused names outside of the folder. */
 static int find(const char *path) {
@@ -65,6 +69,21 @@ int mapping_open(const char *path, mapping *m) {
     *m = (mapping){.bytes = copy, .size = files.sizes[n]};
     return 0;
 }
+
+/* The bytes of the descriptor in place of the file's, until all files are closed. */
+int mapping_replace(const char *path, int instead) {
+    int n = find(path);
+    CHECK(n >= 0 && !files.replaced[n]);
+    off_t size = lseek(instead, 0, SEEK_END);
+    files.replaced[n] = malloc((size_t)size + 1);
+    CHECK(size >= 0 && files.replaced[n] && pread(instead, files.replaced[n], (size_t)size, 0) == size);
+    files.bytes[n] = files.replaced[n];
+    files.sizes[n] = (size_t)size;
+    close(instead);
+    return 0;
+}
+
+void mapping_restore(const char *path) { (void)path; }
 
 int mapping_is_standard_input(const char *path) {
     (void)path;

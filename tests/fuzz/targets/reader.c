@@ -27,7 +27,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D };
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF };
 
 typedef struct format {
     const char *paths[4];
@@ -35,13 +35,15 @@ typedef struct format {
 } format;
 
 static const format formats[] = {
-    [RAW] = {.paths = {"in/a.raw", "in/a.bin", "in/a.xyz", "in/a.img"}}, /* what begins as another format is that */
+    [RAW] = {.paths = {"in/a.raw", "in/a.raw.gz", "in/a.xyz", "in/a.img"}}, /* what begins as another format is that */
     [NRRD] = {{"in/a.nrrd", "in/a.nhdr", "in/a.nrrd", "in/a.nhdr"}, .read = nrrd_read},
     [METAIMAGE] = {{"in/a.mha", "in/a.mhd", "in/a.mha", "in/a.mhd"}, .read = metaimage_read},
     [NIFTI] = {{"in/a.nii", "in/a.nii.gz", "in/a.hdr", "in/a.img"}, .read = nifti_read},
     [VTK_LEGACY] = {{"in/a.vtk", "in/a.vtk", "in/a.vtk", "in/a.vtk"}, .read = vtk_legacy_read},
     [VTK_XML] = {{"in/a.vtu", "in/a.vti", "in/a.vts", "in/a.vtr"}, .read = vtk_xml_read},
     [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
+    [NPY] = {{"in/a.npy", "in/a.npy", "in/a.npy", "in/a.npy"}, .read = npy_read},
+    [TIFF] = {{"in/a.tif", "in/a.tiff", "in/a.tif", "in/a.tif"}, .read = tiff_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading

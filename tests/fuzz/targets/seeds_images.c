@@ -1,7 +1,7 @@
 /* seeds_images.c - raw, NRRD, MetaImage and NIfTI files; see seeds.h */
 #include "seeds.h"
 
-#include "read_files.h"
+#include "tiff_files.h"
 
 static const char plain[4] = {-1, -1, 0, 0}, detached[4] = {-1, -1, 1, 0}, second_value[4] = {1, -1, 0, 0},
                   second_frame[4] = {-1, 1, 0, 0}, second_of_both[4] = {1, 1, 0, 0}, length[4] = {-2, -1, 0, 0},
@@ -22,6 +22,28 @@ static void add_raw(void) {
         seed_file("raw", name, file.data, file.size, NULL, 0, plain);
         bytes_free(&file);
         bytes_free(&samples);
+    }
+}
+
+/* Files packed as a whole, of formats that are found by what they begin with, and of none. */
+static void add_packed(void) {
+    static const char *const files[] = {
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n12345678",
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nPOINT_DATA 8\nSCALARS a "
+        "int\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\n",
+        "2 2 2\n0 1 0 1 0 1 0 1 0 0 1 1 0 0 1 1 0 0 0 0 1 1 1 1\n", "12345678"};
+    static const char by_ending[4] = {-1, -1, 2, 0}, as_raw[4] = {-1, -1, 1, 0};
+    for (int n = 0; n < 4; n++) {
+        char name[32];
+        bytes file = {0}, packed = gzipped((const unsigned char *)files[n], strlen(files[n]), AS_GZIP);
+        for (int a = 0; a < 3; a++) bytes_put(&file, n == 3 ? 2 : 0, 8, 0);
+        for (int byte = 0; byte < 56; byte++) bytes_put(&file, 0, 1, 0);
+        bytes_put(&file, n == 3 ? 0 : 255, 2, 0); /* no type: the format is to be found */
+        bytes_add(&file, packed.data, packed.size);
+        snprintf(name, sizeof name, "packed-%d", n);
+        seed_file("raw", name, file.data, file.size, NULL, 0, n == 3 ? as_raw : by_ending);
+        bytes_free(&file);
+        bytes_free(&packed);
     }
 }
 
@@ -239,6 +261,50 @@ static void add_nifti_loose(void) {
     bytes_free(&samples);
 }
 
+/* Every type, both orders of axes and bytes; frames and components. */
+static void add_npy(void) {
+    static const char *const kinds[] = {"|u1", ">i1", "<u2", ">i2", "<u4", ">i4", "<f4", ">f8", "<i8", ">u8"};
+    static const char *const shapes[] = {"(2, 3, 4)", "(24,)", "(2, 1, 3, 4)", "(1, 2, 4, 3)", "(2, 1, 2, 3, 2)"};
+    for (int type = 0; type < 10; type++) {
+        char dictionary[120], name[32];
+        bytes file = {0}, samples = test_samples(type, 24, type & 1);
+        snprintf(dictionary, sizeof dictionary, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }\n", kinds[type],
+                 type % 3 ? "False" : "True", shapes[type % 5]);
+        bytes_text(&file, "\x93NUMPY%c", 1 + type % 3);
+        bytes_put(&file, 0, 1, 0);
+        bytes_put(&file, strlen(dictionary), type % 3 ? 4 : 2, 0);
+        bytes_text(&file, "%s", dictionary);
+        bytes_add(&file, samples.data, samples.size);
+        snprintf(name, sizeof name, "type-%d", type);
+        seed_file("npy", name, file.data, file.size, NULL, 0, type % 5 < 2 ? plain : second_of_both);
+        bytes_free(&file);
+        bytes_free(&samples);
+    }
+}
+
+/* Every type, packing and order of bytes, strips and tiles; what ImageJ notes. */
+static void add_tiff(void) {
+    static const int packings[] = {TIFF_NONE, TIFF_DEFLATE, TIFF_PACKBITS};
+    for (int n = 0; n < 24; n++) {
+        const tiff_form form = {.type = n % 10,
+                                .is_big_endian = n & 1,
+                                .is_big_tiff = n >> 1 & 1,
+                                .compression = packings[n % 3],
+                                .width = 4,
+                                .height = 3,
+                                .samples = n % 8 == 6 ? 3 : 1,
+                                .rows = 1 + n % 3,
+                                .tile = n & 4 ? 16 : 0,
+                                .description = n & 8 ? "ImageJ=1.53t\nimages=2\nslices=1\nframes=2\nspacing=2\n" : NULL,
+                                .resolution = {2, 3}};
+        char name[32];
+        bytes file = tiff_file(&form, 1 + n % 3, 0);
+        snprintf(name, sizeof name, "form-%d", n);
+        seed_file("tiff", name, file.data, file.size, NULL, 0, form.samples > 1 ? second_value : plain);
+        bytes_free(&file);
+    }
+}
+
 /* Headers that ask for a thousand million bytes, of eight packed ones. */
 static void add_bombs(void) {
     bytes gzip = gzipped((const unsigned char *)"12345678", 8, AS_GZIP),
@@ -268,6 +334,7 @@ static void add_bombs(void) {
 void seeds_images(void) {
     add_bombs();
     add_raw();
+    add_packed();
     add_nrrd_types();
     add_nrrd_encodings();
     add_nrrd_axes();
@@ -275,5 +342,7 @@ void seeds_images(void) {
     add_metaimage();
     add_metaimage_loose();
     add_nifti_loose();
+    add_npy();
+    add_tiff();
     for (int n = 0; n < 16; n++) add_nifti(1 + (n & 1), n >> 1 & 1, n >> 2 & 1, n >> 3);
 }

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""test_cli_written.py TOOL [reference] - GLB, NPZ and OFF against PLY, by code that knows their formats; numpy
+
+What glTF asks for is checked here: chunks, alignment, views, accessors, exact bounds, indices. NPZ is read by zipfile,
+which looks at every check sum, and by numpy where Python has it; so are .npy files that numpy has written. Where trimesh
+and pygltflib are there, they read the files, too.
+"""
+import importlib
+import itertools
+import json
+import math
+import os
+import struct
+import sys
+import zipfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from meshes import glb_parts, npz_arrays, ply_vertices, read_ply, READERS
+from tool_case import GridCase
+
+REFERENCE = ("--engine", "reference")
+
+
+def module(name):
+    """The module, or None where Python has none of that name."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
+
+
+numpy, trimesh, pygltflib = map(module, ("numpy", "trimesh", "pygltflib"))
+
+
+class Written(GridCase):
+    def setUp(self):
+        super().setUp()
+        self.volume = self.generate("gyroid", "g.nrrd", "24,22,20")
+
+    def written(self, ending, *more, source=None, iso="127.5"):
+        path = self.path("out." + ending)
+        self.expect(0, "extract", source or self.volume, "--iso", iso, *REFERENCE, "--quiet", "-o", path, *more)
+        return path
+
+    def test_same_mesh(self):
+        for more in ([], ["--soup"]):
+            points, faces, _ = read_ply(self.written("ply", *more))
+            for ending in ("off", "glb", "npz"):
+                is_points, is_faces, _ = READERS[ending](self.written(ending, *more))
+                exact = [tuple(struct.unpack("<3f", struct.pack("<3f", *p))) for p in is_points]
+                self.assertEqual((exact, is_faces), (points, faces), (ending, more))
+
+    def check_glb(self, path):
+        """All that the format asks for of such a file."""
+        description, binary = glb_parts(path)
+        self.assertEqual(description["asset"]["version"], "2.0")
+        self.assertEqual([buffer["byteLength"] for buffer in description["buffers"]], [len(binary)])
+        end = 0
+        for view in description["bufferViews"]:
+            self.assertEqual((view["buffer"], view["byteOffset"], view["byteOffset"] % 4), (0, end, 0))
+            end += view["byteLength"]
+        self.assertEqual(end, len(binary))
+        primitive, = description["meshes"][0]["primitives"]
+        used = [*primitive["attributes"].values(), primitive["indices"]]
+        self.assertEqual(sorted(used), list(range(len(description["accessors"]))))
+        arrays = []
+        for accessor, view in zip(description["accessors"], description["bufferViews"]):
+            code, size = {5126: ("f", 4), 5125: ("I", 4)}[accessor["componentType"]]
+            count = accessor["count"] * {"VEC3": 3, "SCALAR": 1}[accessor["type"]]
+            self.assertEqual(view["byteLength"], count * size)
+            arrays.append(struct.unpack_from(f"<{count}{code}", binary, view["byteOffset"]))
+        points = arrays[primitive["attributes"]["POSITION"]]
+        bounds = description["accessors"][primitive["attributes"]["POSITION"]]
+        for axis in range(3):
+            kept = [struct.unpack("<f", struct.pack("<f", bounds[end][axis]))[0] for end in ("min", "max")]
+            self.assertEqual(kept, [min(points[axis::3]), max(points[axis::3])])
+        self.assertLess(max(arrays[primitive["indices"]]), len(points) // 3)
+        self.assertEqual(len(arrays[primitive["indices"]]) % 3, 0)
+        self.assertEqual(primitive["material"], 0)
+        self.assertEqual(len(description["materials"]), 1)
+        for n in range(0, len(arrays[1]) if len(arrays) > 2 else 0, 3):
+            self.assertAlmostEqual(math.hypot(*arrays[1][n:n + 3]), 1, 4)
+        return len(points) // 3, len(arrays[primitive["indices"]]) // 3
+
+    def test_glb(self):
+        for more in ([], ["--normals"], ["--soup", "--normals"]):
+            path = self.written("glb", *more)
+            counts = self.check_glb(path)
+            vertices, faces = ply_vertices(self.written("ply", *more))
+            self.assertEqual(counts, (len(vertices), len(faces)))
+            if trimesh:
+                shape, = trimesh.load(path, process=False).geometry.values()
+                self.assertEqual((len(shape.vertices), len(shape.faces)), counts)
+            if pygltflib:
+                self.assertEqual(pygltflib.GLTF2().load(path).accessors[0].count, counts[0])
+        description, binary = glb_parts(self.written("glb", iso="300"))
+        self.assertEqual((description["scenes"], binary), ([{}], b""))
+
+    def test_values_in_npz(self):
+        source = self.write("a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 5 4 3\n"
+                            "ORIGIN 1000000 0 0\nPOINT_DATA 60\nSCALARS s float\nLOOKUP_TABLE default\n"
+                            + " ".join(str(n % 7) for n in range(60)) + "\nSCALARS faces float 2\nLOOKUP_TABLE default\n"
+                            + " ".join(str(n) for n in range(120)) + "\nSCALARS ../b float\nLOOKUP_TABLE default\n"
+                            + " ".join(str(n) for n in range(60)) + "\n")
+        carried = ["--field", "s", "--carry", "faces,../b"]
+        path = self.written("npz", *carried, source=source, iso="2.5")
+        arrays = npz_arrays(path)
+        vertices, faces = ply_vertices(self.written("ply", *carried, source=source, iso="2.5"))
+        self.assertEqual({name: kind for name, (kind, _, _) in arrays.items()},
+                         {"vertices": "<f8", "faces": "<u4", "faces_": "<f4", "___b": "<f4"})
+        self.assertEqual(list(zip(*[iter(arrays["vertices"][2])] * 3)), [(v["x"], v["y"], v["z"]) for v in vertices])
+        self.assertEqual(list(zip(*[iter(arrays["faces"][2])] * 3)), faces)
+        self.assertEqual(list(zip(*[iter(arrays["faces_"][2])] * 2)), [(v["faces_0"], v["faces_1"]) for v in vertices])
+        self.assertEqual(list(arrays["___b"][2]), [v["___b"] for v in vertices])
+        if numpy:
+            with numpy.load(path) as archive:
+                for name, (kind, shape, values) in arrays.items():
+                    self.assertEqual((archive[name].dtype.str, archive[name].shape), (kind, shape))
+                    self.assertEqual(archive[name].ravel().tolist(), list(values))
+
+    def test_empty_npz(self):
+        arrays = npz_arrays(self.written("npz", iso="300"))
+        self.assertEqual({name: shape for name, (_, shape, _) in arrays.items()}, {"vertices": (0, 3), "faces": (0, 3)})
+
+    def test_stream(self):
+        for ending in ("glb", "npz", "off"):
+            with open(self.written(ending), "rb") as file:
+                good = file.read()
+            with open(self.path("stream"), "wb") as out:
+                done = tool_case.subprocess.run([tool_case.TOOL, "extract", self.volume, "--iso", "127.5", *REFERENCE,
+                                                 "--quiet", "-o", "-", "--format", ending], stdout=out, timeout=400)
+            with open(self.path("stream"), "rb") as file:
+                self.assertEqual((done.returncode, file.read()), (0, good))
+
+    def test_what_formats_lack(self):
+        self.refuses(2, "extract", self.volume, "--iso", "1", *REFERENCE, "-o", self.path("a.off"), "--carry", "x",
+                     says="ply, vtp or npz")
+        for ending in ("off",):
+            said = self.expect(0, "extract", self.volume, "--iso", "127.5", *REFERENCE, "--normals", "-o",
+                               self.path("a." + ending)).stderr
+            self.assertIn("normals", said)
+
+
+@tool_case.unittest.skipUnless(numpy, "Python has no numpy (Debian: python3-numpy)")
+class Numpy(GridCase):
+    def test_round_trip(self):
+        """Every type and order as numpy saves it, against the same samples without a header."""
+        shape, kinds = (7, 8, 9), ("u1", "i1", "u2", "i2", "u4", "i4", "f4", "f8", "u8", "i8", "?")
+        flat = [(x * x + y * 3 + z * z * 2) % 101 for z, y, x in itertools.product(*map(range, shape))]
+        want = None
+        for kind, order, is_fortran in itertools.product(kinds, "<>", (False, True)):
+            array = numpy.array(flat).reshape(shape) % (2 if kind == "?" else 128)
+            array = array.astype(kind if kind == "?" else order + kind, order="F" if is_fortran else "C")
+            numpy.save(self.path("a.npy"), array)
+            done = self.expect(0, "extract", self.path("a.npy"), "--iso", "0.5" if kind == "?" else "50.25", "--json",
+                               *REFERENCE)
+            report = json.loads(done.stdout)
+            self.assertEqual(report["dims"], [9, 8, 7])
+            surface = report["surfaces"][0]
+            got = (surface["vertices"], surface["triangles"], surface["bounds"])
+            if kind != "?":
+                want = want or got
+                self.assertEqual(got, want, (kind, order, is_fortran))
+
+    def test_frames_and_components(self):
+        array = numpy.arange(2 * 5 * 6 * 7 * 3, dtype="f4").reshape(2, 5, 6, 7, 3)
+        numpy.save(self.path("a.npy"), array)
+        facts = json.loads(self.expect(0, "info", self.path("a.npy"), "--component", "1", "--frame", "1",
+                                       "--json").stdout)
+        self.assertEqual(facts["range"], [float(array[1, ..., 1].min()), float(array[1, ..., 1].max())])
+
+
+if __name__ == "__main__":
+    tool_case.main()
