@@ -225,6 +225,7 @@ def main():
         test_grids(made)
         test_second(made)
         test_sweep()
+        test_hybrid()
         test_table()
         test_dump_and_turns(made, folder)
         test_statuses(folder)
