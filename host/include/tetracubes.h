@@ -289,8 +289,9 @@ TC_API tc_status tc_grid_origin(const tc_grid *grid, double origin[3]);
 /* How cells become triangles. */
 typedef enum tc_method {
     TC_METHOD_TETRA = 0,  /* five tetrahedra per cube, or the tetrahedra themselves */
-    TC_METHOD_HYBRID = 1, /* structured grids: vertices on edges of cubes only, about 2.4 times fewer triangles. Where
-                             marching cubes are ambiguous the tetrahedra decide, so that the topology is theirs */
+    TC_METHOD_HYBRID = 1, /* vertices on edges of cubes only, about 2.4 times fewer triangles. Where marching cubes are
+                             ambiguous the tetrahedra decide, so that the topology is theirs. Unstructured grids: see
+                             `source` of tc_tetrahedra_grid_options */
     TC_METHOD_SNAP = 2,   /* structured grids: as tetra, but samples near the surface become vertices of it where the
                              topology stays: of smooth fields less than 0.3 of the triangles, of better shape */
 } tc_method;
@@ -463,19 +464,31 @@ typedef struct tc_tetrahedra_grid_options {
     const double *points_f64;   /* in place of points: double precision, borrowed during the call only */
     int has_origin;             /* as in tc_grid_options */
     double origin[3];
+
+    /* For TC_METHOD_HYBRID, both NULL otherwise: the cells that tc_tetrahedralize has cut, of which only cell_count,
+     * types, offsets and connectivity matter, and `cells` of the tc_tetrahedra. The struct itself is read during the
+     * call only. */
+    const tc_cells *source;
+    const uint32_t *cells;
 } tc_tetrahedra_grid_options;
 
 /* Defaults: no points, no tetrahedra. */
 TC_API void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options);
 
 /* Makes a grid of tetrahedra, which tc_count, tc_extract and tc_interpolate_field take like a structured one: by
- * TC_METHOD_TETRA and without normals (TC_ERROR_ARGUMENT otherwise). *grid is the caller's to destroy, before the
- * context.
+ * TC_METHOD_TETRA, or TC_METHOD_HYBRID where the cells are given, and without normals (TC_ERROR_ARGUMENT otherwise).
+ * *grid is the caller's to destroy, before the context.
  *
- * Active cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their edge, then by edge
- * (01 02 03 12 13 23); triangles follow their tetrahedra. Vertices go from the lower to the higher point number. Where
- * the device cannot hold all tetrahedra and their surface, they are processed in slabs, runs of tetrahedra; the bytes
- * are the same.
+ * TC_METHOD_HYBRID keeps cells whole: their vertices lie on their edges, and on the diagonals of faces with five or six
+ * corners, but not on those of quadrilaterals. It is for the reference engine so far (TC_ERROR_DEVICE under OpenCL),
+ * and for all cells but polyhedra (TC_ERROR_DATA). Cells with a sample that is not finite are left out whole; active
+ * cells are cells. Vertices are numbered by the first cell that contains their edge, then by the corners of the edge,
+ * the lower first, as VTK numbers those of the shape (a wedge's with 1 and 2, 4 and 5 exchanged).
+ *
+ * With TC_METHOD_TETRA active cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their
+ * edge, then by edge (01 02 03 12 13 23); triangles follow their tetrahedra. Vertices go from the lower to the higher
+ * point number. Where the device cannot hold all tetrahedra and their surface, they are processed in slabs, runs of
+ * tetrahedra; the bytes are the same.
  *
  * TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device
  * without fp64. Found when tetrahedra are first read, by tc_count or tc_extract: TC_ERROR_DATA for a point number out

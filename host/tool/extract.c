@@ -103,7 +103,7 @@ static int read_and_start(job *j) {
 static void describe_input(job *j) {
     const dataset_block *first = j->data.blocks;
     j->report.block_count = j->data.block_count;
-    j->report.is_complex = first->kind == BLOCK_UNSTRUCTURED;
+    j->report.has_tetrahedra = first->kind == BLOCK_UNSTRUCTURED && j->o->method == TC_METHOD_TETRA;
     j->report.field = j->field.name;
     j->report.type = j->field.blocks[0].type;
     j->report.point_count = 0;

@@ -25,6 +25,9 @@ def test(program, only="", arguments=(), device=False, libraries=()):
 TESTS = {
     "test_tables": test("surface/test_tables"),
     "test_hybrid_tables": test("surface/test_hybrid_tables"),
+    "test_cell_cases": test("surface/test_cell_cases"),
+    "test_cells": test("surface/test_cells"),
+    "test_cells, reference": test("surface/test_cells", arguments=("1", "2000")),
     "test_inside": test("surface/test_inside"),
     "test_tetrahedralize": test("surface/test_tetrahedralize"),
     "test_polyhedra": test("surface/test_polyhedra"),
@@ -121,6 +124,8 @@ LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 FILES = {
     "host/lib/grid/tables.c": TABLES,
     "host/lib/grid/hybrid_tables.c": ["test_hybrid_tables", "test_hybrid, reference"],
+    "host/lib/grid/cell_cases.c": ["test_cell_cases", "test_cells, reference"],
+    "host/lib/grid/complex_cells.c": ["test_cells"],
     "host/lib/grid/inside.c": ["test_inside"],
     "host/lib/reference/reference.c": REFERENCE,
     "host/lib/reference/reference_run.h": REFERENCE,

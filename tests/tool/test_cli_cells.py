@@ -85,8 +85,38 @@ class Unstructured(GridCase):
         grid = self.write_hexahedra("a.vtu")
         self.refuses(2, "extract", grid, "--field", "bump", "--iso", "0.5", "--normals", "-o", self.path("a.ply"),
                      says="unstructured.*--normals")
-        self.refuses(2, "extract", grid, "--field", "bump", "--iso", "0.5", "--method", "hybrid",
-                     says="unstructured.*hybrid")
+        self.refuses(2, "extract", grid, "--field", "bump", "--iso", "0.5", "--method", "snap",
+                     says="unstructured.*snap")
+
+    def test_cells_kept_whole(self):
+        """By method hybrid, which is the reference engine's: fewer triangles, the same topology."""
+        grid = self.write_hexahedra("a.vtu")
+        how = ["--field", "bump", "--iso", "0.5", "--check", "--carry", "x", "-o", self.path("a.ply")]
+        hybrid, = self.report("extract", grid, *how, "--method", "hybrid", "--engine", "reference")["surfaces"]
+        vertices, _ = ply_vertices(self.path("a.ply"))
+        tetra, = self.report("extract", grid, *how, "--engine", "reference")["surfaces"]
+        self.assertLess(hybrid["triangles"], 0.5 * tetra["triangles"])
+        for key in ("euler_characteristic", "components", "nonmanifold_edges", "misoriented_edges"):
+            self.assertEqual(hybrid[key], tetra[key], key)
+        self.assertAlmostEqual(hybrid["volume"], tetra["volume"], delta=0.03 * tetra["volume"])
+        for vertex in vertices:
+            self.assertAlmostEqual(vertex["x_"], vertex["x"], places=4)
+        text = self.expect(0, "extract", grid, *how[:4], "--method", "hybrid", "--engine", "reference").stdout
+        self.assertRegex(text, "through %d cells\n" % hybrid["active_cells"])
+        if tool_case.HAS_DEVICE:
+            self.refuses(1, "extract", grid, *how[:4], "--method", "hybrid", says="reference engine")
+            told = self.expect(0, "extract", grid, *how[:4], "--method", "hybrid", "--engine", "auto").stderr
+            self.assertRegex(told, "kernels do not keep cells whole")
+            self.assertRegex(told, "reference engine takes over")
+
+    def test_polyhedra_are_not_kept_whole(self):
+        faces = [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]]
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        grid = self.write("p.vtu", vtu_text(points, [[0, 1, 2, 3]], [POLYHEDRON], [("f", "f32", [0.0, 1.0, 2.0, 3.0])],
+                                            [], faces))
+        how = ["extract", grid, "--iso", "1.5", "--engine", "reference"]
+        self.expect(0, *how)
+        self.refuses(4, *how, "--method", "hybrid", says="cell 0 is a polyhedron.*method tetra")
 
     def test_missing_points(self):
         values = list(map(bump, lattice((9, 8, 9))))

@@ -67,6 +67,9 @@ static const uint8_t hexahedron_faces[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1
                                                {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 static const uint8_t wedge_faces[3][4] = {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
 static const uint8_t wedge_ends[2][3] = {{0, 2, 1}, {3, 4, 5}};
+static const uint8_t pyramid_base[4] = {0, 3, 2, 1};
+static const uint8_t pyramid_sides[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+static const uint8_t tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 static const uint8_t hexahedron_opposite[8] = {6, 7, 4, 5, 2, 3, 0, 1};
 /* clang-format on */
 
@@ -99,11 +102,17 @@ static bool face_has(const uint8_t *face, int corner_count, int corner) {
     return memchr(face, corner, (size_t)corner_count) != NULL;
 }
 
+/* Which corner of a face is its smallest: the first of them. */
+static int smallest_of_face(const uint32_t *points, const uint8_t *face, int corner_count) {
+    int first = 0;
+    for (int n = 1; n < corner_count; n++)
+        if (points[face[n]] < points[face[first]]) first = n;
+    return first;
+}
+
 /* The face's corners from its smallest on: the diagonal joins the first and the third. */
 static void face_turn(const uint32_t *points, const uint8_t face[4], uint8_t turned[4]) {
-    int first = 0;
-    for (int n = 1; n < 4; n++)
-        if (points[face[n]] < points[face[first]]) first = n;
+    const int first = smallest_of_face(points, face, 4);
     for (int n = 0; n < 4; n++) turned[n] = face[(first + n) % 4];
 }
 
@@ -157,31 +166,37 @@ static void wedge_split(splitting *s) {
 
 /* A face as a fan around its smallest corner, coned from the apex unless that is one of its corners. */
 static void fan_cone(splitting *s, int apex, const uint8_t *face, int corner_count) {
-    int first = 0;
+    const int first = smallest_of_face(s->points, face, corner_count);
     if (face_has(face, corner_count, apex)) return;
-    for (int n = 1; n < corner_count; n++)
-        if (s->points[face[n]] < s->points[face[first]]) first = n;
     for (int n = 1; n + 1 < corner_count; n++)
         tetrahedron_add(s, apex, face[first], face[(first + n) % corner_count], face[(first + n + 1) % corner_count]);
 }
 
+typedef struct prism {
+    uint8_t sides[CELL_CORNERS_MAX / 2][4], ends[2][CELL_CORNERS_MAX / 2]; /* bottom, top */
+} prism;
+
 /* Corners 0 to sides - 1 wind around the bottom, the next around the top, each above its like. */
-static void prism_split(splitting *s, int sides) {
-    const int apex = smallest_corner(s->points, 2 * sides);
-    uint8_t bottom[CELL_CORNERS_MAX / 2] = {0}, top[CELL_CORNERS_MAX / 2] = {0};
+static prism prism_of(int sides) {
+    prism p = {0};
     for (int n = 0; n < sides; n++) {
         const int next = (n + 1) % sides;
         const uint8_t side[4] = {(uint8_t)n, (uint8_t)next, (uint8_t)(sides + next), (uint8_t)(sides + n)};
-        fan_cone(s, apex, side, 4);
-        bottom[n] = (uint8_t)(sides - 1 - n);
-        top[n] = (uint8_t)(sides + n);
+        memcpy(p.sides[n], side, sizeof side);
+        p.ends[0][n] = (uint8_t)(sides - 1 - n);
+        p.ends[1][n] = (uint8_t)(sides + n);
     }
-    fan_cone(s, apex, bottom, sides);
-    fan_cone(s, apex, top, sides);
+    return p;
+}
+
+static void prism_split(splitting *s, int sides) {
+    const int apex = smallest_corner(s->points, 2 * sides);
+    const prism p = prism_of(sides);
+    for (int n = 0; n < sides; n++) fan_cone(s, apex, p.sides[n], 4);
+    for (int end = 0; end < 2; end++) fan_cone(s, apex, p.ends[end], sides);
 }
 
 int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32_t out[CELL_TETRAHEDRA_MAX][4]) {
-    static const uint8_t pyramid_base[4] = {0, 3, 2, 1};
     splitting s = {points, out, 0};
     switch (shape) {
     case CELL_TETRAHEDRON:
@@ -206,4 +221,54 @@ int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32
         break;
     }
     return s.count;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ faces */
+
+typedef struct face_list {
+    const uint32_t *points;
+    cell_face *faces;
+    int count;
+} face_list;
+
+static void face_put(face_list *l, const uint8_t *corners, int corner_count) {
+    cell_face *f = &l->faces[l->count++];
+    const int first = smallest_of_face(l->points, corners, corner_count);
+    f->corner_count = (uint8_t)corner_count;
+    for (int n = 0; n < corner_count; n++) f->corners[n] = corners[(first + n) % corner_count];
+}
+
+static void prism_faces(face_list *l, int sides) {
+    const prism p = prism_of(sides);
+    for (int n = 0; n < sides; n++) face_put(l, p.sides[n], 4);
+    for (int end = 0; end < 2; end++) face_put(l, p.ends[end], sides);
+}
+
+int cell_faces(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], cell_face faces[CELL_FACES_MAX]) {
+    face_list l = {points, faces, 0};
+    switch (shape) {
+    case CELL_TETRAHEDRON:
+        for (int n = 0; n < 4; n++) face_put(&l, tetrahedron_faces[n], 3);
+        break;
+    case CELL_HEXAHEDRON:
+        for (int n = 0; n < 6; n++) face_put(&l, hexahedron_faces[n], 4);
+        break;
+    case CELL_WEDGE:
+        for (int n = 0; n < 3; n++) face_put(&l, wedge_faces[n], 4);
+        for (int n = 0; n < 2; n++) face_put(&l, wedge_ends[n], 3);
+        break;
+    case CELL_PYRAMID:
+        face_put(&l, pyramid_base, 4);
+        for (int n = 0; n < 4; n++) face_put(&l, pyramid_sides[n], 3);
+        break;
+    case CELL_PENTAGONAL_PRISM:
+        prism_faces(&l, 5);
+        break;
+    case CELL_HEXAGONAL_PRISM:
+        prism_faces(&l, 6);
+        break;
+    default:
+        break;
+    }
+    return l.count;
 }

@@ -54,6 +54,17 @@ typedef struct cell_type {
 /* CELL_OTHER for types that VTK does not have. */
 const cell_type *cell_type_get(unsigned vtk_type);
 
+enum { CELL_FACES_MAX = 8, CELL_FACE_CORNERS_MAX = 6 };
+
+/* A face, counter-clockwise seen from outside, from its smallest point number on: it is cut as a fan around that. */
+typedef struct cell_face {
+    uint8_t corner_count;
+    uint8_t corners[CELL_FACE_CORNERS_MAX];
+} cell_face;
+
+/* The faces of a shape other than a polyhedron, with these point numbers at its corners; returns their number. */
+int cell_faces(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], cell_face faces[CELL_FACES_MAX]);
+
 /* Cuts a shape other than a polyhedron, with these point numbers at its corners; returns the number of tetrahedra.
  * Tetrahedra with a point twice, as in collapsed cells, are left out. */
 int cell_split(cell_shape shape, const uint32_t points[CELL_CORNERS_MAX], uint32_t out[CELL_TETRAHEDRA_MAX][4]);

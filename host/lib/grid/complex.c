@@ -72,7 +72,8 @@ tc_status complex_describe(const tc_tetrahedra_grid_options *o, tc_grid *grid) {
     c->point_count = (uint32_t)o->point_count;
     c->tetrahedron_count = (uint32_t)o->tetrahedron_count;
     c->tetrahedra = o->tetrahedra;
-    return points_take(grid, o);
+    status = complex_cells_take(o, c);
+    return status ? status : points_take(grid, o);
 }
 
 void complex_release(tc_grid *grid) {

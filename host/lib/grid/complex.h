@@ -4,6 +4,7 @@
 #ifndef COMPLEX_H
 #define COMPLEX_H
 
+#include "convert/cell_split.h"
 #include "opencl/context.h"
 #include "grid/carry.h"
 #include "grid/grid.h"
@@ -33,6 +34,11 @@ typedef struct complex_grid {
     float *own_points;   /* memory of points; NULL where it is the caller's */
     const uint32_t *tetrahedra;
 
+    /* The cells that were cut, where the caller gave them: */
+    bool has_cells;
+    tc_cells source;
+    const uint32_t *cells; /* by tetrahedron */
+
     /* Under an OpenCL engine: */
     complex_part part;
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
@@ -54,6 +60,22 @@ tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const 
 tc_status complex_describe(const tc_tetrahedra_grid_options *options, tc_grid *grid);
 void complex_release(tc_grid *grid);
 
+/* A cell that method hybrid keeps whole. */
+typedef struct whole_cell {
+    cell_shape shape;
+    int corner_count;
+    uint32_t corners[CELL_CORNERS_MAX]; /* in the order of cell_split.h */
+    bool mirrored;                      /* of negative volume: its tetrahedra have been turned over */
+    uint32_t tetrahedron_count;
+} whole_cell;
+
+/* The cell of this tetrahedron and of those that follow, as far as they are the same cell's (complex_cells.c).
+ * TC_ERROR_DATA where they are not what the cell is cut into, and for polyhedra. */
+tc_status complex_cell_get(const complex_grid *c, uint32_t tetrahedron, whole_cell *out);
+
+/* TC_ERROR_ARGUMENT for cells that cannot be those of the tetrahedra. */
+tc_status complex_cells_take(const tc_tetrahedra_grid_options *options, complex_grid *c);
+
 /* Records the error for a tetrahedron with an invalid point number. */
 tc_status complex_point_fail(const complex_grid *c);
 
@@ -69,8 +91,9 @@ bool complex_is_classified(const tc_grid *grid, double isovalue);
 tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
 /* The same by the scalar reference (reference_complex.c). */
-tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts);
-tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh);
-tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
+tc_status reference_complex_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
+tc_status reference_complex_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                                  uint64_t *vertex_count);
 
 #endif

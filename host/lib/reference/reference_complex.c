@@ -1,7 +1,9 @@
 /*
- * The scalar reference of complexes: one loop over the tetrahedra counts, another emits. A hash table holds the crossed
+ * The scalar reference of complexes: one loop over the tetrahedra, or the cells that they were cut from (method
+ * hybrid), counts, another emits. A hash table holds the crossed
  * edges met so far with their vertices; vertices are numbered in the order in which edges are first met.
  */
+#include "grid/cell_cases.h"
 #include "grid/complex.h"
 #include "reference/carry_vertex.h"
 
@@ -14,18 +16,22 @@
 
 typedef struct edge_entry {
     uint32_t low, high;
-    uint32_t number; /* of its vertex */
+    uint32_t number; /* of its vertex, or NO_NUMBER */
     uint32_t taken;
 } edge_entry;
+
+#define NO_NUMBER UINT32_MAX
 
 typedef struct reference {
     const tc_grid *grid;
     double isovalue;
+    bool keeps_cells;  /* method hybrid */
     edge_entry *table; /* open addressing, half full at most */
-    uint64_t table_size;
+    uint64_t table_size, entry_count;
     tc_mesh *mesh; /* NULL: count only */
     const carry *carried;
     uint64_t vertex_count, triangle_count, active_count;
+    uint32_t next; /* tetrahedron */
 } reference;
 
 #define REAL    float
@@ -56,7 +62,7 @@ static edge_entry *edge_find(const reference *r, uint32_t low, uint32_t high) {
 static tc_status table_grow(reference *r) {
     edge_entry *old = r->table;
     uint64_t old_size = r->table_size;
-    if (2 * (r->vertex_count + 1) < old_size) return TC_OK;
+    if (2 * (r->entry_count + 1) < old_size) return TC_OK;
     bool grown = table_allocate(r, old_size ? 2 * old_size : 1024);
     for (uint64_t n = 0; n < old_size && grown; n++)
         if (old[n].taken) *edge_find(r, old[n].low, old[n].high) = old[n];
@@ -80,15 +86,26 @@ static tc_status change_fail(void) {
     return (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a surface was made of them");
 }
 
-/* The number of the vertex on the edge of two points; makes the vertex when the edge is first met. */
-static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
-    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+/* The entry of the edge of two points, made where there is none. */
+static tc_status edge_enter(reference *r, uint32_t low, uint32_t high, edge_entry **entry) {
     tc_status status = table_grow(r);
     if (status) return status;
-    edge_entry *e = edge_find(r, low, high);
-    if (!e->taken) {
+    *entry = edge_find(r, low, high);
+    if ((*entry)->taken) return TC_OK;
+    **entry = (edge_entry){low, high, NO_NUMBER, 1};
+    r->entry_count++;
+    return TC_OK;
+}
+
+/* The number of the vertex on the edge of two points; makes the vertex when the edge is first met in a run. */
+static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32_t *number) {
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    edge_entry *e;
+    tc_status status = edge_enter(r, low, high, &e);
+    if (status) return status;
+    if (e->number == NO_NUMBER) {
         if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
-        *e = (edge_entry){low, high, (uint32_t)r->vertex_count, 1};
+        e->number = (uint32_t)r->vertex_count;
         if (r->mesh) vertex_emit(r, low, high);
         if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
         r->vertex_count++;
@@ -99,10 +116,10 @@ static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32
 
 /* ------------------------------------------------------------------------------------------------------- tetrahedra */
 
-/* The case of a tetrahedron, 0 where a sample is missing. */
-static unsigned pattern_of(const reference *r, const uint32_t points[4]) {
+/* Which of these points are inside, a bit each; 0 where a sample is missing. */
+static unsigned pattern_of(const reference *r, const uint32_t points[], int count) {
     unsigned pattern = 0;
-    for (unsigned v = 0; v < 4; v++) {
+    for (int v = 0; v < count; v++) {
         double value = grid_value_at(r->grid, points[v]);
         if (!isfinite(value)) return 0;
         pattern |= (unsigned)(value >= r->isovalue) << v;
@@ -110,11 +127,21 @@ static unsigned pattern_of(const reference *r, const uint32_t points[4]) {
     return pattern;
 }
 
-static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
+static tc_status triangle_emit(reference *r, const uint32_t numbers[], const uint8_t edges[3]) {
+    const uint64_t n = r->triangle_count++;
+    if (!r->mesh) return TC_OK;
+    if (n >= r->mesh->triangle_count) return change_fail();
+    uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * n;
+    for (int m = 0; m < 3; m++) triangle[m] = numbers[edges[m]];
+    return TC_OK;
+}
+
+static tc_status tetrahedron_run(reference *r) {
+    const uint32_t *tetrahedron = r->grid->complex->tetrahedra + 4 * (uint64_t)r->next++;
     const uint32_t points[4] = {tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3]};
     for (int v = 0; v < 4; v++)
         if (points[v] >= r->grid->complex->point_count) return complex_point_fail(r->grid->complex);
-    const unsigned pattern = pattern_of(r, points);
+    const unsigned pattern = pattern_of(r, points, 4);
     const tetrahedron_case *c = &tetrahedron_cases[pattern];
     uint32_t numbers[6] = {0};
     tc_status status = TC_OK;
@@ -125,41 +152,106 @@ static tc_status tetrahedron_run(reference *r, const uint32_t *tetrahedron) {
         if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
             status = edge_vertex_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
     }
-    for (unsigned n = 0; n < c->triangle_count && !status; n++, r->triangle_count++) {
-        if (!r->mesh) continue;
-        if (r->triangle_count >= r->mesh->triangle_count) return change_fail();
-        uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
-        for (int m = 0; m < 3; m++) triangle[m] = numbers[c->triangles[n][m]];
+    for (unsigned n = 0; n < c->triangle_count && !status; n++) status = triangle_emit(r, numbers, c->triangles[n]);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- cells
+ */
+
+/* Takes the next cell; pattern 0 where it is not active. */
+static tc_status cell_take(reference *r, whole_cell *cell, unsigned *pattern) {
+    tc_status status = complex_cell_get(r->grid->complex, r->next, cell);
+    if (status) return status;
+    r->next += cell->tetrahedron_count;
+    *pattern = pattern_of(r, cell->corners, cell->corner_count);
+    if (*pattern == (1u << cell->corner_count) - 1) *pattern = 0;
+    return TC_OK;
+}
+
+static bool is_crossed(unsigned pattern, unsigned corner_a, unsigned corner_b) {
+    return (pattern >> corner_a & 1) != (pattern >> corner_b & 1);
+}
+
+/* Enters the crossed edges of a cell into the table, before any vertex is made. */
+static tc_status cell_enter(reference *r) {
+    whole_cell cell;
+    cell_frame frame;
+    edge_entry *entry;
+    unsigned pattern;
+    tc_status status = cell_take(r, &cell, &pattern);
+    if (status || !pattern) return status;
+    cell_frame_begin(cell.shape, cell.corners, cell.mirrored, &frame);
+    cell_frame_end(&frame);
+    for (int e = 0; e < frame.edge_count && !status; e++) {
+        const uint32_t a = cell.corners[frame.edges[e][0]], b = cell.corners[frame.edges[e][1]];
+        if (is_crossed(pattern, frame.edges[e][0], frame.edges[e][1]))
+            status = edge_enter(r, a < b ? a : b, a < b ? b : a, &entry);
     }
     return status;
 }
 
+/* Cuts quadrilaterals whose crossed diagonal is an edge of another cell: two triangles are beside them. */
+static void faces_cut(const reference *r, const whole_cell *cell, unsigned pattern, cell_frame *frame) {
+    for (int n = 0; n < frame->face_count; n++) {
+        const cell_face *f = &frame->faces[n];
+        const uint32_t low = cell->corners[f->corners[0]], high = cell->corners[f->corners[2]]; /* in this order */
+        if (f->corner_count == 4 && is_crossed(pattern, f->corners[0], f->corners[2]))
+            frame->is_cut[n] = edge_find(r, low, high)->taken;
+    }
+}
+
+static tc_status cell_run(reference *r) {
+    whole_cell cell;
+    cell_frame frame;
+    cell_case derived;
+    unsigned pattern;
+    uint32_t numbers[CELL_EDGES_MAX] = {0};
+    tc_status status = cell_take(r, &cell, &pattern);
+    if (status || !pattern) return status;
+    r->active_count++;
+    cell_frame_begin(cell.shape, cell.corners, cell.mirrored, &frame);
+    faces_cut(r, &cell, pattern, &frame);
+    cell_frame_end(&frame);
+    cell_case_derive(&frame, pattern, &derived);
+    for (int e = 0; e < frame.edge_count && !status; e++) {
+        const uint8_t *ends = frame.edges[e];
+        if (is_crossed(pattern, ends[0], ends[1]))
+            status = edge_vertex_number(r, cell.corners[ends[0]], cell.corners[ends[1]], &numbers[e]);
+    }
+    for (int n = 0; n < derived.triangle_count && !status; n++)
+        status = triangle_emit(r, numbers, derived.triangles[n]);
+    return status;
+}
+
 /* before, share: where this stage begins in the whole call and its share of it, for progress. */
-static tc_status tetrahedra_run(reference *r, const char *stage, double before, double share) {
-    const complex_grid *c = r->grid->complex;
-    const uint64_t count = c->tetrahedron_count, steps = 64;
+static tc_status grid_run(reference *r, const char *stage, double before, double share) {
+    const uint64_t count = r->grid->complex->tetrahedron_count, steps = 64;
     tc_status status = TC_OK;
     r->vertex_count = r->triangle_count = r->active_count = 0;
-    if (r->table_size) memset(r->table, 0, r->table_size * sizeof *r->table);
+    for (uint64_t n = 0; n < r->table_size; n++) r->table[n].number = NO_NUMBER;
+    for (r->next = 0; r->keeps_cells && r->next < count && !status;) status = cell_enter(r);
+    r->next = 0;
     for (uint64_t step = 0; step < steps && !status; step++) {
-        for (uint64_t n = count * step / steps; n < count * (step + 1) / steps && !status; n++)
-            status = tetrahedron_run(r, c->tetrahedra + 4 * n);
+        while (r->next < count * (step + 1) / steps && !status)
+            status = r->keeps_cells ? cell_run(r) : tetrahedron_run(r);
         if (!status)
             status = context_progress(r->grid->context, stage, before + share * (double)(step + 1) / (double)steps);
     }
     return status;
 }
 
-static tc_status reference_begin(reference *r, const tc_grid *grid, double isovalue) {
-    *r = (reference){.grid = grid, .isovalue = isovalue};
+static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
+    *r = (reference){.grid = grid, .isovalue = options->isovalue};
+    r->keeps_cells = options->method == TC_METHOD_HYBRID;
     return table_allocate(r, 1024) ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
 }
 
-tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_counts *counts) {
+tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     reference r;
     double start = clock_ms();
-    tc_status status = reference_begin(&r, grid, isovalue);
-    if (!status) status = tetrahedra_run(&r, "classify", 0, 1);
+    tc_status status = reference_begin(&r, grid, options);
+    if (!status) status = grid_run(&r, "classify", 0, 1);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_count;
@@ -168,25 +260,26 @@ tc_status reference_complex_count(const tc_grid *grid, double isovalue, tc_count
     return status;
 }
 
-tc_status reference_complex_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+tc_status reference_complex_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                                  uint64_t *vertex_count) {
     reference r;
-    tc_status status = reference_begin(&r, grid, isovalue);
+    tc_status status = reference_begin(&r, grid, options);
     r.carried = c;
-    if (!status) status = tetrahedra_run(&r, "carry", 0, 1);
+    if (!status) status = grid_run(&r, "carry", 0, 1);
     *vertex_count = r.vertex_count;
     free(r.table);
     return status;
 }
 
-tc_status reference_complex_extract(const tc_grid *grid, double isovalue, tc_mesh *mesh) {
+tc_status reference_complex_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     reference r;
     const double start = clock_ms();
-    tc_status status = reference_begin(&r, grid, isovalue);
-    if (!status) status = tetrahedra_run(&r, "classify", 0, 0.5);
+    tc_status status = reference_begin(&r, grid, options);
+    if (!status) status = grid_run(&r, "classify", 0, 0.5);
     const double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, POSITIONS_ALONE);
     r.mesh = mesh;
-    if (!status) status = tetrahedra_run(&r, "emit", 0.5, 0.5);
+    if (!status) status = grid_run(&r, "emit", 0.5, 0.5);
     if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))
         status = change_fail();
     mesh->active_cell_count = r.active_count;

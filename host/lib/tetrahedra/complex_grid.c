@@ -5,13 +5,24 @@
 
 #include "failure.h"
 
-/* TC_ERROR_ARGUMENT for what complexes cannot do. */
-static tc_status complex_request_check(const tc_extract_options *options) {
+/* TC_ERROR_ARGUMENT for what complexes cannot do, TC_ERROR_DEVICE for what only the reference can. */
+static tc_status complex_request_check(const tc_grid *grid, const tc_extract_options *options) {
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
-    if (options->method != TC_METHOD_TETRA)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "grids of tetrahedra have no cubes: use TC_METHOD_TETRA");
+    if (options->method == TC_METHOD_TETRA) return TC_OK;
+    if (options->method != TC_METHOD_HYBRID)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "method %s is for structured grids only, not for grids of tetrahedra",
+                               tc_method_name(options->method));
+    if (!grid->complex->has_cells)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "the grid of tetrahedra was made without cells, which method hybrid keeps whole: give "
+                               "source and cells, or use TC_METHOD_TETRA");
+    if (grid->context->options.engine != TC_ENGINE_REFERENCE)
+        return (tc_status)fail(
+            TC_ERROR_DEVICE,
+            "kernels do not keep cells whole, as method hybrid does: use the reference engine, or method "
+            "tetra");
     return TC_OK;
 }
 
@@ -28,25 +39,23 @@ static tc_status device_end(tc_context *context, tc_status status) {
 }
 
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
-    tc_status status = complex_request_check(options);
+    tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
-    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
-        return reference_complex_count(grid, options->isovalue, counts);
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_count(grid, options, counts);
     return device_end(grid->context, complex_device_count(grid, options->isovalue, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
-    tc_status status = complex_request_check(options);
+    tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
-    if (grid->context->options.engine == TC_ENGINE_REFERENCE)
-        return reference_complex_extract(grid, options->isovalue, mesh);
+    if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_extract(grid, options, mesh);
     return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
 }
 
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
-    tc_status status = complex_request_check(options);
+    tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options->isovalue)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
-        return reference_complex_carry(grid, options->isovalue, c, vertex_count);
+        return reference_complex_carry(grid, options, c, vertex_count);
     return complex_device_carry(grid, options->isovalue, c, vertex_count);
 }

@@ -59,7 +59,7 @@ static int is_everything(const situation *s) {
 
 static int has_no_cells(const situation *s) { return !has_cells(s); }
 
-static int is_method_of_cubes(const situation *s) { return has_cells(s) && s->o->method != TC_METHOD_TETRA; }
+static int is_snap_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_SNAP; }
 
 static int is_not_snap(const situation *s) { return s->o->method != TC_METHOD_SNAP; }
 
@@ -138,8 +138,8 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--normals", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --normals are made of structured grids only"},
-    {COMMAND_EXTRACT, "--method", AFTER_READING, is_method_of_cubes, REFUSED,
-     "is unstructured: --method hybrid and snap are for structured grids only"},
+    {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
+     "is unstructured: --method snap is for structured grids only"},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi-world", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --roi-world" NOT_GRID},

@@ -184,7 +184,8 @@ static void input_text(const extract_report *r) {
 void extract_report_text(const extract_report *r) {
     input_text(r);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
-    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n], r->is_complex ? "tetrahedra" : "cells");
+    for (size_t n = 0; n < r->surface_count; n++)
+        surface_text(&r->surfaces[n], r->has_tetrahedra ? "tetrahedra" : "cells");
     printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
            r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
 }

@@ -50,8 +50,8 @@ typedef struct extract_report {
     tc_engine engine;          /* the one that made the surfaces; with --engine auto the last one */
     const dataset_block *grid; /* of an input that is one structured block, else NULL */
     int block_count;
-    int is_complex;    /* unstructured: active cells are tetrahedra */
-    const char *field; /* "" where it has no name */
+    int has_tetrahedra; /* unstructured, and not kept whole: active cells are tetrahedra */
+    const char *field;  /* "" where it has no name */
     tc_type type;
     uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
     char device[160];                                    /* "" for the reference engine */

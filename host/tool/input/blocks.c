@@ -96,22 +96,26 @@ static int refuse_cells(const options *o, const tc_cells *cells, tc_status statu
     return status == TC_ERROR_DATA ? fail(STATUS_INPUT, "%s: %s", o->operands[0], text) : input_status(o, status);
 }
 
-static int cut_unstructured(const options *o, prepared_block *b) {
+static tc_cells cells_of(const prepared_block *b) {
     const dataset_block *from = b->source;
-    const tc_cells cells = {.struct_size = sizeof cells,
-                            .point_count = (uint64_t)from->point_count,
-                            .points = from->points.f32,
-                            .points_f64 = from->points.f64,
-                            .cell_count = (uint64_t)from->cell_count,
-                            .types = from->cell_types,
-                            .offsets = from->cell_offsets,
-                            .connectivity = from->cell_points,
-                            .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
-                            .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells,
-                            .cell_faces = from->cell_faces,
-                            .face_offsets = from->face_offsets,
-                            .face_connectivity = from->face_points,
-                            .skip_unsupported = o->skip_unsupported};
+    return (tc_cells){.struct_size = sizeof(tc_cells),
+                      .point_count = (uint64_t)from->point_count,
+                      .points = from->points.f32,
+                      .points_f64 = from->points.f64,
+                      .cell_count = (uint64_t)from->cell_count,
+                      .types = from->cell_types,
+                      .offsets = from->cell_offsets,
+                      .connectivity = from->cell_points,
+                      .blanked_points = b->scalar ? b->scalar->blanked_points : from->blanked_points,
+                      .blanked_cells = b->scalar ? b->scalar->blanked_cells : from->blanked_cells,
+                      .cell_faces = from->cell_faces,
+                      .face_offsets = from->face_offsets,
+                      .face_connectivity = from->face_points};
+}
+
+static int cut_unstructured(const options *o, prepared_block *b) {
+    tc_cells cells = cells_of(b);
+    cells.skip_unsupported = o->skip_unsupported;
     tc_status status = tc_tetrahedralize(&cells, &b->complex);
     return status ? refuse_cells(o, &cells, status) : 0;
 }
@@ -242,8 +246,11 @@ void blocks_release(block_list *list) {
 
 static tc_status complex_grid(const prepared_block *b, tc_context *context, const double *origin, tc_grid **grid) {
     tc_tetrahedra_grid_options from;
+    const tc_cells cells = cells_of(b);
     if (!b->complex.tetrahedron_count) return TC_OK;
     tc_tetrahedra_grid_options_init(&from);
+    from.source = &cells; /* for method hybrid */
+    from.cells = b->complex.cells;
     from.point_count = (uint64_t)b->source->point_count;
     from.points = b->source->points.f32;
     from.points_f64 = b->source->points.f64;
