@@ -22,11 +22,13 @@ def test_signature():
 
 def test_return_values(ball):
     verts, faces, normals, values = marching_cubes(ball, 0, spacing=(3, 2, 1))
-    assert (verts.dtype, faces.dtype, normals.dtype, values.dtype) == ("f4", "i4", "f4", "f4")
+    assert (verts.dtype, faces.dtype, normals.dtype, values.dtype) == ("f8", "i4", "f4", "f4")
+    assert marching_cubes(ball, 0)[0].dtype == "f4"
     assert verts.shape == normals.shape == (len(values), 3) and faces.shape[1] == 3
     np.testing.assert_allclose(np.linalg.norm(verts / [3, 2, 1] - [12, 14, 16], axis=1), 9, atol=0.05)
     assert (values >= 0).all() and values.max() < 1.8
     turned = marching_cubes(ball, 0, spacing=(3, 2, 1), gradient_direction="ascent")[1]
+    assert signed_volume(verts, faces) < 0  # as there
     assert signed_volume(verts, faces) == pytest.approx(-signed_volume(verts, turned), rel=1e-9)
 
 

@@ -60,8 +60,8 @@ def contour_cells(points: npt.ArrayLike, cells: object, values: npt.ArrayLike, l
         m = meshio.read("can.ex2")
         mesh = tetracubes.contour_cells(m.points, m.cells, m.point_data["temperature"], 400)
 
-        g = pyvista.read("can.vtu")
-        mesh = tetracubes.contour_cells(g.points, (g.celltypes, g.offset, g.cell_connectivity), g["temperature"], 400)
+        g = pyvista.read("can.vtu")  # versions before 0.49 call cell_offsets offset
+        mesh = tetracubes.contour_cells(g.points, (g.celltypes, g.cell_offsets, g.cell_connectivity), g["temperature"], 400)
 
     points: (n, 3): x, y, z, in any unit of length.
     cells: meshio's blocks or dictionary (type's name, point numbers), or three arrays as VTK has them: types, offsets

@@ -17,8 +17,9 @@ def marching_cubes(volume: npt.ArrayLike, level: float | None = None, *,
                    mask: npt.ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """skimage.measure.marching_cubes: (verts, faces, normals, values), arguments and errors as there.
 
-    verts: float32 (n, 3), in the order of the volume's axes, times spacing.
-    faces: int32 (m, 3). normals: float32 (n, 3). values: float32 (n,): the greater sample of each vertex's edge.
+    verts: (n, 3), in the order of the volume's axes, times spacing: float32, float64 where spacing is not 1.
+    faces: int32 (m, 3). normals: float32 (n, 3). values: float32 (n,): the greater sample of the
+    edge that a vertex lies on (there: the greatest of the cubes around it).
 
     Made by the method "hybrid": vertices lie on the same edges of cubes as there; where a cube is ambiguous, the
     tetrahedra decide which of them are joined. ``method`` is checked, and has no other effect.
@@ -41,18 +42,29 @@ def marching_cubes(volume: npt.ArrayLike, level: float | None = None, *,
     if mask is not None and np.shape(mask) != volume.shape:
         raise ValueError("volume and mask must have the same shape.")
     every = (slice(None, None, int(step_size)),) * 3
-    samples = volume[every]
+    samples = np.ascontiguousarray(volume[every])
     mesh = isosurface(samples, level, mask=None if mask is None else np.asarray(mask)[every], method="hybrid",
                       normals=True)
     if not len(mesh.triangles):
         raise RuntimeError("No surface found at the given iso value.")
-    index, faces = mesh.vertices, mesh.faces.view(np.int32)
-    low, high = (tuple(rounded(index).astype(np.intp).T) for rounded in (np.floor, np.ceil))
-    values = np.maximum(samples[low], samples[high]).astype(np.float32)
-    verts = index * (np.float32(step_size) * np.asarray(spacing, np.float32))
-    if gradient_direction == "ascent":
-        faces = faces[:, ::-1]
+    verts, faces = mesh.vertices, mesh.faces.view(np.int32)
+    values = _greater_ends(samples, verts).astype(np.float32)
+    if step_size != 1:
+        verts = verts * np.float32(step_size)
+    if not np.array_equal(spacing, (1, 1, 1)):
+        verts = verts * np.asarray(spacing, np.float64)
+    if gradient_direction == "descent":
+        faces = faces[:, ::-1]  # clockwise seen from the lower values, in the order of the volume's axes
     if not allow_degenerate:
         a, b, c = (verts[faces[:, corner]] for corner in range(3))
         faces = faces[np.cross(b - a, c - a).any(axis=1)]
     return verts, faces, mesh.normals, values
+
+
+def _greater_ends(samples, verts):
+    """The greater sample of the edge that each vertex lies on; verts in index space."""
+    def at(ends):
+        z, y, x = ends.astype(np.intp).T
+        return samples.ravel().take((z * samples.shape[1] + y) * samples.shape[2] + x)
+
+    return np.maximum(at(np.floor(verts)), at(np.ceil(verts)))
