@@ -1,4 +1,8 @@
 """Arrays of any kind become what the library takes: native, contiguous, x fastest. Copied only where they are not."""
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from .library import tc_type
@@ -44,13 +48,13 @@ def _known(array, what):
     raise ValueError(f"{what} has values of type {array.dtype}: integers, float16, float32 and float64 can be contoured")
 
 
-def values_of(array, what):
+def values_of(array: Any, what: str) -> np.ndarray:
     """As a contiguous array of one of TYPES."""
     array = _known(_as_numpy(array, what), what)
     return np.require(array, array.dtype.newbyteorder("="), ["C", "A"])
 
 
-def volume_of(volume, mask, what="volume"):
+def volume_of(volume: Any, mask: Any, what: str = "volume") -> tuple[np.ndarray, np.ndarray | None]:
     """Samples (z, y, x), and what is missing of them: 1 in a u8 array of the same shape, or None.
 
     Samples are missing where a masked array is masked, and where mask is false.

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -51,7 +52,7 @@ def _vtk(cells):
     return types, offsets, connectivity
 
 
-def contour_cells(points: npt.ArrayLike, cells: object, values: npt.ArrayLike, level: float, *,
+def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, level: float, *,
                   carry: Mapping[str, npt.ArrayLike] | None = None, skip_unsupported: bool = False,
                   device: int | str | None = None, engine: str = "auto", max_memory: int | None = None,
                   progress: Callable[[str, float], object] | None = None) -> Mesh:
@@ -71,31 +72,29 @@ def contour_cells(points: npt.ArrayLike, cells: object, values: npt.ArrayLike, l
     skip_unsupported: whether cells that cannot be cut are left out instead of refused.
     The rest as for ``isosurface``. Vertices are x, y, z.
     """
-    points = arrays.values_of(points, "points")
-    values = arrays.values_of(values, "values")
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"points have the shape {points.shape}, not (n, 3)")
-    if points.dtype != np.float32:
-        points = np.ascontiguousarray(points, np.float64)
-    if values.shape != points.shape[:1]:
-        raise ValueError(f"values have the shape {values.shape}, and there are {len(points)} points: one value each")
-    places = {"points" if points.dtype == np.float32 else "points_f64": points.ctypes.data}
+    place, samples = arrays.values_of(points, "points"), arrays.values_of(values, "values")
+    if place.ndim != 2 or place.shape[1] != 3:
+        raise ValueError(f"points have the shape {place.shape}, not (n, 3)")
+    if place.dtype != np.float32:
+        place = np.ascontiguousarray(place, np.float64)
+    if samples.shape != place.shape[:1]:
+        raise ValueError(f"values have the shape {samples.shape}, and there are {len(place)} points: one value each")
+    member = "points" if place.dtype == np.float32 else "points_f64"
     is_vtk = isinstance(cells, tuple) and len(cells) == 3 and not any(isinstance(part, tuple) for part in cells)
     types, offsets, connectivity = _vtk(cells) if is_vtk else _blocks(cells)
-    given = tc_cells(point_count=len(points), cell_count=len(types), types=types.ctypes.data,
+    given = tc_cells(point_count=len(place), cell_count=len(types), types=types.ctypes.data,
                      offsets=offsets.ctypes.data, connectivity=connectivity.ctypes.data,
-                     skip_unsupported=skip_unsupported, **places)
+                     skip_unsupported=skip_unsupported, **{member: place.ctypes.data})
     cut = tc_tetrahedra()
     check(tc.tc_tetrahedralize(ctypes.byref(given), ctypes.byref(cut)))
     try:
         how = options(tc_tetrahedra_grid_options)
-        how.point_count, how.type, how.samples = len(points), arrays.TYPES[values.dtype], values.ctypes.data
+        how.point_count, how.type, how.samples = len(place), arrays.TYPES[samples.dtype], samples.ctypes.data
         how.tetrahedron_count, how.tetrahedra = cut.tetrahedron_count, cut.tetrahedra
-        for name, place in places.items():
-            setattr(how, name, place)
+        setattr(how, member, place.ctypes.data)
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
-        with GridBase(context, tc.tc_tetrahedra_grid_create, how, (points, values), "xyz", values.shape) as grid:
+        with GridBase(context, tc.tc_tetrahedra_grid_create, how, (place, samples), "xyz", samples.shape) as grid:
             return grid.extract(level, carry=carry)
     finally:
         tc.tc_tetrahedra_release(ctypes.byref(cut))

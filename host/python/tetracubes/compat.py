@@ -18,18 +18,18 @@ def marching_cubes(volume: npt.ArrayLike, level: float | None = None, *,
     """skimage.measure.marching_cubes: (verts, faces, normals, values), arguments and errors as there.
 
     verts: (n, 3), in the order of the volume's axes, times spacing: float32, float64 where spacing is not 1.
-    faces: int32 (m, 3). normals: float32 (n, 3). values: float32 (n,): the greater sample of the
-    edge that a vertex lies on (there: the greatest of the cubes around it).
+    faces: int32 (m, 3). normals: float32 (n, 3).
+    values: float32 (n,): the greater sample of the edge that a vertex lies on; there, the greatest of the cubes around it.
 
     Made by the method "hybrid": vertices lie on the same edges of cubes as there; where a cube is ambiguous, the
     tetrahedra decide which of them are joined. ``method`` is checked, and has no other effect.
     """
-    volume = arrays.values_of(np.ma.getdata(volume) if isinstance(volume, np.ma.MaskedArray) else volume, "volume")
-    if volume.ndim != 3 or min(volume.shape) < 2:
+    samples = arrays.values_of(np.ma.getdata(volume) if isinstance(volume, np.ma.MaskedArray) else volume, "volume")
+    if samples.ndim != 3 or min(samples.shape) < 2:
         raise ValueError("Input array must be a 3D array of at least 2 x 2 x 2 samples.")
     if level is None:
-        level = 0.5 * (float(volume.min()) + float(volume.max()))
-    elif not volume.min() <= level <= volume.max():
+        level = 0.5 * (float(samples.min()) + float(samples.max()))
+    elif not samples.min() <= level <= samples.max():
         raise ValueError("Surface level must be within volume data range.")
     if method not in ("lewiner", "lorensen"):
         raise ValueError("method should be either 'lewiner' or 'lorensen'")
@@ -39,10 +39,10 @@ def marching_cubes(volume: npt.ArrayLike, level: float | None = None, *,
         raise ValueError("`spacing` must consist of three floats.")
     if int(step_size) < 1:
         raise ValueError("step_size must be at least one.")
-    if mask is not None and np.shape(mask) != volume.shape:
+    if mask is not None and np.shape(mask) != samples.shape:
         raise ValueError("volume and mask must have the same shape.")
     every = (slice(None, None, int(step_size)),) * 3
-    samples = np.ascontiguousarray(volume[every])
+    samples = np.ascontiguousarray(samples[every])
     mesh = isosurface(samples, level, mask=None if mask is None else np.asarray(mask)[every], method="hybrid",
                       normals=True)
     if not len(mesh.triangles):
@@ -58,7 +58,7 @@ def marching_cubes(volume: npt.ArrayLike, level: float | None = None, *,
     if not allow_degenerate:
         a, b, c = (verts[faces[:, corner]] for corner in range(3))
         faces = faces[np.cross(b - a, c - a).any(axis=1)]
-    return verts, faces, mesh.normals, values
+    return verts, faces, np.asarray(mesh.normals), values
 
 
 def _greater_ends(samples, verts):

@@ -136,6 +136,16 @@ _free: dict = {}
 _free_lock = threading.Lock()
 
 
+def _forked():
+    """A forked child has no use for its parent's OpenCL, and nobody who would release the lock."""
+    global _free_lock  # pylint: disable=global-statement
+    _free_lock = threading.Lock()
+    _free.clear()
+
+
+os.register_at_fork(after_in_child=_forked)
+
+
 def _kept(engine, device, max_memory):
     """A context that is free, or a new one. give_back() keeps it for the next."""
     key = engine, device, max_memory, device is None and os.environ.get("TETRACUBES_DEVICE")
@@ -161,7 +171,7 @@ def take(engine, device, max_memory):
         except DeviceError as error:
             if engine == "opencl":
                 raise
-            warnings.warn(f"{error} The reference engine does the work: the same mesh, on one core.", RuntimeWarning,
+            warnings.warn(f"{error}. The reference engine does the work now: the same mesh, on one core", RuntimeWarning,
                           stacklevel=4)
     return _kept(tc_engine.TC_ENGINE_REFERENCE, None, 0)
 

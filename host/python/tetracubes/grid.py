@@ -179,6 +179,8 @@ class Grid(GridBase):
     Surfaces of parts that share a plane then fit to the bit; see also isosurface_by_parts.
     """
 
+    _opencl: Any = None  # the pyopencl.Context of from_opencl
+
     def __init__(self, volume: Any, *, spacing: npt.ArrayLike = 1, origin: npt.ArrayLike = 0,
                  direction: npt.ArrayLike | None = None, mask: Any = None, nodata: float | None = None,
                  axes: str = "zyx", device: int | str | None = None, engine: str = "auto",
@@ -238,7 +240,7 @@ class Grid(GridBase):
         The kernels are enqueued in its queue; nothing waits for them but ``event``.
         """
         import pyopencl  # pylint: disable=import-outside-toplevel
-        if not hasattr(self, "_opencl"):
+        if self._opencl is None:
             raise ValueError("the grid was not made by Grid.from_opencl: there is no OpenCL context to leave a mesh in")
         how = extract_options(level, method, snap, normals)
         counts, origin, event = tc_counts(), (ctypes.c_double * 3)(), ctypes.c_void_p()
@@ -253,7 +255,7 @@ class Grid(GridBase):
         self._call(tc.tc_grid_origin, ctypes.byref(origin))
         self._call(tc.tc_emit, ctypes.byref(how), ctypes.byref(mesh), ctypes.byref(event))
         return DeviceMesh(*made, counts.vertex_count, counts.triangle_count, np.array(origin),
-                          pyopencl.Event.from_int_ptr(event.value, retain=False))
+                          pyopencl.Event.from_int_ptr(event.value or 0, retain=False))
 
 
 def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin: npt.ArrayLike = 0,

@@ -45,16 +45,22 @@ def isosurface_by_parts(volume: Any, level: float, *, planes: int | None = None,
     elif planes < 1:
         raise ValueError(f"planes is {planes}, not a number of samples along z")
     planes = -(-max(planes, 1) // _LAYER) * _LAYER
-    same = {"spacing": spacing, "origin": origin, "direction": direction, "nodata": nodata, "axes": axes,
-            "device": device, "engine": engine, "max_memory": max_memory}
+    same: dict[str, Any] = {"spacing": spacing, "origin": origin, "direction": direction, "nodata": nodata,
+                            "axes": axes, "device": device, "engine": engine, "max_memory": max_memory}
     parts = [_Part(volume, level, mask, method, same, first, min(first + planes, count))
              for first in range(0, max(count - 1, 1), planes)]
     made, vertices = [], 0
     for number, part in enumerate(parts):
-        same["progress"] = progress and (lambda stage, fraction, n=number: progress(stage, (n + fraction) / len(parts)))
+        if progress:
+            same["progress"] = _share(progress, number, len(parts))
         made.append(part.extract(vertices, normals, carry or {}))
         vertices += len(made[-1].positions)
     return _joined(made)
+
+
+def _share(progress, number, count):
+    """Tells progress of a part among so many."""
+    return lambda stage, fraction: progress(stage, (number + fraction) / count)
 
 
 class _Part:
