@@ -185,7 +185,8 @@ static void test_memory_budgets(const subject *s) {
     expert.always_copy = always_copy;
     uint64_t whole = (uint64_t)(s->grid.dims[0] * s->grid.dims[1] * s->grid.dims[2]) * tc_type_bytes(s->grid.type) +
                      24 * s->expected.vertex_count + 12 * s->expected.triangle_count;
-    const uint64_t steps = (tier_is_quick() ? 5 : 10) << (method == TC_METHOD_SNAP); /* which has more kinds of plans */
+    const unsigned more = method == TC_METHOD_SNAP; /* it has more kinds of plans */
+    const uint64_t steps = UINT64_C(10) << more >> (tier_is_quick() ? 1 : 0);
     for (options.max_memory_bytes = 16 * whole; options.max_memory_bytes > whole / 200;
          options.max_memory_bytes -= options.max_memory_bytes / steps) {
         tc_context *context = context_open(&options);

@@ -1,0 +1,37 @@
+/*
+ * mesh_files.c - the tool's writers and its hash, for the Python package: files have the same bytes as the tool's
+ */
+#include "exit_status.h"
+#include "failure.h"
+#include "mesh_check.h"
+#include "mesh_write.h"
+
+#include <stdlib.h>
+
+#define FILES_API __attribute__((visibility("default")))
+
+FILES_API uint64_t mesh_files_hash(const tc_mesh_data *mesh);
+FILES_API int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
+                              const char *const *names, const int *components, const float *const *values,
+                              int *is_relative);
+FILES_API const char *mesh_files_message(void);
+
+uint64_t mesh_files_hash(const tc_mesh_data *mesh) {
+    return mesh_hash(mesh->positions, mesh->vertex_count, mesh->triangles, mesh->triangle_count);
+}
+
+/* Returns a status of exit_status.h. *is_relative: whether the file's coordinates are relative to the mesh's origin. */
+int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
+                    const char *const *names, const int *components, const float *const *values, int *is_relative) {
+    vertex_array *fields = calloc((size_t)field_count + 1, sizeof *fields);
+    mesh_write_options options = {.format = format, .fields = fields, .field_count = field_count};
+    if (!fields) return fail(STATUS_FAILED, "out of memory for %d fields", field_count);
+    for (int n = 0; n < field_count; n++) fields[n] = (vertex_array){names[n], components[n], values[n], ROLE_DATA};
+    int status = mesh_write_check(path, &options);
+    if (!status) status = mesh_write(path, mesh, &options);
+    *is_relative = !status && mesh_write_is_relative(path, mesh, &options);
+    free(fields);
+    return status;
+}
+
+const char *mesh_files_message(void) { return failure_text(); }

