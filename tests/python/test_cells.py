@@ -43,6 +43,13 @@ def test_same_mesh(cells):
     np.testing.assert_allclose(mesh.values["x"], mesh.vertices[:, 0], atol=1e-5)
 
 
+def test_hybrid():
+    mesh, tetra = contour(VTK, method="hybrid"), contour(VTK)
+    assert len(mesh.faces) < len(tetra.faces) / 2
+    assert signed_volume(mesh.vertices, mesh.faces) == pytest.approx(signed_volume(tetra.vertices, tetra.faces), rel=0.02)
+    assert tetracubes.contour_cells(POINTS, VTK, VALUES, 0.1, method="hybrid").hash == mesh.hash
+
+
 def test_float32_points():
     assert contour(VTK, points=POINTS.astype("f4")).hash == contour(VTK).hash
     assert contour(VTK, points=POINTS.astype(">f4")[::-1][::-1]).hash == contour(VTK).hash

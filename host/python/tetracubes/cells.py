@@ -53,7 +53,7 @@ def _vtk(cells):
 
 
 def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, level: float, *,
-                  carry: Mapping[str, npt.ArrayLike] | None = None, skip_unsupported: bool = False,
+                  method: str = "tetra", carry: Mapping[str, npt.ArrayLike] | None = None, skip_unsupported: bool = False,
                   device: int | str | None = None, engine: str = "auto", max_memory: int | None = None,
                   progress: Callable[[str, float], object] | None = None) -> Mesh:
     """The surface that separates values >= level from those below, in an unstructured grid of any cells.
@@ -69,6 +69,7 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
     (one more than cells) and connectivity. Tetrahedra, hexahedra, voxels, wedges, pyramids and prisms, quadratic ones
     by their corners; cells of fewer dimensions are left out.
     values: (n,), one per point. Where one is not finite, the tetrahedra there are left out.
+    method: "tetra"; or "hybrid", which makes fewer triangles of cells that are no tetrahedra, by the reference engine.
     skip_unsupported: whether cells that cannot be cut are left out instead of refused.
     The rest as for ``isosurface``. Vertices are x, y, z.
     """
@@ -92,9 +93,12 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
         how.point_count, how.type, how.samples = len(place), arrays.TYPES[samples.dtype], samples.ctypes.data
         how.tetrahedron_count, how.tetrahedra = cut.tetrahedron_count, cut.tetrahedra
         setattr(how, member, place.ctypes.data)
+        if method == "hybrid":
+            how.source, how.cells = ctypes.addressof(given), cut.cells
+            engine = "reference" if engine == "auto" else engine  # no kernel keeps cells whole
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
         with GridBase(context, tc.tc_tetrahedra_grid_create, how, (place, samples), "xyz", samples.shape) as grid:
-            return grid.extract(level, carry=carry)
+            return grid.extract(level, method=method, carry=carry)
     finally:
         tc.tc_tetrahedra_release(ctypes.byref(cut))

@@ -155,7 +155,8 @@ class tc_tetrahedra(_Sized):
 class tc_tetrahedra_grid_options(_Sized):
     _fields_ = [("struct_size", c_size_t), ("point_count", c_uint64), ("points", c_void_p), ("type", c_int),
                 ("samples", c_void_p), ("tetrahedron_count", c_uint64), ("tetrahedra", c_void_p),
-                ("points_f64", c_void_p), ("has_origin", c_int), ("origin", c_double * 3)]
+                ("points_f64", c_void_p), ("has_origin", c_int), ("origin", c_double * 3), ("source", c_void_p),
+                ("cells", c_void_p)]
 
 
 class tc_device_mesh(_Sized):
