@@ -150,6 +150,8 @@ static const place places[] = {
     AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedra, null),
     AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.tetrahedra, NULL),
     AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.points_f64, LISTED({8, ARGUMENT})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.source, LISTED({8, ARGUMENT})),
+    AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.cells, LISTED({8, ARGUMENT})),
     AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.has_origin, LISTED({1, OK | ARGUMENT})),
     AT(tc_tetrahedra_grid_create, tetrahedra_grid_options.origin[2], any_f64),
     AT(tc_grid_origin, grid, null),

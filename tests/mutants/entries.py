@@ -47,7 +47,7 @@ TABLES = {
                           ("cube_edges[CUBE_EDGES] = ", owned_edge_entry),
                           ("type_of_axes[8] = ", owned_edge_entry)],
     "host/lib/reference/reference.c": [("edge_axes[EDGES_PER_SAMPLE] = ", counting(8))],
-    "host/lib/convert/cell_split.c": [("#define HEXAHEDRON ", counting(8)), ("#define VOXEL      ", counting(8)),
+    "host/lib/grid/cell_split.c": [("#define HEXAHEDRON ", counting(8)), ("#define VOXEL      ", counting(8)),
                               ("#define WEDGE      ", counting(6)), ("#define WEDGE_UP   ", counting(6)),
                               ("#define PRISM_5    ", counting(10)), ("#define PRISM_6    ", counting(12)),
                               ("hexahedron_faces[6][4] = ", counting(8)), ("wedge_faces[3][4] = ", counting(6)),

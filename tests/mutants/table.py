@@ -134,7 +134,7 @@ FILES = {
     "host/lib/reference/reference_crossing.inc": REFERENCE,
     "host/lib/reference/reference_vertex.inc": REFERENCE,
     "host/lib/reference/reference_complex.c": ["test_complex, reference", "test_complex, u8"],
-    "host/lib/convert/cell_split.c": ["test_tetrahedralize", "test_polyhedra"],
+    "host/lib/grid/cell_split.c": ["test_tetrahedralize", "test_polyhedra"],
     "host/lib/convert/polyhedron.c": ["test_polyhedra"],
     "host/lib/convert/tetrahedralize.c": ["test_tetrahedralize", "test_polyhedra"],
     "host/lib/convert/tetrahedralize_passes.c": ["test_tetrahedralize", "test_polyhedra"],

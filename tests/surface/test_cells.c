@@ -545,6 +545,24 @@ static void test_refusals(void) {
         EXPECT_REFUSED(try_hybrid(reference, &o), TC_ERROR_DATA, "a corner that is no point");
         *point = old;
     }
+    uint32_t *numbers = memory_get(4 * complex.tetrahedron_count), last = (uint32_t)complex.tetrahedron_count - 1;
+    memcpy(numbers, complex.cells, 4 * complex.tetrahedron_count);
+    o.cells = numbers;
+    for (uint32_t n = 0; n <= last; n += last) {
+        const uint32_t others[2] = {UINT32_MAX, numbers[n] ? 0 : 1};
+        for (int other = 0; other < 2; other++) {
+            numbers[n] = others[other];
+            EXPECT_REFUSED(try_hybrid(reference, &o), TC_ERROR_DATA, "a cell's number that has changed");
+            numbers[n] = complex.cells[n];
+        }
+    }
+    for (uint32_t n = 1; n <= last; n++) {
+        if (numbers[n] != numbers[n - 1]) continue;
+        numbers[n] = (numbers[n] + 1) % (uint32_t)list.cell_count;
+        EXPECT_REFUSED(try_hybrid(reference, &o), TC_ERROR_DATA, "a tetrahedron in the middle that is another cell's");
+        numbers[n] = complex.cells[n];
+    }
+    free(numbers);
     o.point_count = columns.point_count, o.points = columns.points;
     o.tetrahedron_count = of_prisms.tetrahedron_count, o.tetrahedra = of_prisms.tetrahedra;
     o.source = &prisms, o.cells = of_prisms.cells;

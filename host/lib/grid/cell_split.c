@@ -1,4 +1,4 @@
-#include "convert/cell_split.h"
+#include "grid/cell_split.h"
 
 #include <string.h>
 
