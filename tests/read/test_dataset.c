@@ -385,7 +385,6 @@ static void what_is_not_read_is_named(void) {
                  {"a.e", "?", STATUS_INPUT, "Exodus"},
                  {"a.nc", "CDF\2....", STATUS_INPUT, "netCDF"},
                  {"a.cgns", "?", STATUS_INPUT, "CGNS"},
-                 {"a.h5", "\211HDF\r\n\032\n", STATUS_INPUT, "HDF5"},
                  {"a.stl", "solid", STATUS_INPUT, "surface"},
                  {"a.q", "?", STATUS_USAGE, "two inputs"},
                  {"a.bin", "?", STATUS_USAGE, "--dims"},

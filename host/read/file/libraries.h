@@ -7,7 +7,17 @@
 #ifndef LIBRARIES_H
 #define LIBRARIES_H
 
-enum library { LIBRARY_NONE, LIBRARY_ZLIB, LIBRARY_BZIP2, LIBRARY_LZ4, LIBRARY_LZMA, LIBRARY_NIFTI, LIBRARY_EXPAT, LIBRARY_TIFF };
+enum library {
+    LIBRARY_NONE,
+    LIBRARY_ZLIB,
+    LIBRARY_BZIP2,
+    LIBRARY_LZ4,
+    LIBRARY_LZMA,
+    LIBRARY_NIFTI,
+    LIBRARY_EXPAT,
+    LIBRARY_TIFF,
+    LIBRARY_HDF5
+};
 
 /* The function, or NULL. */
 #define IF_BUILT(have, function)  IF_BUILT_(have, function)

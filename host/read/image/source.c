@@ -268,7 +268,7 @@ static int load_raw(const source *from, const char *path, const layout *l, datas
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
         goto cleanup;
-    if (from->byte_skip >= 0) notice_rest(from, path, m.size - start - l->bytes, out);
+    if (from->byte_skip >= 0 && !from->goes_on) notice_rest(from, path, m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
         out->blocks->fields->values = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;
