@@ -103,7 +103,7 @@ const read_format read_formats[FORMAT_COUNT] = {
     [HDF5] = {.name = "HDF5",
               .library = LIBRARY_HDF5,
               .notes = {{"images", LIBRARY_NONE}},
-              .endings = "|.h5|.hdf5|",
+              .endings = "|.h5|.hdf5|.vtkhdf|",
               .begins = begins_as_hdf5,
               .read = IF_BUILT(HAVE_HDF5, hdf5_read),
               .instead = "save the array as .npy or NRRD",

@@ -200,7 +200,7 @@ MUTANTS = [
     *group("host/read/image/hdf5_file.c",
            ("*is_swapped = !is_native && is_other;", "*is_swapped = 0;", "HDF5: the other byte order"),
            ("stored == H5D_VIRTUAL || others > 0", "0", "HDF5: samples in other files"),
-           ("values[2 - axis];", "values[axis];", "HDF5: spacing from behind")),
+           ("sizes[2 - axis] > 0 ? sizes[2 - axis] : 1", "sizes[axis]", "HDF5: spacing from behind")),
     *group("host/read/image/slices.c",
            ("if (own != before + 1)", "if (0)", "slices: numbers left out"),
            ("digits != other ?", "0 ?", "slices: numbers of several digits")),

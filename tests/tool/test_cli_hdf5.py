@@ -58,6 +58,22 @@ class Datasets(GridCase):
             numpy.save(self.path("b.npy"), array)
             self.assertEqual(self.surface("a.h5")["hash"], self.surface("b.npy")["hash"])
 
+    def test_image_of_vtk(self):
+        """VTKHDF: a group with the place of an image, and its fields."""
+        with h5py.File(self.path("a.vtkhdf"), "w") as file:
+            group = file.create_group("VTKHDF")
+            group.attrs["Version"] = (1, 0)
+            group.attrs["Type"] = numpy.bytes_("ImageData")
+            group.attrs["WholeExtent"] = (2, 10, 0, 7, 1, 7)
+            group.attrs["Spacing"], group.attrs["Origin"] = (0.5, 2.0, 3.0), (10.0, 20.0, 30.0)
+            group.attrs["Direction"] = (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+            group.create_dataset("PointData/bump", data=self.array)
+            group.create_dataset("CellData/c", data=self.array[1:, 1:, 1:])
+        name = "a.vtkhdf:/VTKHDF/PointData/bump"
+        facts = json.loads(self.expect(0, "info", self.path(name), "--json").stdout)
+        self.assertEqual(facts["matrix"], [[0, 2, 0, 10], [0.5, 0, 0, 21], [0, 0, 3, 33]])
+        self.refuses(4, "info", self.path("a.vtkhdf:/VTKHDF/CellData/c"), says="values of cells")
+
     def test_parts_and_places(self):
         with h5py.File(self.path("a.h5"), "w", userblock_size=512) as file:
             file["a"] = self.array

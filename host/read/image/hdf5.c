@@ -17,6 +17,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { RATIO_MOST = 50000 }; /* so many bytes of samples to a stored one, as chunks that were never written are zeros */
 
@@ -49,7 +50,7 @@ int hdf5_read(const read_request *request, const mapping *file, dataset *out) {
         array_axes_list(h.shape, h.dimension, 0, &stored);
         status = layout_make(h.path, &stored, h.element, request, &l);
     }
-    for (int axis = 0; axis < 3 && !status; axis++) out->blocks->matrix[axis][axis] = h.spacing[axis];
+    if (!status) memcpy(out->blocks->matrix, h.matrix, sizeof h.matrix);
     if (!status) status = world_place(request, h.path, out->blocks->matrix);
     if (!status) {
         l.swapped = h.is_swapped;

@@ -180,17 +180,53 @@ static int read_storage(hdf5_file *h) {
     return fail(STATUS_INPUT, "%s: its dataset was made, but no samples were written", h->path);
 }
 
-/* As Fiji and ilastik write it: z, y, x. */
-static void read_spacing(hdf5_file *h) {
-    double values[3] = {1, 1, 1};
-    for (int axis = 0; axis < 3; axis++) h->spacing[axis] = 1;
-    if (H5Aexists(h->dataset, "element_size_um") <= 0) return;
-    const hid_t attribute = H5Aopen(h->dataset, "element_size_um", H5P_DEFAULT), space = H5Aget_space(attribute);
-    if (H5Sget_simple_extent_npoints(space) == 3 && H5Aread(attribute, H5T_NATIVE_DOUBLE, values) >= 0)
-        for (int axis = 0; axis < 3; axis++)
-            if (values[2 - axis] > 0 && values[2 - axis] < 1e30) h->spacing[axis] = values[2 - axis];
-    H5Sclose(space);
-    H5Aclose(attribute);
+/* ----------------------------------------------------------------------------------------------------------- place */
+
+/* An attribute of so many numbers. Returns 0, and leaves the values, where there is none. */
+static int read_numbers(hid_t object, const char *name, double *values, int count) {
+    double own[9];
+    if (H5Aexists(object, name) <= 0) return 0;
+    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), space = attribute < 0 ? -1 : H5Aget_space(attribute);
+    const int is_read =
+        space >= 0 && H5Sget_simple_extent_npoints(space) == count && H5Aread(attribute, H5T_NATIVE_DOUBLE, own) >= 0;
+    if (is_read) memcpy(values, own, (size_t)count * sizeof *values);
+    if (space >= 0) H5Sclose(space);
+    if (attribute >= 0) H5Aclose(attribute);
+    return is_read;
+}
+
+/* The image that VTK has written, by the attributes of its group; the origin is that of index 0, 0, 0 of the extent. */
+static void read_place_of_vtk(hdf5_file *h) {
+    double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0}, extent[6] = {0};
+    double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const hid_t group = H5Gopen2(h->file, "/VTKHDF", H5P_DEFAULT);
+    if (group < 0) return;
+    read_numbers(group, "Spacing", spacing, 3);
+    read_numbers(group, "Origin", origin, 3);
+    read_numbers(group, "Direction", direction, 9);
+    read_numbers(group, "WholeExtent", extent, 6);
+    H5Gclose(group);
+    for (int row = 0; row < 3; row++) {
+        h->matrix[row][3] = origin[row];
+        for (int axis = 0; axis < 3; axis++) {
+            h->matrix[row][axis] = direction[3 * row + axis] * spacing[axis];
+            h->matrix[row][3] += h->matrix[row][axis] * extent[2 * axis];
+        }
+    }
+}
+
+/* As Fiji and ilastik write it, z, y, x; or VTK's. */
+static int read_place(hdf5_file *h) {
+    double sizes[3] = {1, 1, 1};
+    char name[NAME_BYTES] = "";
+    H5Iget_name(h->dataset, name, sizeof name);
+    read_numbers(h->dataset, "element_size_um", sizes, 3);
+    for (int axis = 0; axis < 3; axis++) h->matrix[axis][axis] = sizes[2 - axis] > 0 ? sizes[2 - axis] : 1;
+    if (strncmp(name, "/VTKHDF/CellData/", 17) == 0)
+        return fail(STATUS_INPUT, "%s: '%s' has values of cells; of VTKHDF, those of the points of images are read",
+                    h->path, name);
+    if (strncmp(name, "/VTKHDF/PointData/", 18) == 0) read_place_of_vtk(h);
+    return 0;
 }
 
 int hdf5_open(hdf5_file *h, const char *path, const char *name) {
@@ -210,8 +246,7 @@ int hdf5_open(hdf5_file *h, const char *path, const char *name) {
     if (!status) status = read_shape(h);
     if (!status) status = read_type(h);
     if (!status) status = read_storage(h);
-    if (!status) read_spacing(h);
-    return status;
+    return status ? status : read_place(h);
 }
 
 int hdf5_load(const hdf5_file *h, void *to) {

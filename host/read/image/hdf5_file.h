@@ -23,7 +23,7 @@ typedef struct hdf5_file {
     H5D_layout_t layout;
     uint64_t start;        /* of samples that lie in the file one behind the other */
     uint64_t stored_bytes; /* of the file, that hold them */
-    double spacing[3];     /* x, y, z, by the attribute element_size_um; 1 where there is none */
+    double matrix[3][4];   /* by the attribute element_size_um, or as an image of VTKHDF; else the identity */
 } hdf5_file;
 
 /* Opens the dataset of that name, or, where it is NULL, the only one that may be a volume. 0, or a status with its
