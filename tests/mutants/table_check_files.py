@@ -191,7 +191,7 @@ MUTANTS = [
            ("packed_least > file->size", "0", "TIFF: pages that the file cannot hold are taken memory for",
             {"tests": ("test_limits",)}),
            ("1 / (double)per_unit[axis]", "(double)per_unit[axis]", "TIFF: spacing of ImageJ"),
-           ("kind & (FILETYPE_REDUCEDIMAGE", "kind & 0 & (FILETYPE_REDUCEDIMAGE", "TIFF: pages of lower resolution"),
+           ("(kind & (FILETYPE_REDUCEDIMAGE", "(kind & 0 & (FILETYPE_REDUCEDIMAGE", "TIFF: pages of lower resolution"),
            ("tile + (uint64_t)n * width * pixel", "tile + (uint64_t)n * kept", "TIFF: rows of tiles")),
     *group("host/read/image/hdf5_chunks.c",
            ("c->stored[b * count + k]", "c->stored[b + k * c->element]", "HDF5: shuffled bytes"),

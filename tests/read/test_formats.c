@@ -94,8 +94,8 @@ static void expect_missing(const char *name, const char *text, const char *libra
 
 static void test_absent(void) {
     char text[FORMATS_TEXT];
-    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, numpy, VTK legacy, Plot3D (grid and solution)"), "%s",
-           text);
+    EXPECT(!strcmp(read_formats_text(text), "raw, NRRD, MetaImage, numpy, VTK legacy, Plot3D (grid and solution)"),
+           "%s", text);
     expect_missing("a.nii", "x", "libnifti2", "TETRACUBES_NIFTI");
     expect_missing("a.tif", "x", "libtiff", "libtiff-dev");
     expect_missing("a.h5", "x", "libhdf5", "TETRACUBES_HDF5");

@@ -226,7 +226,8 @@ static int load_part(const source *from, const char *path, const layout *l, uint
     int more = 0, status = open_part(from, path, out, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start))) goto cleanup;
-    const unsigned char *in = m.bytes ? m.bytes + start : m.bytes;
+    static const unsigned char nothing[1];
+    const unsigned char *in = m.bytes ? m.bytes + start : nothing;
     size_t in_bytes = m.size - (size_t)start;
     if (!is_packed(from)) status = check_size(from, path, in_bytes, bytes, element_bytes(l->element));
     if (is_packed(from) && !to) status = check_stream(from, path, in, in_bytes, bytes);

@@ -182,7 +182,7 @@ static int read_shape(const reader *r, tiff_shape *s) {
 static int is_of_lower_resolution(TIFF *t) {
     uint32_t kind = 0;
     TIFFGetFieldDefaulted(t, TIFFTAG_SUBFILETYPE, &kind);
-    return kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK);
+    return (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
 }
 
 /* A line "name=value" of the description; `otherwise` where there is none, or its value is none. */
