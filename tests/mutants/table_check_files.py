@@ -110,7 +110,7 @@ MUTANTS = [
     *group("host/common/stored_types.c",
            ("(is_negative ? 0 - (uint64_t)(least) : (uint64_t)(most))", "(uint64_t)(most)", "text: numbers out of range")),
     *group("host/read/image/source.c",
-           ("m.bytes ? m.bytes + start : m.bytes;", "m.bytes;", "data begin with the file"),
+           ("m.bytes ? m.bytes + start : nothing;", "m.bytes;", "data begin with the file"),
            ("*skip = total - needed;", "*skip = total - bytes;", "compressed data: bytes behind it count"),
            ("whole != floor(whole)", "0", "text: fractions are cut off"),
            ("digit++ & 1 ?", "!(digit++ & 1) ?", "hexadecimal digits: the low one first"),
