@@ -12,19 +12,14 @@
 #include "read_formats.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Samples without a header: all about them is in the request. */
 static int is_raw(const read_request *request) {
     const int64_t *d = request->dims;
     return d[0] || d[1] || d[2] || request->type >= 0;
-}
-
-static const read_format *find_format(const read_request *request, const mapping *file) {
-    if (is_raw(request) && !request->raw_else) return raw_format;
-    const read_format *format = read_format_of_content(file);
-    if (!format) format = read_format_of_ending(request->path);
-    return format || !request->raw_else ? format : raw_format;
 }
 
 /* Endings of Plot3D's files that are no use alone, or may be anything. */
@@ -72,8 +67,15 @@ static const char *name_of_unread(const char *path, const mapping *file) {
         if (path_ends_with(path, endings[i].ending)) return endings[i].name;
     if (file_starts_with(file, "CDF\1") || file_starts_with(file, "CDF\2") || file_starts_with(file, "CDF\5"))
         return "netCDF (Exodus and others)";
-    if (file_starts_with(file, "\211HDF\r\n\032\n")) return "HDF5 (CGNS, netCDF, VTKHDF and others)";
     return NULL;
+}
+
+static const read_format *find_format(const read_request *request, const mapping *file) {
+    if (is_raw(request) && !request->raw_else) return raw_format;
+    const read_format *format = read_format_of_content(file);
+    if (format == hdf5_format && name_of_unread(request->path, file)) return NULL; /* CGNS and Exodus lie in it */
+    if (!format) format = read_format_of_ending(request->path);
+    return format || !request->raw_else ? format : raw_format;
 }
 
 static int refuse_unknown(const char *path, const mapping *file) {
@@ -203,10 +205,9 @@ static int finish(const read_request *request, dataset *out, int status) {
     return status;
 }
 
-int dataset_read(const read_request *request, dataset *out) {
-    *out = (dataset){0};
+static int read_named(const read_request *request, dataset *out) {
     mapping file = {0};
-    if (!request->path2 && !is_raw(request) && slices_are_named(request->path))
+    if (tiff_format->read && !request->path2 && !is_raw(request) && slices_are_named(request->path))
         return finish(request, out, read_as(tiff_format, request, &file, out));
     if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
         return fail(STATUS_USAGE,
@@ -230,4 +231,20 @@ int dataset_read(const read_request *request, dataset *out) {
     mapping_close(&file);
     restore_names(request);
     return finish(request, out, status);
+}
+
+/* "file.h5:/path/to/dataset", where there is no file of all that name: the file, and the dataset's name in it. */
+int dataset_read(const read_request *request, dataset *out) {
+    read_request own = *request;
+    const char *colon = strstr(request->path, ":/");
+    *out = (dataset){0};
+    if (!colon || request->inside || mapping_is_stream(request->path) || access(request->path, F_OK) == 0)
+        return read_named(request, out);
+    char *path = strndup(request->path, (size_t)(colon - request->path));
+    if (!path) return fail(STATUS_FAILED, "%s: no memory for its name", request->path);
+    own.path = path;
+    own.inside = colon + 1;
+    int status = read_named(&own, out);
+    free(path);
+    return status;
 }

@@ -37,6 +37,14 @@ static int begins_as_tiff(const mapping *file) {
     return 0;
 }
 
+/* Behind nothing, or behind 512 bytes of others, as MATLAB's, or 1024, 2048. */
+static int begins_as_hdf5(const mapping *file) {
+    static const char signature[8] = "\211HDF\r\n\032\n";
+    for (size_t at = 0; at <= 2048 && at + 8 <= file->size; at = at ? 2 * at : 512)
+        if (memcmp(file->bytes + at, signature, 8) == 0) return 1;
+    return 0;
+}
+
 /* By the size of the header, which begins every NIfTI header, in either byte order. */
 static int begins_as_nifti(const mapping *file) {
     static const char sizes[4][4] = {{92, 1, 0, 0}, {0, 0, 1, 92}, {28, 2, 0, 0}, {0, 0, 2, 28}};
@@ -56,7 +64,7 @@ static int begins_as_vtk_xml(const mapping *file) {
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, HDF5, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
 
 /* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
 const read_format read_formats[FORMAT_COUNT] = {
@@ -92,6 +100,14 @@ const read_format read_formats[FORMAT_COUNT] = {
               .read = IF_BUILT(HAVE_TIFF, tiff_read),
               .instead = "convert it to NRRD",
               .has_frames = 1},
+    [HDF5] = {.name = "HDF5",
+              .library = LIBRARY_HDF5,
+              .notes = {{"images", LIBRARY_NONE}},
+              .endings = "|.h5|.hdf5|.vtkhdf|",
+              .begins = begins_as_hdf5,
+              .read = IF_BUILT(HAVE_HDF5, hdf5_read),
+              .instead = "save the array as .npy or NRRD",
+              .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
     [VTK_XML] = {.name = "VTK XML",
                  .library = LIBRARY_EXPAT,
@@ -112,7 +128,7 @@ const read_format read_formats[FORMAT_COUNT] = {
 
 const int read_format_count = FORMAT_COUNT;
 const read_format *const raw_format = &read_formats[RAW], *const plot3d_format = &read_formats[PLOT3D],
-                         *const tiff_format = &read_formats[TIFF];
+                         *const tiff_format = &read_formats[TIFF], *const hdf5_format = &read_formats[HDF5];
 
 const read_format *read_format_of_content(const mapping *file) {
     for (const read_format *f = read_formats; f < read_formats + FORMAT_COUNT; f++)

@@ -35,7 +35,7 @@ extern const read_format read_formats[];
 extern const int read_format_count;
 
 /* The rows that are chosen without looking at the table. */
-extern const read_format *const raw_format, *const plot3d_format, *const tiff_format;
+extern const read_format *const raw_format, *const plot3d_format, *const tiff_format, *const hdf5_format;
 
 /* The format by the first bytes, or by the ending, .gz behind it or not; NULL where that tells none. */
 const read_format *read_format_of_content(const mapping *file);

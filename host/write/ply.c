@@ -40,8 +40,12 @@ static void add_properties(file_text *header, const shown_mesh *s) {
             const int is_normal = s->arrays[i].role == ROLE_NORMALS;
             char number[16] = "";
             if (s->arrays[i].components > 1) snprintf(number, sizeof number, "_%d", c);
-            if (!is_normal) value_name_make(s->arrays[i].name, number, known, names, count++);
-            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, is_normal ? normals[c] : names[count - 1]);
+            const char *name = normals[c % 3];
+            if (!is_normal) {
+                value_name_make(s->arrays[i].name, number, known, names, count);
+                name = names[count++];
+            }
+            text_add(header, "property %s %s\n", stored_types[TC_F32].ply, name);
         }
     free(names);
 }

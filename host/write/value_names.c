@@ -21,7 +21,8 @@ void value_name_make(const char *name, const char *behind, const char *const *ow
         int is_word = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
         to[length++] = (char)(is_word ? *c : '_');
     }
-    length = length ? length : strlen(strcpy(to, "field"));
+    to[length] = '\0';
+    if (!length) length = (size_t)snprintf(to, VALUE_NAME_BYTES, "field");
     length += (size_t)snprintf(to + length, VALUE_NAME_BYTES - length, "%s", behind);
     while (is_taken(to, own, names, count) && length < VALUE_NAME_BYTES - 1) {
         to[length++] = '_';

@@ -45,7 +45,7 @@ static void add_arrays(vtk_file *f, const shown_mesh *s, shown_array *shown) {
     static const char *const own[] = {"Points", "connectivity", "offsets", NULL};
     text_add(&f->text, "      <PointData");
     for (int role = 0; role < ROLE_COUNT; role++)
-        if (attributes[role] && shows_role(s, role))
+        if (attributes[role] && shows_role(s, (vertex_role)role))
             text_add(&f->text, " %s=\"%s\"", attributes[role], attributes[role]);
     text_add(&f->text, ">\n");
     for (int i = 0; i < s->array_count; i++) {

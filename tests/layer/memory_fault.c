@@ -35,7 +35,8 @@ static const void *pieces[PIECES_MOST]; /* open addressing; NULL: free */
 
 static struct { uintptr_t begin, end; } ranges[RANGES_MOST];
 static int range_count;
-static bool of_program; /* requests of the program count too, and those of the libraries for formats */
+static bool of_program; /* requests of the program count too, and those of the libraries for formats, but libtiff and
+                           libhdf5, which crash where one fails */
 static const char *const of_formats[] = {"libz.", "libbz2.", "libexpat.", "libjansson.", "libnifti2.", "libznz."};
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 

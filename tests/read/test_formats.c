@@ -98,6 +98,7 @@ static void test_absent(void) {
            "%s", text);
     expect_missing("a.nii", "x", "libnifti2", "TETRACUBES_NIFTI");
     expect_missing("a.tif", "x", "libtiff", "libtiff-dev");
+    expect_missing("a.h5", "x", "libhdf5", "TETRACUBES_HDF5");
     expect_missing("a.vtu", "<VTKFile>", "expat", "libexpat1-dev");
     expect_missing("a.nrrd", NRRD_222 "gzip\n\n12345678", "zlib", "zlib1g-dev");
     expect_missing("b.nrrd", NRRD_222 "bzip2\n\n12345678", "libbz2", "TETRACUBES_BZIP2");

@@ -25,21 +25,22 @@ typedef struct part_request {
 
 typedef struct read_request {
     const char *path;
-    const char *path2; /* the second input of formats in two files (Plot3D: grid, then solution); NULL: not given */
-    int64_t dims[3];   /* raw: required; all 0 where not given */
-    int type;          /* raw: a tc_type; -1 where not given */
-    int big_endian;    /* raw: 1 big, 0 little */
-    uint64_t skip;     /* raw: bytes before the samples */
-    double spacing[3]; /* raw, others where has_spacing; 1, 1, 1 by default */
-    double origin[3];  /* raw, others where has_origin: position of the sample of index 0, 0, 0; 0, 0, 0 by default */
-    int has_spacing;   /* spacing replaces what the header says */
-    int has_origin;    /* likewise */
-    int component;     /* of data with several values per sample, or one of the above. Of images, COMPONENT_OPEN is an
-                          error where there is a choice, and COMPONENT_MAGNITUDE keeps all components in the field */
-    int frame;         /* of data with a fourth axis; -1 where not given */
-    int describe;      /* of images: choices that are left open are no error; all components and frame 0 are read */
-    const char *field; /* the one that is contoured; NULL: the only one there is */
-    int has_nodata;    /* its values equal to nodata (nodata.h) are missing, as are those that are not finite */
+    const char *path2;  /* the second input of formats in two files (Plot3D: grid, then solution); NULL: not given */
+    const char *inside; /* HDF5: the name of a dataset in the file; NULL: the only one */
+    int64_t dims[3];    /* raw: required; all 0 where not given */
+    int type;           /* raw: a tc_type; -1 where not given */
+    int big_endian;     /* raw: 1 big, 0 little */
+    uint64_t skip;      /* raw: bytes before the samples */
+    double spacing[3];  /* raw, others where has_spacing; 1, 1, 1 by default */
+    double origin[3];   /* raw, others where has_origin: position of the sample of index 0, 0, 0; 0, 0, 0 by default */
+    int has_spacing;    /* spacing replaces what the header says */
+    int has_origin;     /* likewise */
+    int component;      /* of data with several values per sample, or one of the above. Of images, COMPONENT_OPEN is an
+                           error where there is a choice, and COMPONENT_MAGNITUDE keeps all components in the field */
+    int frame;          /* of data with a fourth axis; -1 where not given */
+    int describe;       /* of images: choices that are left open are no error; all components and frame 0 are read */
+    const char *field;  /* the one that is contoured; NULL: the only one there is */
+    int has_nodata;     /* its values equal to nodata (nodata.h) are missing, as are those that are not finite */
     double nodata;
     part_request part;
     const char *mask; /* a volume of the same size, whose zeros say which samples are missing (mask.h); NULL: none */

@@ -15,6 +15,7 @@ static const struct {
     [LIBRARY_NIFTI] = {"libnifti2", "libnifti2-dev", "TETRACUBES_NIFTI", HAVE_NIFTI},
     [LIBRARY_EXPAT] = {"expat", "libexpat1-dev", "TETRACUBES_EXPAT", HAVE_EXPAT},
     [LIBRARY_TIFF] = {"libtiff 4.5", "libtiff-dev", "TETRACUBES_TIFF", HAVE_TIFF},
+    [LIBRARY_HDF5] = {"libhdf5", "libhdf5-dev", "TETRACUBES_HDF5", HAVE_HDF5},
 };
 
 int library_is_built(enum library library) { return libraries[library].is_built; }

@@ -15,7 +15,8 @@ enum library {
     LIBRARY_LZMA,
     LIBRARY_NIFTI,
     LIBRARY_EXPAT,
-    LIBRARY_TIFF
+    LIBRARY_TIFF,
+    LIBRARY_HDF5
 };
 
 /* The function, or NULL. */

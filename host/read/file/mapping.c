@@ -139,8 +139,7 @@ static int open_stream(const char *path, int *file) {
     return status;
 }
 
-/* Whether another file stands for it. */
-static int is_replaced(const char *path) {
+int mapping_is_replaced(const char *path) {
     pthread_mutex_lock(&streams.lock);
     const struct stream *s = streams.count ? find_stream(path) : NULL;
     pthread_mutex_unlock(&streams.lock);
@@ -175,7 +174,7 @@ void mapping_restore(const char *path) {
 }
 
 static int open_file(const char *path, int *file) {
-    if (mapping_is_standard_input(path) || is_pipe(path) || is_replaced(path)) return open_stream(path, file);
+    if (mapping_is_standard_input(path) || is_pipe(path) || mapping_is_replaced(path)) return open_stream(path, file);
     /* without O_NONBLOCK, opening a device may wait */
     *file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     return *file < 0 ? fail(STATUS_INPUT, "%s: cannot be opened: %s", path, strerror(errno)) : 0;

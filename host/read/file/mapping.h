@@ -29,6 +29,9 @@ int mapping_is_stream(const char *path);
 int mapping_replace(const char *path, int instead);
 void mapping_restore(const char *path);
 
+/* Whether another one stands for it. */
+int mapping_is_replaced(const char *path);
+
 /* Unmaps and zeroes. Accepts a zeroed mapping. */
 void mapping_close(mapping *m);
 

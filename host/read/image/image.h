@@ -11,6 +11,7 @@ int nrrd_read(const read_request *request, const mapping *file, dataset *out);
 int metaimage_read(const read_request *request, const mapping *file, dataset *out);
 int npy_read(const read_request *request, const mapping *file, dataset *out);
 int tiff_read(const read_request *request, const mapping *file, dataset *out);
+int hdf5_read(const read_request *request, const mapping *file, dataset *out);
 int nifti_read(const read_request *request, const mapping *file, dataset *out);
 
 #endif

@@ -2,22 +2,21 @@
  * npy.c - arrays of numpy, .npy, versions 1 to 3
  *
  * Source: "The .npy format", numpy.lib.format. The header is a dictionary as Python writes it, with the keys descr,
- * fortran_order and shape; samples follow. An array is indexed [z, y, x], whatever its order in memory: its last axis
- * is x. A fourth axis is one of components where it is the last one and has at most COMPONENTS_MOST, else one of
- * frames, in front; with five axes there are both.
+ * fortran_order and shape; samples follow. array_axes.h says what axes are.
  */
 #include "image/image.h"
 
 #include "dataset/world.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "image/array_axes.h"
 #include "image/source.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { HEADER_BYTES = 1 << 20, WORD_BYTES = 64, COMPONENTS_MOST = 4, DIMENSIONS_MOST = 5 };
+enum { HEADER_BYTES = 1 << 20, WORD_BYTES = 64 };
 
 typedef struct npy_header {
     const char *path;
@@ -25,7 +24,7 @@ typedef struct npy_header {
     char descr[WORD_BYTES];
     int element, is_big_endian, is_fortran;
     int dimension;
-    int64_t shape[DIMENSIONS_MOST]; /* first axis first */
+    int64_t shape[ARRAY_AXES_MOST]; /* first axis first */
     int has_descr, has_order, has_shape;
     uint64_t start; /* of the samples */
 } npy_header;
@@ -120,8 +119,8 @@ static int parse_shape(npy_header *h) {
     while (!take(h, ')')) {
         int64_t size;
         if (!take_integer(h, &size)) return damaged(h, "its 'shape' has no whole numbers");
-        if (h->dimension == DIMENSIONS_MOST)
-            return fail(STATUS_INPUT, "%s: has more than %d axes; save a part of the array", h->path, DIMENSIONS_MOST);
+        if (h->dimension == ARRAY_AXES_MOST)
+            return fail(STATUS_INPUT, "%s: has more than %d axes; save a part of the array", h->path, ARRAY_AXES_MOST);
         h->shape[h->dimension++] = size;
         if (!take(h, ',') && next_character(h) != ')') return damaged(h, "its 'shape' has no end");
     }
@@ -162,49 +161,16 @@ static int parse_header(npy_header *h, const mapping *file) {
     return parse_dictionary(h);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- axes */
-
-static enum axis_role role_of(const npy_header *h, int axis) {
-    const int last = h->dimension - 1;
-    const int has_components = h->dimension == 5 || (h->dimension == 4 && h->shape[last] <= COMPONENTS_MOST);
-    if (axis == last && has_components) return AXIS_COMPONENT;
-    return axis == 0 && h->dimension - has_components == 4 ? AXIS_FRAME : AXIS_SPACE;
-}
-
-/* The axes as they lie in memory, fastest first. */
-static void list_axes(const npy_header *h, axes *stored) {
-    *stored = (axes){.count = h->dimension};
-    for (int n = 0; n < h->dimension; n++) {
-        const int axis = h->is_fortran ? n : h->dimension - 1 - n;
-        stored->size[n] = h->shape[axis];
-        stored->role[n] = role_of(h, axis);
-    }
-}
-
-/* In Fortran order the axes of space lie as z, y, x. */
-static void turn_axes(const npy_header *h, layout *l) {
-    int space = 0;
-    for (int axis = 0; axis < h->dimension; axis++) space += role_of(h, axis) == AXIS_SPACE;
-    for (int low = 0, high = space - 1; low < high; low++, high--) {
-        const int64_t size = l->dims[low];
-        const uint64_t stride = l->stride[low];
-        l->dims[low] = l->dims[high];
-        l->stride[low] = l->stride[high];
-        l->dims[high] = size;
-        l->stride[high] = stride;
-    }
-}
-
 int npy_read(const read_request *request, const mapping *file, dataset *out) {
     npy_header h = {.path = request->path, .element = -1};
     axes stored;
     layout l;
     int status;
     if ((status = dataset_image_begin(out)) || (status = parse_header(&h, file))) return status;
-    list_axes(&h, &stored);
+    array_axes_list(h.shape, h.dimension, h.is_fortran, &stored);
     if ((status = layout_make(h.path, &stored, h.element, request, &l))) return status;
     if (h.is_fortran) {
-        turn_axes(&h, &l);
+        array_axes_turn(h.shape, h.dimension, &l);
         dataset_notice(out, "its array is in Fortran order: its last axis is x all the same");
     }
     l.swapped = h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);

@@ -34,7 +34,7 @@ static int find_number(const char *path, numbered *n) {
     for (const char *at = strchr(name, '%'); at; at = strchr(at + 1, '%')) {
         const size_t length = strspn(at + 1, "0123456789");
         if (at[1 + length] != 'd' || length > 2) continue;
-        *n = (numbered){name, at + length + 2, (size_t)(at - name), length ? atoi(at + 1) : 1};
+        *n = (numbered){name, at + length + 2, (size_t)(at - name), length ? (int)strtol(at + 1, NULL, 10) : 1};
         return n->digits <= DIGITS_MOST;
     }
     return 0;

@@ -226,7 +226,8 @@ static int load_part(const source *from, const char *path, const layout *l, uint
     int more = 0, status = open_part(from, path, out, &m);
     if (status) return status;
     if ((status = find_start(from, path, &m, bytes, &start))) goto cleanup;
-    const unsigned char *in = m.bytes ? m.bytes + start : m.bytes;
+    static const unsigned char nothing[1];
+    const unsigned char *in = m.bytes ? m.bytes + start : nothing;
     size_t in_bytes = m.size - (size_t)start;
     if (!is_packed(from)) status = check_size(from, path, in_bytes, bytes, element_bytes(l->element));
     if (is_packed(from) && !to) status = check_stream(from, path, in, in_bytes, bytes);
@@ -268,7 +269,7 @@ static int load_raw(const source *from, const char *path, const layout *l, datas
     if ((status = find_start(from, path, &m, l->bytes, &start)) ||
         (status = check_size(from, path, m.size - start, l->bytes, element_bytes(l->element))))
         goto cleanup;
-    if (from->byte_skip >= 0) notice_rest(from, path, m.size - start - l->bytes, out);
+    if (from->byte_skip >= 0 && !from->goes_on) notice_rest(from, path, m.size - start - l->bytes, out);
     if (layout_is_plain(l, m.bytes + start)) {
         out->blocks->fields->values = m.bytes + start + l->offset * element_bytes(l->element);
         out->mapping = (void *)(uintptr_t)m.bytes;

@@ -19,6 +19,7 @@ typedef struct source {
     encoding encoding;
     data_names files;  /* none: the data follows the header in the same file */
     uint64_t start;    /* in that file: where it follows */
+    int goes_on;       /* the file has other data behind these, as it should */
     int64_t line_skip; /* lines to skip in each file */
     int64_t byte_skip; /* bytes to skip after these lines; SKIP_FROM_END and below: the data ends the file (raw only) */
     int64_t stream_skip; /* the same of the bytes that a compressed stream unpacks to */

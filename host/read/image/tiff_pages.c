@@ -80,7 +80,16 @@ static int drop_warning(TIFF *tiff, void *user, const char *module, const char *
     return 1;
 }
 
+/* Whether libtiff says that there is no memory, and not that the file asks for too much. */
+static int is_of_memory(const char *message) {
+    static const char *const parts[] = {"memory", "malloc", "No space", "Insertion"};
+    for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
+        if (strstr(message, parts[n])) return !strstr(message, "limit");
+    return 0;
+}
+
 static int fail_damaged(const reader *r, const char *what) {
+    if (is_of_memory(r->message)) return fail(STATUS_FAILED, "%s: no memory for its pages: %s", r->path, r->message);
     return fail(STATUS_INPUT, "%s: %s%s%s; the file is damaged or cut", r->path, what, *r->message ? ": " : "",
                 r->message);
 }
@@ -177,7 +186,7 @@ static int read_shape(const reader *r, tiff_shape *s) {
 static int is_of_lower_resolution(TIFF *t) {
     uint32_t kind = 0;
     TIFFGetFieldDefaulted(t, TIFFTAG_SUBFILETYPE, &kind);
-    return kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK);
+    return (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
 }
 
 /* A line "name=value" of the description; `otherwise` where there is none, or its value is none. */

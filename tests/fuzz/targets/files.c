@@ -85,6 +85,8 @@ int mapping_replace(const char *path, int instead) {
 
 void mapping_restore(const char *path) { (void)path; }
 
+int mapping_is_replaced(const char *path) { return files.replaced[find(path)] != NULL; }
+
 int mapping_is_standard_input(const char *path) {
     (void)path;
     return 0;

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""test_cli_hdf5.py TOOL [reference] - datasets that h5py (Debian: python3-h5py) has written: surfaces of the same arrays"""
+import itertools
+import json
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from tool_case import GridCase
+
+try:
+    import h5py
+    import numpy
+except ImportError:
+    h5py = numpy = None
+REFERENCE = ("--engine", "reference")
+
+
+@tool_case.unittest.skipUnless(h5py, "Python has no h5py (Debian: python3-h5py)")
+class Datasets(GridCase):
+    def setUp(self):
+        super().setUp()
+        if "HDF5" not in self.expect(0, "--version").stdout:
+            self.skipTest("built without libhdf5")
+        z, y, x = numpy.indices((7, 8, 9))
+        self.array = ((x * x + 3 * y + 2 * z * z) % 101).astype("u1")
+        numpy.save(self.path("a.npy"), self.array)
+        self.wanted = self.surface("a.npy")["hash"]
+
+    def surface(self, name, *more):
+        return json.loads(self.expect(0, "extract", self.path(name), "--iso", "50.5", "--json", *REFERENCE,
+                                      *more).stdout)["surfaces"][0]
+
+    def test_forms(self):
+        chunked = dict(chunks=(2, 3, 4))
+        forms = ({}, chunked, dict(chunked, compression="gzip"), dict(chunked, compression="gzip", shuffle=True),
+                 dict(chunked, compression="lzf"), dict(chunked, fletcher32=True), dict(chunked, maxshape=(None,) * 3))
+        kinds = ("u1", "<i2", ">u4", "<f4", ">f8", "<i8")
+        for library, form, kind in itertools.product(("earliest", "latest"), forms, kinds):
+            with h5py.File(self.path("a.h5"), "w", libver=library) as file:
+                file.create_dataset("group/volume", data=self.array.astype(kind), **form)
+            if form.get("compression") == "lzf":  # a filter of h5py's own
+                self.refuses(4, "info", self.path("a.h5"), says="filter")
+                continue
+            self.assertEqual(self.surface("a.h5")["hash"], self.wanted, (library, form, kind))
+            self.assertEqual(self.surface("a.h5:/group/volume")["hash"], self.wanted)
+
+    def test_chunks_that_were_not_written(self):
+        for fill in (0, 77):
+            array = self.array.astype(">i2")
+            array[4:] = fill
+            array[:, :, 4:] = fill
+            with h5py.File(self.path("a.h5"), "w") as file:
+                made = file.create_dataset("v", shape=array.shape, dtype=">i2", chunks=(4, 8, 4), fillvalue=fill,
+                                           compression="gzip")
+                made[:4, :, :4] = array[:4, :, :4]
+            numpy.save(self.path("b.npy"), array)
+            self.assertEqual(self.surface("a.h5")["hash"], self.surface("b.npy")["hash"])
+
+    def test_image_of_vtk(self):
+        """VTKHDF: a group with the place of an image, and its fields."""
+        with h5py.File(self.path("a.vtkhdf"), "w") as file:
+            group = file.create_group("VTKHDF")
+            group.attrs["Version"] = (1, 0)
+            group.attrs["Type"] = numpy.bytes_("ImageData")
+            group.attrs["WholeExtent"] = (2, 10, 0, 7, 1, 7)
+            group.attrs["Spacing"], group.attrs["Origin"] = (0.5, 2.0, 3.0), (10.0, 20.0, 30.0)
+            group.attrs["Direction"] = (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+            group.create_dataset("PointData/bump", data=self.array)
+            group.create_dataset("CellData/c", data=self.array[1:, 1:, 1:])
+        name = "a.vtkhdf:/VTKHDF/PointData/bump"
+        facts = json.loads(self.expect(0, "info", self.path(name), "--json").stdout)
+        self.assertEqual(facts["matrix"], [[0, 2, 0, 10], [0.5, 0, 0, 21], [0, 0, 3, 33]])
+        self.refuses(4, "info", self.path("a.vtkhdf:/VTKHDF/CellData/c"), says="values of cells")
+
+    def test_parts_and_places(self):
+        with h5py.File(self.path("a.h5"), "w", userblock_size=512) as file:
+            file["a"] = self.array
+            file["b"] = numpy.stack([self.array * 0, self.array, self.array * 2])
+            file["c"] = numpy.stack([self.array, self.array * 0], -1)
+            file["a"].attrs["element_size_um"] = [3.0, 2.0, 0.5]
+        self.refuses(2, "info", self.path("a.h5"), says=r"holds 3 datasets: .* /a, /b, /c")
+        self.assertEqual(self.surface("a.h5:/b", "--frame", "1")["hash"], self.wanted)
+        self.assertEqual(self.surface("a.h5:/c", "--component", "0")["hash"], self.wanted)
+        self.assertEqual(self.surface("a.h5:/a", "--spacing", "1,1,1")["hash"], self.wanted)
+        part = ("--roi", "2:8,1:,:6", "--step", "1,1,2")
+        self.assertEqual(self.surface("a.h5:/a", "--spacing", "1,1,1", *part)["hash"],
+                         self.surface("a.npy", *part)["hash"])
+        facts = json.loads(self.expect(0, "info", self.path("a.h5:/a"), "--json").stdout)
+        self.assertEqual((facts["format"], facts["spacing"]), ("HDF5", [0.5, 2, 3]))
+        self.refuses(2, "extract", self.path("a.h5:/a"), "--iso", "1", *REFERENCE, "-o", self.path("a.h5"), "--format",
+                     "ply", says="read as part of it")
+        with open(self.path("a.h5"), "rb") as file:
+            done = tool_case.subprocess.run([tool_case.TOOL, "info", "-"], stdin=file, stderr=-1, timeout=60)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"give it as a file", done.stderr)
+
+
+if __name__ == "__main__":
+    tool_case.main()
