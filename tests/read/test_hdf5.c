@@ -7,7 +7,7 @@
 #include <hdf5.h>
 #include <sys/wait.h>
 
-enum { COUNT = 60, CHUNKED = 1, FILTERED = 2 };
+enum { COUNT = 60, CHUNKED = 1, FILTERED = 2, SUMMED = 4 };
 
 static const hsize_t sizes[3] = {3, 4, 5};
 
@@ -37,7 +37,7 @@ static void add(hid_t file, const char *name, int type, int big, int how, uint64
     if (how & CHUNKED) H5Pset_chunk(plan, dimension, chunk);
     if (how & FILTERED) H5Pset_shuffle(plan);
     if (how & FILTERED) H5Pset_deflate(plan, 6);
-    if (how & FILTERED) H5Pset_fletcher32(plan);
+    if (how & (FILTERED | SUMMED)) H5Pset_fletcher32(plan);
     const hid_t made = H5Dcreate2(file, name, type_of(type, big), space, links, plan, H5P_DEFAULT);
     const int is_real = type == TC_F32 || type == TC_F64;
     EXPECT(H5Dwrite(made, is_real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -61,8 +61,10 @@ static hid_t begin(const char *name, unsigned user_block) {
 
 static void test_types(void) {
     for (int type = 0; type <= STORED_U64; type++)
-        for (int n = 0; n < 12; n++) {
-            const int big = n & 1, how = n / 2 % 3 == 2 ? CHUNKED | FILTERED : n / 2 % 3;
+        for (int n = 0; n < 14; n++) {
+            static const int ways[7] = {
+                0, CHUNKED, CHUNKED | FILTERED, 0, CHUNKED, CHUNKED | FILTERED, CHUNKED | SUMMED};
+            const int big = n & 1, how = ways[n / 2];
             char what[60];
             snprintf(what, sizeof what, "type %d, big %d, chunks and filters %d, block %d", type, big, how, n / 6);
             const hid_t file = begin("a.h5", n / 6 ? 1024 : 0);
