@@ -74,7 +74,7 @@ static bool face_contract(const uint32_t *points, cell_face *f) {
         while (points[corner] != points[all.corners[n]]) corner++;
         if (!f->corner_count || f->corners[f->corner_count - 1] != corner) f->corners[f->corner_count++] = corner;
     }
-    if (f->corners[f->corner_count - 1] == f->corners[0]) f->corner_count--;
+    if (f->corner_count > 1 && f->corners[f->corner_count - 1] == f->corners[0]) f->corner_count--;
     return f->corner_count > 2;
 }
 
@@ -146,7 +146,7 @@ static void sides_enter(derivation *d, const cell_face *f) {
 /* What chords in a face cost, between edges around it and those that cut it. */
 static void chords_mark(derivation *d, const cell_face *f, bool is_cut) {
     const int count = f->corner_count, smallest = (int)(d->pattern >> f->corners[0] & 1);
-    uint8_t edges[2 * CELL_FACE_CORNERS_MAX];
+    uint8_t edges[2 * CELL_FACE_CORNERS_MAX] = {0};
     int edge_count = 0, leaves[2 * CELL_FACE_CORNERS_MAX] = {0};
     for (int n = 0; n < count; n++) {
         const uint8_t a = f->corners[n], b = f->corners[(n + 1) % count];
