@@ -24,7 +24,7 @@ SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "h
 RAW = ["--dims", "8,8,8", "--type", "u8"]
 VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "--carry": ["a"], "--origin-at": ["0,0,0"],
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
-          "--method": ["hybrid"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
+          "--method": ["snap"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
           "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"],
           "--snap": ["0.3"]}
 REFERENCE = ["--engine", "reference"]
@@ -43,7 +43,7 @@ CASES = {
     "is_not_noise": ("generate", "sphere", [*RAW, "-o", "new.nrrd"]),
     "has_no_time": ("selftest", None, []),
     "has_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "-o", "a.ply"]),
-    "is_method_of_cubes": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
+    "is_snap_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
     "has_world_range": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "--roi-world", ":,:,:"]),
     "is_everything": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_cells": ("tetrahedralize", "u8.nrrd", ["-o", "new.vtu"]),

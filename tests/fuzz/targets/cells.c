@@ -54,8 +54,9 @@ static float *take_points(bytes *b, uint64_t count, int any) {
     return points;
 }
 
+/* source, cells: of tetrahedra that were cut from cells; or NULL. */
 static void extract(bytes *b, uint64_t point_count, const float *points, uint64_t tetrahedron_count,
-                    const uint32_t *tetrahedra) {
+                    const uint32_t *tetrahedra, const tc_cells *source, const uint32_t *cells) {
     tc_tetrahedra_grid_options o;
     tc_extract_options how;
     tc_grid *grid = NULL;
@@ -71,6 +72,8 @@ static void extract(bytes *b, uint64_t point_count, const float *points, uint64_
     o.samples = samples;
     o.tetrahedron_count = tetrahedron_count;
     o.tetrahedra = tetrahedra;
+    o.source = source;
+    o.cells = cells;
     tc_status status = tc_tetrahedra_grid_create(surface_context(), &o, &grid);
     surface_check_status(status);
     CHECK((status == TC_OK) == (grid != NULL));
@@ -121,10 +124,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         for (uint64_t n = 0; n < 3 * point_count; n++)
             if (!(fabsf(points[n]) < 0x1p127f)) points[n] = 0;
         uint32_t *tetrahedra = bytes_array(&in, cell_count * 4 * sizeof *tetrahedra);
-        extract(&in, point_count, points, cell_count, tetrahedra);
+        extract(&in, point_count, points, cell_count, tetrahedra, NULL, NULL);
         free(tetrahedra);
     } else {
-        extract(&in, point_count, points, complex.tetrahedron_count, complex.tetrahedra);
+        extract(&in, point_count, points, complex.tetrahedron_count, complex.tetrahedra, status ? NULL : &cells,
+                complex.cells);
     }
     tc_tetrahedra_release(&complex);
     free(face_links);
