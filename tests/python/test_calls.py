@@ -57,14 +57,13 @@ def test_interrupt_ends_the_call(noise):
 
 
 def test_interrupt_from_outside(noise):
-    """Without a progress callback, at any moment; pressed by another thread."""
+    """Without a progress callback, while the library works; pressed by another thread."""
     large = np.tile(noise, (3, 2, 2))
     timer = threading.Timer(0.1, os.kill, [os.getpid(), signal.SIGINT])
-    begin = time.monotonic()
     timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        while time.monotonic() < begin + 60:
-            tetracubes.isosurface(large, 0.5, engine="reference")
+    with pytest.raises(KeyboardInterrupt) as caught:
+        tetracubes.isosurface(large, 0.5, engine="reference")
+    assert not str(caught.value)  # it is Python's own, not the library's word that a callback has failed
     timer.join()
 
 
@@ -97,6 +96,7 @@ def test_threads(noise):
     assert dict(hashes) == {level: tetracubes.isosurface(noise, level, engine="reference").hash
                             for level in (0.4, 0.5, 0.6)} and len(hashes) == 4
     free = {key: len(kept) for key, kept in contexts._free.items()}
+    assert 1 <= sum(free.values()) <= 20
     tetracubes.isosurface(noise, 0.5, engine="reference")
     assert free == {key: len(kept) for key, kept in contexts._free.items()}
 
@@ -158,11 +158,16 @@ def test_tool():
         assert done.returncode == status and done.stdout.startswith(text)
 
 
-def test_trials_of_drivers(monkeypatch):
+def test_trials_of_drivers(monkeypatch, tmp_path):
     """What became of the process that tried a driver is the verdict."""
     assert trial._run("no job") == (library.tc_verdict.TC_VERDICT_REFUSED, trial._run("no job")[1])
     assert "job" in trial._run("no job")[1]
     monkeypatch.setattr(trial, "_SECONDS", 0.01)
     assert trial._run("no job")[0] == library.tc_verdict.TC_VERDICT_HUNG
+    monkeypatch.setattr(trial, "_SECONDS", 60)
+    (tmp_path / "driver").write_text("#!/bin/sh\necho end 0\necho oh >&2\nkill -SEGV $$\n")
+    (tmp_path / "driver").chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "driver"))
+    assert trial._run("no job") == (library.tc_verdict.TC_VERDICT_CRASHED, "oh")
     monkeypatch.setattr(sys, "executable", "/nonexistent")
     assert trial._run("no job")[0] == library.tc_verdict.TC_VERDICT_NONE

@@ -27,9 +27,7 @@ def _run(job):
     except (OSError, TypeError):  # no interpreter to start, as where Python is embedded
         return tc_verdict.TC_VERDICT_NONE, ""
     said = (done.stderr.strip().splitlines() or [""])[-1]
-    if done.returncode < 0:
-        return tc_verdict.TC_VERDICT_CRASHED, said or f"ended by signal {-done.returncode}"
-    if not done.stdout.startswith("end "):
+    if done.returncode or not done.stdout.startswith("end "):
         return tc_verdict.TC_VERDICT_CRASHED, said or f"ended with status {done.returncode}"
     return _VERDICTS.get(int(done.stdout.split()[1]), tc_verdict.TC_VERDICT_REFUSED), said
 
