@@ -306,6 +306,11 @@ typedef struct tc_extract_options {
     tc_method method;
     double snap; /* method snap: a sample moves along an edge to a crossing at most this part of the edge away; 0 to
                     0.5, rounded to float32 */
+    int closed;  /* nonzero: the surface is closed where it ends, at the grid's border and beside missing cells: by the
+                    inside part of the faces that one present cube has. Inside samples there are vertices: at the
+                    sample, with its gradient as normal. The mesh then bounds the present part of {f >= isovalue}.
+                    Structured grids only */
+    int reserved; /* 0 */
 } tc_extract_options;
 
 /* What classification alone tells. */
@@ -344,7 +349,7 @@ typedef struct tc_mesh_data {
 
 typedef struct tc_mesh tc_mesh;
 
-/* Defaults: isovalue 0, no normals, TC_METHOD_TETRA, snap 0.5. */
+/* Defaults: isovalue 0, no normals, TC_METHOD_TETRA, snap 0.5, not closed. */
 TC_API void tc_extract_options_init(tc_extract_options *options);
 
 /* Classifies only: *counts receives the sizes of the mesh that the same options would make. */

@@ -12,6 +12,9 @@ static tc_status complex_request_check(const tc_extract_options *options) {
                                "normals are made on structured grids only, not on grids of tetrahedra");
     if (options->method != TC_METHOD_TETRA)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "grids of tetrahedra have no cubes: use TC_METHOD_TETRA");
+    if (options->closed)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "surfaces are closed on structured grids only, not on grids of tetrahedra");
     return TC_OK;
 }
 
