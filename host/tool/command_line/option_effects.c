@@ -31,6 +31,8 @@ static int file_has_no_normals(const situation *s) {
 
 static int has_no_device(const situation *s) { return s->o->engine == TC_ENGINE_REFERENCE; }
 
+static int has_kernels(const situation *s) { return s->o->engine != TC_ENGINE_REFERENCE; }
+
 static int is_not_raw(const situation *s) { return !options_given(s->o, "--dims"); }
 
 static int has_bytes(const situation *s) {
@@ -119,6 +121,8 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device"},
 
+    {COMMAND_EXTRACT, "--closed", BEFORE_READING, has_kernels, REFUSED,
+     "--closed is not made by the kernels yet: give --engine reference too"},
     {COMMAND_EXTRACT, "--snap", BEFORE_READING, is_not_snap, REFUSED,
      "--snap is the threshold of --method snap: give that too, or leave it out"},
 
