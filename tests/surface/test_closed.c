@@ -53,7 +53,8 @@ static double enclosed(const tc_mesh_data *m) {
     static const double zero[3];
     double sum = 0, p[3][3];
     for (uint64_t n = 0; n < m->triangle_count; n++) {
-        for (int k = 0; k < 9; k++) p[k / 3][k % 3] = m->positions[3 * m->triangles[3 * n + (uint64_t)k / 3] + k % 3];
+        for (int k = 0; k < 9; k++)
+            p[k / 3][k % 3] = m->positions[3 * m->triangles[3 * n + (uint64_t)k / 3] + (uint64_t)k % 3];
         sum += volume_between(zero, p[0], p[1], p[2]);
     }
     return sum;
