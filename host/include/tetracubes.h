@@ -305,8 +305,13 @@ typedef struct tc_extract_options {
     int normals;        /* nonzero: a unit normal per vertex, the negated gradient; zero where that vanishes, or where
                            points do not span space. Structured grids only */
     tc_method method;
-    double snap; /* method snap: a sample moves along an edge to a crossing at most this part of the edge away; 0 to
-                    0.5, rounded to float32 */
+    double snap;  /* method snap: a sample moves along an edge to a crossing at most this part of the edge away; 0 to
+                     0.5, rounded to float32 */
+    int closed;   /* nonzero: the surface is closed where it ends, at the grid's border and beside missing cells: by the
+                     inside part of the faces that one present cube has. Inside samples there are vertices: at the
+                     sample, with its gradient as normal. The mesh then bounds the present part of {f >= isovalue}.
+                     Structured grids only (TC_ERROR_ARGUMENT), by the reference engine (TC_ERROR_DEVICE) */
+    int reserved; /* 0 */
 } tc_extract_options;
 
 /* What classification alone tells. */
@@ -345,7 +350,7 @@ typedef struct tc_mesh_data {
 
 typedef struct tc_mesh tc_mesh;
 
-/* Defaults: isovalue 0, no normals, TC_METHOD_TETRA, snap 0.5. */
+/* Defaults: isovalue 0, no normals, TC_METHOD_TETRA, snap 0.5, not closed. */
 TC_API void tc_extract_options_init(tc_extract_options *options);
 
 /* Classifies only: *counts receives the sizes of the mesh that the same options would make. */

@@ -246,6 +246,7 @@ static int make_surface(job *j, surface_report *s) {
     w.how.normals = j->o->normals;
     w.how.method = (tc_method)j->o->method;
     if (j->o->snap >= 0) w.how.snap = j->o->snap;
+    w.how.closed = j->o->closed;
     if (j->o->count) return count_surface(j, &w.how, s);
     carried_fields_begin(&j->carried);
     for (int first = 0; first < j->blocks.count && !status; first += blocks_each)

@@ -101,7 +101,9 @@ typedef struct place {
 
 #define OPTIONS_OF_EXTRACTION(call)                                                                                    \
     AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \
-        AT(call, extract_options.method, no_enumerator), AT(call, extract_options.snap, any_f64)
+        AT(call, extract_options.method, no_enumerator), AT(call, extract_options.snap, any_f64),                      \
+        AT(call, extract_options.closed, LISTED({1, OK | ARGUMENT | DEVICE})),                                         \
+        AT(call, extract_options.reserved, any_i32)
 
 static const place places[] = {
     AT(tc_device_count, count_at, null),

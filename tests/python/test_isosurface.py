@@ -19,6 +19,16 @@ def test_hash_is_the_tools(ball, surface, tool, method, dtype):
     assert mesh.hash == report["surfaces"][0]["hash"]
 
 
+def test_closed(ball):
+    """The half of a ball that the volume's border leaves."""
+    half = ball[len(ball) // 2:]
+    mesh = tetracubes.isosurface(half, 0.0, closed=True)
+    edges = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    assert mesh.hash == tetracubes.isosurface(half, 0.0, closed=True, engine="reference").hash
+    assert len(tetracubes.isosurface(half, 0.0).faces) < len(mesh.faces)
+
+
 @pytest.mark.parametrize("ending", ["ply", "vtp", "stl", "obj"])
 def test_files_are_the_tools(ball, surface, tool, tmp_path, ending):
     normals = [] if ending == "stl" else ["--normals"]

@@ -37,9 +37,8 @@ class Usage(GridCase):
         self.refuses(2, "tetrahedralize", "x.nrrd", "-o", self.path("a.vtp"), says="vtu")
 
     def test_formats_that_are_not_read(self):
-        for name, content, says in (("a.ex2", b"CDF\1", "Exodus"), ("a.h5", b"\x89HDF\r\n\x1a\n", "HDF5"),
-                                    ("a.cgns", b"?", "CGNS"), ("a.obj", b"v 0 0 0", "surface"),
-                                    ("a", b"?", "not known")):
+        for name, content, says in (("a.ex2", b"CDF\1", "Exodus"), ("a.cgns", b"?", "CGNS"),
+                                    ("a.obj", b"v 0 0 0", "surface"), ("a", b"?", "not known")):
             with open(self.path(name), "wb") as f:
                 f.write(content)
             for command in (["info"], ["extract", "--iso", "1"]):
@@ -193,6 +192,25 @@ class Structured(GridCase):
         self.assertEqual(usual["hash"], snap["hash"])
         for wrong in ("0.6", "-0.1", "x", "nan", ""):
             self.refuses(2, "extract", volume, "--iso", "1", "--method", "snap", "--snap", wrong, says="--snap")
+
+    def test_closed(self):
+        """Surface and complement fill the grid; kernels do not close, and --engine auto goes on by the reference."""
+        volume = self.generate("gyroid", "g.nrrd", "20,21,22", "f32")
+        arguments = ["extract", volume, "--iso", "127.5", "--check", "--closed", "--engine"]
+        wanted = {}
+        for method in ("tetra", "hybrid", "snap"):
+            closed = self.report(*arguments, "reference", "--method", method)["surfaces"][0]
+            for key in ("boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges"):
+                self.assertEqual(closed[key], 0, (method, key))
+            wanted.setdefault("euler", closed["euler_characteristic"])
+            self.assertEqual(closed["euler_characteristic"], wanted["euler"])
+            self.assertAlmostEqual(closed["volume"], wanted.setdefault("volume", closed["volume"]), delta=0.05)
+        whole = self.report("extract", volume, "--iso", "-1000", "--check", "--closed", "--engine", "reference")
+        self.assertAlmostEqual(whole["surfaces"][0]["volume"], 8, places=4)
+        if tool_case.HAS_DEVICE:
+            self.refuses(1, *arguments, "opencl", says="kernels do not close surfaces: use the reference engine")
+            told = self.expect(0, *arguments, "auto", says="the reference engine takes over")
+            self.assertIn("closed: 0 boundary edges", told.stdout)
 
     def test_parity_goes_by_extent(self):
         self.needs_xml()

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#define METHOD_ROW(name, types, most, usual) {#name, types, name##_cases_derive},
+#define METHOD_ROW(name, types, most, usual) {#name, types, name##_cases_derive, name##_caps_derive},
 const method_row methods[METHOD_COUNT] = {METHODS(METHOD_ROW)};
 
 #define METHOD_FITS(name, types, most, usual)                                                                          \

@@ -14,6 +14,7 @@ typedef struct method_row {
     const char *name;
     int vertex_types; /* the first so many of enum vertex_type */
     cases_derive *derive;
+    caps_derive *derive_caps; /* of closed surfaces */
 } method_row;
 
 extern const method_row methods[METHOD_COUNT]; /* by tc_method */

@@ -30,6 +30,9 @@ enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIA
  */
 enum vertex_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ, VERTEX_SAMPLE, VERTEX_TYPES_MOST };
 
+/* Of closed surfaces, behind all of these: an inside sample of the border, at its own place. */
+enum { VERTEX_BORDER = VERTEX_TYPES_MOST };
+
 extern const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4]; /* [parity][tetrahedron][vertex] */
 extern const uint8_t tetrahedron_edges[6][2];                        /* [edge][end] */
 
@@ -55,7 +58,9 @@ extern const owned_edge cube_edges[CUBE_EDGES];
 /* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
-/* The place of a vertex of a cube: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
+/* The place of a vertex of a cube: an index in cube_edges, CUBE_EDGES + c for a surface through corner c, or
+ * CUBE_BORDER + c for corner c as a sample of the border. */
+enum { CUBE_BORDER = CUBE_EDGES + 8 };
 owned_edge cube_vertex(unsigned index);
 
 /* What all tetrahedra of a cube emit, derived from the tables above; edges are indices as cube_vertex has them. */
@@ -77,5 +82,25 @@ uint16_t bits_as_digits(unsigned bits);
 typedef void cases_derive(cube_case *cases, int mirrored);
 
 cases_derive tetra_cases_derive, hybrid_cases_derive, snap_cases_derive;
+
+/* The inside part of a cube's face on the border, as triangles that wind counter-clockwise seen from outside the cube;
+ * vertices are indices as cube_vertex has them. */
+typedef struct cap_case {
+    uint8_t triangle_count;
+    uint8_t vertices[4][3];
+    uint8_t padding[3];
+} cap_case; /* 16 bytes, as the emit kernel reads it */
+
+/* Faces are those at low x, high x, low y, high y, low z, high z. Digit n to the base 3 of a case is corner n of the
+ * face, in the order of the cube's corners: 0 outside, 1 a vertex of the surface, 2 inside. */
+enum { CUBE_FACES = 6, CAP_CASES = 81 };
+
+/* Corner n of a face, 0 <= n < 4. */
+unsigned face_corner(unsigned face, unsigned n);
+
+/* Fills cases[(parity * CUBE_FACES + face) * CAP_CASES + case]. */
+typedef void caps_derive(cap_case *cases, int mirrored);
+
+caps_derive tetra_caps_derive, hybrid_caps_derive, snap_caps_derive;
 
 #endif

@@ -4,7 +4,8 @@
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
  * row, vertices by type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
- * are those of cubes, and triangles come from the table of a cube.
+ * are those of cubes, and triangles come from the table of a cube. Of closed surfaces a row has, behind its other
+ * vertices, those at samples of the border by x, and behind its triangles those in the border by x, then face.
  */
 #include "reference/reference.h"
 
@@ -131,7 +132,9 @@ static void position_make(const reference *r, const int64_t a[3], const int64_t 
     for (int row = 0; row < 3; row++, m += 4) out[row] = ((m[0] * p[0] + m[1] * p[1]) + m[2] * p[2]) + m[3];
 }
 
+/* 0 at a sample of the border. */
 static float edge_crossing(const reference *r, const int64_t a[3], const int64_t b[3]) {
+    if (sample_index(r, a) == sample_index(r, b)) return 0;
     double value_a = sample_value(r, a), value_b = sample_value(r, b);
     return type_is_wide(r->grid->type) ? crossing_f64(value_a, value_b, r->isovalue)
                                        : crossing_f32(value_a, value_b, r->isovalue);
@@ -167,11 +170,25 @@ __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[
 static uint32_t *vertex_id(const reference *r, const int64_t owner[3], int type) {
     int64_t z = owner[2] % BRICK_Z, layer = owner[2] / BRICK_Z;
     int64_t sample = (z * r->dims[1] + owner[1]) * r->dims[0] + owner[0];
-    return r->ids[layer & 1] + sample * methods[r->method].vertex_types + type;
+    return r->ids[layer & 1] + sample * r->id_types + type;
 }
 
-/* Whether a sample owns a vertex of a type, and the ends of the edge that it lies on. */
+/* Whether a sample is a corner of a face that one present cube has. */
+static bool at_border_of_cubes(const reference *r, const int64_t p[3]) {
+    int present = 0;
+    for (int c = 0; c < 8; c++)
+        present += cube_present(r, (int64_t[3]){p[0] - (c & 1), p[1] - (c >> 1 & 1), p[2] - (c >> 2)});
+    return present > 0 && present < 8;
+}
+
+/* Whether a sample owns a vertex of a type, and the ends of the edge that it lies on. A sample of the border is both
+ * ends. */
 static bool vertex_find(const reference *r, const int64_t owner[3], int type, int64_t a[3], int64_t b[3]) {
+    if (type == VERTEX_BORDER) {
+        memcpy(a, owner, 3 * sizeof *a);
+        memcpy(b, owner, 3 * sizeof *b);
+        return sample_is(r, owner, INSIDE) && !sample_is(r, owner, SNAPPED) && at_border_of_cubes(r, owner);
+    }
     if (type == VERTEX_SAMPLE) {
         if (!sample_is(r, owner, SNAPPED)) return false;
         snapped_edge(r, owner, a, b);
@@ -182,21 +199,24 @@ static bool vertex_find(const reference *r, const int64_t owner[3], int type, in
     return sample_is(r, a, INSIDE) != sample_is(r, b, INSIDE) && !sample_is(r, a, SNAPPED) && !sample_is(r, b, SNAPPED);
 }
 
-static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
-    if (row_uniform(r, x0, x1, y, z)) return;
-    for (int type = 0; type < methods[r->method].vertex_types; type++)
-        for (int64_t x = x0; x < x1; x++) {
-            int64_t owner[3] = {x, y, z}, a[3], b[3];
-            if (!vertex_find(r, owner, type, a, b)) continue;
-            if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
-                *vertex_id(r, owner, type) = (uint32_t)r->vertex_count;
-                vertex_emit(r, a, b);
-            }
-            if (r->carried)
-                carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b),
-                             edge_crossing(r, a, b));
-            r->vertex_count++;
+static void row_vertices_of(reference *r, int type, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    for (int64_t x = x0; x < x1; x++) {
+        int64_t owner[3] = {x, y, z}, a[3], b[3];
+        if (!vertex_find(r, owner, type, a, b)) continue;
+        if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
+            *vertex_id(r, owner, type) = (uint32_t)r->vertex_count;
+            vertex_emit(r, a, b);
         }
+        if (r->carried)
+            carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b), edge_crossing(r, a, b));
+        r->vertex_count++;
+    }
+}
+
+static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    const int types = row_uniform(r, x0, x1, y, z) ? 0 : methods[r->method].vertex_types;
+    for (int type = 0; type < types; type++) row_vertices_of(r, type, x0, x1, y, z);
+    if (r->closed) row_vertices_of(r, VERTEX_BORDER, x0, x1, y, z);
 }
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
@@ -262,20 +282,25 @@ static void case_emit(reference *r, const int64_t cube[3], cube_signs signs) {
     }
 }
 
-static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+static cube_signs signs_of(const reference *r, const int64_t cube[3]) {
+    cube_signs signs = {0, 0};
+    for (unsigned c = 0; c < 8; c++) {
+        const int64_t corner[3] = {cube[0] + (c & 1), cube[1] + (c >> 1 & 1), cube[2] + (c >> 2)};
+        if (sample_is(r, corner, SNAPPED))
+            signs.snapped |= 1u << c;
+        else if (sample_is(r, corner, INSIDE))
+            signs.inside |= 1u << c;
+    }
+    return signs;
+}
+
+static void row_surface(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     if (row_uniform(r, x0, x1, y, z)) return;
     for (int64_t x = x0; x < x1; x++) {
         int64_t cube[3] = {x, y, z};
         if (!cube_present(r, cube)) continue;
         const uint64_t before = r->triangle_count;
-        cube_signs signs = {0, 0};
-        for (unsigned c = 0; c < 8; c++) {
-            const int64_t corner[3] = {x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
-            if (sample_is(r, corner, SNAPPED))
-                signs.snapped |= 1u << c;
-            else if (sample_is(r, corner, INSIDE))
-                signs.inside |= 1u << c;
-        }
+        const cube_signs signs = signs_of(r, cube);
         if (signs.inside == 0 || signs.inside == 255) continue;
         if (r->method == TC_METHOD_HYBRID)
             case_emit(r, cube, signs);
@@ -283,6 +308,40 @@ static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64
             tetrahedra_emit(r, cube, signs);
         r->active_cell_count += r->triangle_count > before;
     }
+}
+
+/* The inside part of a face on the border. */
+static void cap_emit(reference *r, const int64_t cube[3], unsigned face, cube_signs signs) {
+    unsigned digits = 0;
+    for (unsigned n = 4; n-- > 0;) {
+        const unsigned corner = face_corner(face, n);
+        digits = 3 * digits + (signs.inside >> corner & 1) * 2 + (signs.snapped >> corner & 1);
+    }
+    const cap_case *c = &r->caps[cube_parity(r, cube)][face][digits];
+    for (unsigned n = 0; n < c->triangle_count; n++) {
+        owned_edge vertices[3];
+        for (unsigned m = 0; m < 3; m++) vertices[m] = cube_vertex(c->vertices[n][m]);
+        triangle_emit(r, cube, vertices);
+    }
+}
+
+/* Closes the surface by faces that one present cube has. */
+static void row_caps(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    for (int64_t x = x0; x < x1; x++) {
+        int64_t cube[3] = {x, y, z};
+        if (!cube_present(r, cube)) continue;
+        const cube_signs signs = signs_of(r, cube);
+        for (unsigned face = 0; face < CUBE_FACES && signs.inside; face++) {
+            int64_t beside[3] = {x, y, z};
+            beside[face / 2] += face & 1 ? 1 : -1;
+            if (!cube_present(r, beside)) cap_emit(r, cube, face, signs);
+        }
+    }
+}
+
+static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
+    row_surface(r, x0, x1, y, z);
+    if (r->closed) row_caps(r, x0, x1, y, z);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- layers */
@@ -318,7 +377,10 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
     r->method = options->method;
     r->threshold = (float)options->snap;
+    r->closed = options->closed;
+    r->id_types = r->closed ? VERTEX_BORDER + 1 : methods[r->method].vertex_types;
     if (r->method == TC_METHOD_HYBRID) methods[r->method].derive(r->cases[0], grid->mirrored);
+    if (r->closed) methods[r->method].derive_caps(r->caps[0][0], grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");
     signs_make(r);
@@ -328,7 +390,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
 
 /* Zeroed: edges without a vertex are read only where the caller changes samples meanwhile. */
 static tc_status ids_allocate(reference *r) {
-    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * (size_t)methods[r->method].vertex_types;
+    size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * (size_t)r->id_types;
     for (int n = 0; n < 2; n++)
         if (!(r->ids[n] = calloc(count, sizeof *r->ids[n])))
             return (tc_status)fail(TC_ERROR_MEMORY, "no memory for vertex numbers");

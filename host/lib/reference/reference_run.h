@@ -20,12 +20,15 @@ typedef struct reference {
     uint8_t *signs;   /* per sample: INSIDE | PRESENT | SNAPPED */
     bool complete;    /* no sample is missing */
     uint32_t *ids[2]; /* of each vertex, for even and odd layers: [(sample in layer)][type] */
+    int id_types;     /* vertices that a sample may own */
     tc_mesh *mesh;    /* NULL: count only */
     const carry *carried;
     channel_set made;
     tc_method method;
     float threshold;         /* of method snap */
     cube_case cases[2][256]; /* of the hybrid method */
+    bool closed;
+    cap_case caps[2][CUBE_FACES][CAP_CASES]; /* of closed surfaces */
     uint64_t vertex_count, triangle_count, active_cell_count;
 } reference;
 

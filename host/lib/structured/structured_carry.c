@@ -355,6 +355,7 @@ void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
+    if (options->closed) return false; /* the kernels close no surfaces */
     if (inside_range_of(grid->type, options->isovalue).uniform || method_has_zeros(options->method)) return true;
     return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
            device->classified_options.method == options->method &&

@@ -10,6 +10,9 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
+    if (options->closed)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "surfaces are closed on structured grids only, not on grids of tetrahedra");
     if (options->method == TC_METHOD_TETRA) return TC_OK;
     if (options->method != TC_METHOD_HYBRID)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "method %s is for structured grids only, not for grids of tetrahedra",

@@ -40,7 +40,7 @@ class DeviceMesh(NamedTuple):
     event: Any  #: pyopencl.Event: complete when the mesh is there
 
 
-def extract_options(level, method="tetra", snap=None, normals=False):
+def extract_options(level, method="tetra", snap=None, normals=False, closed=False):
     """What an extraction is asked for: the one place where its options are set."""
     if method not in METHODS:
         raise ValueError(f"method is {method!r}, not one of {', '.join(METHODS)}")
@@ -50,6 +50,7 @@ def extract_options(level, method="tetra", snap=None, normals=False):
     how.normals = bool(normals)
     if snap is not None:
         how.snap = float(snap)
+    how.closed = bool(closed)
     return how
 
 
@@ -103,17 +104,18 @@ class GridBase:
         return Counts(counts.vertex_count, counts.triangle_count, counts.active_cell_count, counts.mesh_bytes)
 
     def extract(self, level: float, *, method: str = "tetra", snap: float | None = None, normals: bool = False,
-                carry: Mapping[str, Any] | None = None) -> Mesh:
+                closed: bool = False, carry: Mapping[str, Any] | None = None) -> Mesh:
         """The surface of a level, as a Mesh.
 
         level: a number; samples >= level are inside.
         method: "tetra"; of volumes also "hybrid" (fewer triangles) or "snap" (fewest, of good shape).
         snap: of method "snap", how far a sample may move, as a part of an edge: 0 to 0.5.
         normals: whether vertices have unit normals; of volumes only.
+        closed: whether the surface is closed at the grid's border and beside missing samples; by the reference engine.
         carry: {name: array}: other fields of the grid, interpolated at the vertices into ``mesh.values``; arrays have
         the volume's shape, or one axis more, of components.
         """
-        how = extract_options(level, method, snap, normals)
+        how = extract_options(level, method, snap, normals, closed)
         fields = {name: self._field(name, array) for name, array in (carry or {}).items()}
         handle = ctypes.c_void_p()
         try:
@@ -261,8 +263,8 @@ class Grid(GridBase):
 def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin: npt.ArrayLike = 0,
                direction: npt.ArrayLike | None = None, mask: Any = None, nodata: float | None = None,
                method: str = "tetra", snap: float | None = None, carry: Mapping[str, Any] | None = None,
-               normals: bool = False, axes: str = "zyx", device: int | str | None = None, engine: str = "auto",
-               max_memory: int | None = None, progress: Progress | None = None) -> Mesh:
+               normals: bool = False, closed: bool = False, axes: str = "zyx", device: int | str | None = None,
+               engine: str = "auto", max_memory: int | None = None, progress: Progress | None = None) -> Mesh:
     """The surface that separates samples >= level of a volume (z, y, x) from those below it, as a Mesh.
 
         mesh = tetracubes.isosurface(volume, 127.5, spacing=(2, 1, 1))
@@ -270,6 +272,8 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
 
     Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it.
     """
+    if closed and engine == "auto":
+        engine = "reference"  # no kernel closes surfaces
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
-        return grid.extract(level, method=method, snap=snap, normals=normals, carry=carry)
+        return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)

@@ -115,7 +115,7 @@ tc_grid_options._fields_ = [
 
 class tc_extract_options(_Sized):
     _fields_ = [("struct_size", c_size_t), ("isovalue", c_double), ("normals", c_int), ("method", c_int),
-                ("snap", c_double)]
+                ("snap", c_double), ("closed", c_int), ("reserved", c_int)]
 
 
 class tc_counts(_Sized):

@@ -138,6 +138,8 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--normals", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --normals are made of structured grids only"},
+    {COMMAND_EXTRACT, "--closed", AFTER_READING, has_cells, REFUSED,
+     "is unstructured: --closed closes surfaces of structured grids only"},
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
      "is unstructured: --method snap is for structured grids only"},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
