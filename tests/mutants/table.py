@@ -25,6 +25,7 @@ def test(program, only="", arguments=(), device=False, libraries=()):
 TESTS = {
     "test_tables": test("surface/test_tables"),
     "test_hybrid_tables": test("surface/test_hybrid_tables"),
+    "test_closed": test("surface/test_closed"),
     "test_cell_cases": test("surface/test_cell_cases"),
     "test_cells": test("surface/test_cells"),
     "test_cells, reference": test("surface/test_cells", arguments=("1", "2000")),
@@ -125,6 +126,7 @@ LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 FILES = {
     "host/lib/grid/tables.c": TABLES,
     "host/lib/grid/hybrid_tables.c": ["test_hybrid_tables", "test_hybrid, reference"],
+    "host/lib/grid/cap_tables.c": ["test_closed"],
     "host/lib/grid/cell_cases.c": ["test_cell_cases", "test_cells, reference"],
     "host/lib/grid/complex_cells.c": ["test_cells"],
     "host/lib/grid/inside.c": ["test_inside"],

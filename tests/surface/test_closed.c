@@ -1,16 +1,18 @@
 /*
- * Closed surfaces of the reference engine: every edge is used as often one way as the other, so none is on a border;
- * the volume enclosed is that of the part of the tetrahedra that is inside, which is computed from them. All patterns
- * of a cube, and random grids of all methods, some with missing samples.
+ * test_closed.c - closed surfaces of the reference engine: every edge is used as often one way as the other, so none is
+ * on a border; the volume enclosed is that of the part of the tetrahedra that is inside, which is computed from them
+ *
+ * All patterns of a cube, and random grids of all methods: uniform, mirrored and curvilinear, some with missing
+ * samples.
+ *
+ * Usage: test_closed [COUNT]: so many random grids in place of 3,000
  */
-#include "tetracubes.h"
+#include "engines.h"
+#include "random.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-enum { RANDOM_GRIDS = 3000, SAMPLES_MOST = 512 };
+enum { PATTERNS = 2 * 256, SAMPLES_MOST = 512 };
 
 typedef struct edge {
     uint32_t from, to;
@@ -81,7 +83,8 @@ static double part_inside(double p[4][3], const double f[4], int inside, double 
     return inside == 1 ? cut : whole - cut;
 }
 
-static double inside_of_tetrahedra(const tc_grid_options *g, double iso) {
+/* points: where samples are, x, y, z each. */
+static double inside_of_tetrahedra(const tc_grid_options *g, const float *points, double iso) {
     tc_tetrahedra t = {.struct_size = sizeof t};
     const float *samples = g->samples;
     double sum = 0;
@@ -93,8 +96,7 @@ static double inside_of_tetrahedra(const tc_grid_options *g, double iso) {
             for (int v = 0; v < 4; v++) {
                 const int64_t s = t.tetrahedra[4 * n + (uint64_t)v];
                 if ((samples[s] >= iso) != side) continue;
-                p[at][0] = (double)(s % g->dims[0]), p[at][1] = (double)(s / g->dims[0] % g->dims[1]);
-                p[at][2] = (double)(s / g->dims[0] / g->dims[1]);
+                for (int axis = 0; axis < 3; axis++) p[at][axis] = points[3 * s + axis];
                 f[at++] = samples[s], inside += side;
             }
         sum += part_inside(p, f, inside, iso);
@@ -103,52 +105,60 @@ static double inside_of_tetrahedra(const tc_grid_options *g, double iso) {
     return sum;
 }
 
-/* Extracts with a method; returns whether the mesh is closed, with the right volume. */
-static int grid_try(tc_context *context, const tc_grid_options *g, tc_method method, double iso) {
+/* Extracts with a method; the mesh is closed, with the right volume. */
+static void grid_try(tc_context *context, const tc_grid_options *g, const float *points, tc_method method, int number) {
+    const double iso = 0.5;
     tc_grid *grid = NULL;
     tc_mesh *mesh = NULL;
     tc_mesh_data m = {.struct_size = sizeof m};
     tc_extract_options how;
     tc_extract_options_init(&how);
     how.isovalue = iso, how.method = method, how.closed = 1;
-    int good = !tc_grid_create(context, g, &grid) && !tc_extract(grid, &how, &mesh) && !tc_mesh_get(mesh, &m);
-    good = good && is_closed(&m, m.triangle_count);
-    if (good && m.triangle_count) good = !is_closed(&m, m.triangle_count - 1); /* a missing triangle is seen */
-    if (good && method == TC_METHOD_TETRA) good = fabs(enclosed(&m) - inside_of_tetrahedra(g, iso)) < 1e-3;
+    const bool made = !tc_grid_create(context, g, &grid) && !tc_extract(grid, &how, &mesh) && !tc_mesh_get(mesh, &m);
+    EXPECT(made, "grid %d, %s: %s", number, tc_method_name(method), tc_message());
+    EXPECT(is_closed(&m, m.triangle_count), "grid %d, %s: not closed", number, tc_method_name(method));
+    if (m.triangle_count)
+        EXPECT(!is_closed(&m, m.triangle_count - 1), "grid %d, %s: a missing triangle is not seen", number,
+               tc_method_name(method));
+    const double inside = inside_of_tetrahedra(g, points, iso);
+    if (method == TC_METHOD_TETRA)
+        EXPECT(fabs(enclosed(&m) - inside) < 1e-3, "grid %d: volume %g, of the tetrahedra %g", number, enclosed(&m),
+               inside);
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
-    return good;
 }
 
-static uint64_t state = 1;
-static uint32_t next(uint32_t below) {
-    state = state * UINT64_C(6364136223846793005) + 1442695040888963407u;
-    return (uint32_t)(state >> 33) % below;
-}
-
-int main(void) {
-    tc_context *context = NULL;
-    tc_context_options device;
-    float samples[SAMPLES_MOST];
-    int failed = 0;
-    tc_context_options_init(&device);
-    device.engine = TC_ENGINE_REFERENCE;
-    if (tc_context_create(&device, &context)) return 1;
-    for (int n = 0; n < 2 * 256 + RANDOM_GRIDS; n++) {
-        tc_grid_options g;
-        tc_grid_options_init(&g);
-        for (int axis = 0; axis < 3; axis++) g.dims[axis] = n < 512 ? 2 : 2 + (int64_t)next(6);
-        g.first_index[0] = n < 512 ? n / 256 : (int64_t)next(2);
-        g.type = TC_F32, g.samples = samples;
-        for (int s = 0; s < SAMPLES_MOST; s++)
-            samples[s] = n < 512 ? (n >> (s & 7) & 1 ? 0.75f : 0.125f) : (float)next(9) / 8;
-        if (n % 3 == 0) g.has_nodata = n >= 512, g.nodata = 0.25;
-        for (int method = TC_METHOD_TETRA; method <= TC_METHOD_SNAP; method++)
-            if (!grid_try(context, &g, (tc_method)method, 0.5)) {
-                if (failed++ < 10) printf("grid %d, %s: not closed, or another volume\n", n, tc_method_name(method));
-            }
+/* Patterns of a cube in both parities, then random grids. */
+static void number_try(tc_context *context, int number) {
+    static float samples[SAMPLES_MOST], points[3 * SAMPLES_MOST];
+    const bool is_pattern = number < PATTERNS;
+    const uint32_t kind = is_pattern ? 0 : random_below(4);
+    const bool mirrored = kind & 1, moved = kind & 2;
+    tc_grid_options g;
+    tc_grid_options_init(&g);
+    for (int axis = 0; axis < 3; axis++) g.dims[axis] = is_pattern ? 2 : 2 + random_below(6);
+    g.first_index[0] = is_pattern ? number / 256 : (int)random_below(2);
+    g.matrix[0][3] = -(double)g.first_index[0];
+    g.type = TC_F32, g.samples = samples;
+    for (int n = 0; n < SAMPLES_MOST; n++)
+        samples[n] = is_pattern ? (number >> (n & 7) & 1 ? 0.75f : 0.125f) : (float)random_below(9) / 8;
+    for (int64_t n = 0; n < g.dims[0] * g.dims[1] * g.dims[2]; n++) {
+        const int64_t at[3] = {n % g.dims[0], n / g.dims[0] % g.dims[1], n / g.dims[0] / g.dims[1]};
+        for (int axis = 0; axis < 3; axis++)
+            points[3 * n + axis] = (float)((double)at[axis] + (moved ? random_between(-0.2, 0.2) : 0));
+        if (mirrored) points[3 * n] = -points[3 * n];
     }
+    if (moved) g.points = points;
+    if (mirrored && !moved) g.matrix[0][0] = -1, g.matrix[0][3] = -g.matrix[0][3];
+    if (!is_pattern && number % 3 == 0) g.has_nodata = 1, g.nodata = 0.25;
+    for (int m = 0; tc_method_name((tc_method)m); m++) grid_try(context, &g, points, (tc_method)m, number);
+}
+
+int main(int argc, char **argv) {
+    const int count = argc > 1 ? atoi(argv[1]) : 3000;
+    tc_context *context = reference_open();
+    random_state = 1996;
+    for (int n = 0; n < PATTERNS + count; n++) number_try(context, n);
     tc_context_destroy(context);
-    printf("%d failed\n", failed);
-    return failed != 0;
+    return EXPECT_DONE();
 }

@@ -93,10 +93,9 @@ static void face_of_tetrahedra(cap_case *c, unsigned parity, unsigned face, cons
 static void face_ring(unsigned parity, unsigned face, uint8_t ring[4]) {
     static const uint8_t around[4] = {0, 1, 3, 2};
     const bool turned = (face & 1) == (face / 2 == 1); /* seen from outside, the order of axes is turned over */
-    unsigned start = 0;
     for (unsigned n = 0; n < 4; n++) ring[n] = (uint8_t)face_corner(face, around[turned ? (4 - n) % 4 : n]);
     const unsigned odd = ring[0] ^ ring[0] >> 1 ^ ring[0] >> 2; /* diagonals end in samples that are even */
-    start = (odd ^ parity) & 1;
+    const unsigned start = (odd ^ parity) & 1;
     uint8_t from[4];
     memcpy(from, ring, sizeof from);
     for (unsigned n = 0; n < 4; n++) ring[n] = from[(n + start) % 4];
