@@ -42,9 +42,9 @@ def drivers(results):
     found = [line for result in results for line in result.get("drivers", [])]
     if not found:
         return []
-    lines = ["", "Every driver, in each variant of the kernels that it takes. The hash is that of all cases' hashes: it is "
-             "the same where the cases are, which have grown since some systems were tried; cases that a device without "
-             "fp64 refuses count as the reference's.", "",
+    lines = ["", "Every driver, in each variant of the kernels that it takes. The hash is that of all cases' hashes: it "
+             "is the same where the cases are, which have grown since some systems were tried; cases that a device "
+             "without fp64 refuses count as the reference's.", "",
              "| driver | version | system | text | cases | hash |", "| --- | --- | --- | --- | --: | --- |"]
     return lines + [f"| {line['driver']} | {line['version']} | {line['system']} | {line['text']} | {line['cases']} | "
                     f"{line['hash'] if line['outcome'] == 'same bytes' else 'failed'} |" for line in found]
