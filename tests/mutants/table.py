@@ -126,6 +126,7 @@ LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 FILES = {
     "host/lib/grid/tables.c": TABLES,
     "host/lib/grid/hybrid_tables.c": ["test_hybrid_tables", "test_hybrid, reference"],
+    "host/lib/grid/loop.c": ["test_hybrid_tables", "test_hybrid, reference"],
     "host/lib/grid/cap_tables.c": ["test_closed"],
     "host/lib/grid/cell_cases.c": ["test_cell_cases", "test_cells, reference"],
     "host/lib/grid/complex_cells.c": ["test_cells"],

@@ -14,7 +14,11 @@
  */
 #include "grid/cell_cases.h"
 
+#include "grid/loop.h"
+
 #include <string.h>
+
+_Static_assert((int)CELL_EDGES_MAX <= (int)LOOP_MOST, "a loop may have all edges of a cell");
 
 enum { CHORD_OWN = 1 << 10, CHORD_SHARED = 1 << 20, NO_EDGE = CELL_EDGES_MAX };
 
@@ -112,10 +116,6 @@ typedef struct derivation {
     unsigned pattern;
     uint8_t next[CELL_EDGES_MAX];                   /* the edge that follows in the loop */
     int32_t chords[CELL_EDGES_MAX][CELL_EDGES_MAX]; /* added to a chord's squared length */
-    uint8_t loop[CELL_EDGES_MAX];
-    int loop_count;
-    uint8_t apex[CELL_EDGES_MAX][CELL_EDGES_MAX];
-    cell_case *out;
 } derivation;
 
 /* 1 where an edge goes from a corner outside to one inside, -1 the other way. */
@@ -160,7 +160,8 @@ static void chords_mark(derivation *d, const cell_face *f, bool is_cut) {
             d->chords[edges[n]][edges[m]] = leaves[n] && leaves[m] ? CHORD_OWN : CHORD_SHARED;
 }
 
-static int32_t chord_cost(const derivation *d, uint8_t a, uint8_t b) {
+static int32_t cell_chord_cost(const void *context, uint8_t a, uint8_t b) {
+    const derivation *d = context;
     const uint8_t *p = d->frame->edges[a], *q = d->frame->edges[b];
     int32_t cost = d->chords[a][b];
     for (int axis = 0; axis < 3; axis++) {
@@ -171,36 +172,8 @@ static int32_t chord_cost(const derivation *d, uint8_t a, uint8_t b) {
     return cost;
 }
 
-/* The triangles between corners first and last of the loop, behind the side or chord that joins these. */
-static void part_store(derivation *d, int first, int last) {
-    if (last - first < 2) return;
-    const int corner = d->apex[first][last];
-    const uint8_t triangle[3] = {d->loop[first], d->loop[corner], d->loop[last]};
-    memcpy(d->out->triangles[d->out->triangle_count++], triangle, sizeof triangle);
-    part_store(d, first, corner);
-    part_store(d, corner, last);
-}
-
-/* Finds, for ever longer parts of the loop, the corner that makes the triangle at the chord which cuts the part off. */
-static void loop_triangulate(derivation *d) {
-    int32_t costs[CELL_EDGES_MAX][CELL_EDGES_MAX] = {{0}};
-    for (int length = 2; length < d->loop_count; length++)
-        for (int first = 0; first + length < d->loop_count; first++) {
-            const int last = first + length;
-            int32_t least = 0;
-            for (int corner = first + 1; corner < last; corner++) {
-                const int32_t cost = costs[first][corner] + costs[corner][last];
-                if (corner > first + 1 && cost >= least) continue;
-                least = cost;
-                d->apex[first][last] = (uint8_t)corner;
-            }
-            costs[first][last] = least + chord_cost(d, d->loop[first], d->loop[last]);
-        }
-    part_store(d, 0, d->loop_count - 1);
-}
-
 void cell_case_derive(const cell_frame *frame, unsigned pattern, cell_case *out) {
-    derivation d = {.frame = frame, .pattern = pattern, .out = out};
+    derivation d = {.frame = frame, .pattern = pattern};
     memset(d.next, NO_EDGE, sizeof d.next);
     *out = (cell_case){0};
     for (int n = 0; n < frame->face_count; n++) {
@@ -211,13 +184,16 @@ void cell_case_derive(const cell_frame *frame, unsigned pattern, cell_case *out)
         }
     }
     for (int start = 0; start < frame->edge_count; start++) {
-        d.loop_count = 0;
+        uint8_t loop[CELL_EDGES_MAX];
+        int loop_count = 0;
         for (uint8_t edge = (uint8_t)start; d.next[edge] != NO_EDGE;) {
             const uint8_t follower = d.next[edge];
-            d.loop[d.loop_count++] = edge;
+            loop[loop_count++] = edge;
             d.next[edge] = NO_EDGE;
             edge = follower;
         }
-        if (d.loop_count) loop_triangulate(&d);
+        if (loop_count)
+            out->triangle_count +=
+                (int)loop_triangulate(loop, loop_count, cell_chord_cost, &d, out->triangles + out->triangle_count);
     }
 }

@@ -38,7 +38,8 @@ static tc_status cell_fail(uint64_t cell, uint32_t tetrahedron) {
 /* Fills the corners; false where the cell cannot have been cut. */
 static bool corners_get(const complex_grid *c, uint64_t cell, const cell_type *type, whole_cell *out) {
     const int64_t *offsets = c->source.offsets, first = offsets[cell], end = offsets[cell + 1];
-    if (first < 0 || end > offsets[c->source.cell_count] || end - first < type->corner_count) return false;
+    if (first < 0 || end < first || end > offsets[c->source.cell_count] || end - first < type->corner_count)
+        return false;
     out->corner_count = type->corner_count;
     for (int n = 0; n < out->corner_count; n++) {
         const int64_t point = c->source.connectivity[first + type->corners[n]];

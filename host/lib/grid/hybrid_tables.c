@@ -12,15 +12,16 @@
  * of the cube could be one of the neighbour's too, and four triangles would meet in it. Twelve loops of eight vertices
  * have no triangulation without one: they have it in a face at x, y or z = 0, where no neighbour may have one.
  */
+#include "grid/loop.h"
 #include "grid/tables.h"
 
 #include <string.h>
 
-enum { LOOP_MOST = 12, FACE_CORNERS = 4, CHORD_LOW = 1 << 10, CHORD_HIGH = 1 << 20 };
+enum { FACE_CORNERS = 4, CHORD_LOW = 1 << 10, CHORD_HIGH = 1 << 20 };
 
 typedef struct loop {
     unsigned count;
-    uint8_t edges[LOOP_MOST]; /* indices in cube_edges */
+    uint8_t edges[12]; /* indices in cube_edges */
 } loop;
 
 /* Corners of a face, counter-clockwise seen from outside. */
@@ -63,8 +64,9 @@ static int middle(unsigned edge, unsigned axis) {
 }
 
 /* The squared length of the chord between the middles of two edges, or more for chords to avoid. */
-static int chord_cost(unsigned a, unsigned b) {
-    int cost = 0;
+static int32_t cube_chord_cost(const void *context, uint8_t a, uint8_t b) {
+    int32_t cost = 0;
+    (void)context;
     for (unsigned axis = 0; axis < 3; axis++) {
         int difference = middle(a, axis) - middle(b, axis);
         cost += difference * difference;
@@ -74,35 +76,16 @@ static int chord_cost(unsigned a, unsigned b) {
     return cost;
 }
 
-/* The triangles between corners first and last of a loop, behind the side or chord that joins these. */
-static void part_store(const loop *l, uint8_t apex[LOOP_MOST][LOOP_MOST], unsigned first, unsigned last, int mirrored,
-                       cube_case *out) {
-    if (last - first < 2) return;
-    const unsigned corner = apex[first][last];
-    const uint8_t triangle[3] = {l->edges[first], l->edges[mirrored ? last : corner],
-                                 l->edges[mirrored ? corner : last]};
-    memcpy(out->edges[out->triangle_count++], triangle, sizeof triangle);
-    part_store(l, apex, first, corner, mirrored, out);
-    part_store(l, apex, corner, last, mirrored, out);
-}
-
-/* Finds, for ever longer parts of the loop, the corner that makes the triangle at the chord which cuts the part off. */
-static void loop_triangulate(const loop *l, int mirrored, cube_case *out) {
-    int costs[LOOP_MOST][LOOP_MOST] = {{0}};
-    uint8_t apex[LOOP_MOST][LOOP_MOST] = {{0}};
-    for (unsigned length = 2; length < l->count; length++)
-        for (unsigned first = 0; first + length < l->count; first++) {
-            const unsigned last = first + length;
-            int least = 0;
-            for (unsigned corner = first + 1; corner < last; corner++) {
-                const int cost = costs[first][corner] + costs[corner][last];
-                if (corner > first + 1 && cost >= least) continue;
-                least = cost;
-                apex[first][last] = (uint8_t)corner;
-            }
-            costs[first][last] = least + chord_cost(l->edges[first], l->edges[last]);
-        }
-    part_store(l, apex, 0, l->count - 1, mirrored, out);
+/* Adds the disk of a loop. */
+static void disk_add(const loop *l, int mirrored, cube_case *out) {
+    uint8_t(*triangles)[3] = out->edges + out->triangle_count;
+    const unsigned count = loop_triangulate(l->edges, (int)l->count, cube_chord_cost, NULL, triangles);
+    for (unsigned n = 0; n < count && mirrored; n++) {
+        const uint8_t corner = triangles[n][1];
+        triangles[n][1] = triangles[n][2];
+        triangles[n][2] = corner;
+    }
+    out->triangle_count = (uint8_t)(out->triangle_count + count);
 }
 
 static void hybrid_case_derive(cube_case *out, unsigned parity, unsigned pattern, int mirrored) {
@@ -121,7 +104,7 @@ static void hybrid_case_derive(cube_case *out, unsigned parity, unsigned pattern
             next[edge] = CUBE_EDGES;
             edge = follower;
         }
-        if (l.count) loop_triangulate(&l, mirrored, out);
+        if (l.count) disk_add(&l, mirrored, out);
     }
 }
 

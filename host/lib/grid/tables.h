@@ -88,8 +88,7 @@ cases_derive tetra_cases_derive, hybrid_cases_derive, snap_cases_derive;
 typedef struct cap_case {
     uint8_t triangle_count;
     uint8_t vertices[4][3];
-    uint8_t padding[3];
-} cap_case; /* 16 bytes, as the emit kernel reads it */
+} cap_case;
 
 /* Faces are those at low x, high x, low y, high y, low z, high z. Digit n to the base 3 of a case is corner n of the
  * face, in the order of the cube's corners: 0 outside, 1 a vertex of the surface, 2 inside. */
