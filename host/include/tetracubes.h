@@ -21,8 +21,8 @@
  *         use(data.positions, data.vertex_count, data.triangles, data.triangle_count);
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
- * Sections: version, status, devices, context, grid, extraction, other fields, unstructured grids, meshes that stay on
- * the device, expert and test settings.
+ * Sections: version, status, devices, context, grid, extraction, pieces of a grid, other fields, unstructured grids,
+ * meshes that stay on the device, expert and test settings.
  *
  * What holds for all of it:
  *
@@ -264,6 +264,8 @@ typedef struct tc_grid_options {
                                             points, and what is blanked, of a rectilinear or curvilinear grid. Of a
                                             uniform grid the matrix is the part's, and the part lies within (else
                                             TC_ERROR_ARGUMENT). Samples may be NULL. NULL: a grid by itself */
+    int64_t owned[2]; /* of a piece of the whole: the grid's planes owned[0] <= z < owned[1] are its own, the others are
+                         halo; see "pieces of a grid". 0, 0: all */
 } tc_grid_options;
 
 /* Samples at points, ready for extraction: of a structured grid, or of tetrahedra. */
@@ -364,6 +366,37 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+/* ------------------------------------------------------------------------------------------------ pieces of a grid */
+
+/* A surface in pieces, by processes or one after the other, whose meshes follow each other to the byte as the mesh of
+ * the whole: for volumes larger than memory, and for codes whose ranks have parts of a grid each.
+ *
+ * The order of vertices and triangles is by bricks, and bricks follow each other by layers of four planes. So a piece
+ * that owns whole layers has consecutive vertices and triangles of the whole mesh. It is a tc_grid with `whole` and
+ * `owned` set: both begin at a multiple of 4 planes from the whole's first, and end at one or with the whole. Beside
+ * the planes that it owns the grid has, but at the ends of the whole, a halo of at least 4 planes before and 2 behind;
+ * for TC_METHOD_SNAP 8 on either side. tc_count, tc_extract and tc_interpolate_field give what the piece owns.
+ *
+ * Cells between two pieces use vertices of the later one. Their numbers follow from its seam: how many of its vertices
+ * lie before each brick of its first layer, tc_seam_size numbers, 4 bytes for 64 x 8 samples of a plane. So:
+ * tc_count_piece of all pieces; each one's seam goes to the piece before; sums of counts are the base of each;
+ * tc_extract_piece. In a piece's triangles, indices below its vertex_count are its own vertices, and vertex_count + n
+ * is vertex n of the next piece. In the whole mesh all of them are larger by the number of vertices of the pieces
+ * before. */
+
+/* The numbers in a seam: bricks in a layer of the grid. */
+TC_API uint64_t tc_seam_size(const tc_grid *grid);
+
+/* As tc_count; fills seam, which has room for seam_size numbers (TC_ERROR_ARGUMENT where that is not tc_seam_size).
+ * Structured grids only. */
+TC_API tc_status tc_count_piece(tc_grid *grid, const tc_extract_options *options, tc_counts *counts, uint32_t *seam,
+                                uint64_t seam_size);
+
+/* As tc_extract. next_seam: of the piece behind, by the same options; NULL with 0 where the whole ends with this one.
+ * TC_ERROR_LIMIT also where vertices of the next piece have no number of 32 bits beside those of this one. */
+TC_API tc_status tc_extract_piece(tc_grid *grid, const tc_extract_options *options, const uint32_t *next_seam,
+                                  uint64_t seam_size, tc_mesh **mesh);
 
 /* ---------------------------------------------------------------------------------------------------- other fields */
 
