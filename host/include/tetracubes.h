@@ -21,8 +21,8 @@
  *         use(data.positions, data.vertex_count, data.triangles, data.triangle_count);
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
- * Sections: version, status, devices, context, grid, extraction, pieces of a grid, other fields, unstructured grids,
- * meshes that stay on the device, expert and test settings.
+ * Sections: version, status, devices, context, grid, extraction, pieces of a grid, surfaces larger than memory, other
+ * fields, unstructured grids, meshes that stay on the device, expert and test settings.
  *
  * What holds for all of it:
  *
@@ -397,6 +397,65 @@ TC_API tc_status tc_count_piece(tc_grid *grid, const tc_extract_options *options
  * TC_ERROR_LIMIT also where vertices of the next piece have no number of 32 bits beside those of this one. */
 TC_API tc_status tc_extract_piece(tc_grid *grid, const tc_extract_options *options, const uint32_t *next_seam,
                                   uint64_t seam_size, tc_mesh **mesh);
+
+/* ------------------------------------------------------------------------------------- surfaces larger than memory */
+
+/* A stream: samples come window by window of planes, and meshes go piece by piece; together the pieces are, to the
+ * byte, what tc_extract makes of the whole. It takes two passes: all is counted, then emitted, and windows that no
+ * surface passes through are not asked for again. A window that holds the whole grid is asked for once. */
+
+/* Planes of samples of a stream's grid, x fastest. */
+typedef struct tc_planes {
+    size_t struct_size;
+    int64_t first, count;     /* of the whole: planes first to first + count - 1 */
+    void *samples;            /* aligned to the type */
+    uint8_t *blanked_samples; /* one per sample, as in tc_grid_options; NULL where the grid has none */
+    uint8_t *blanked_cells;   /* planes first to first + count - 1 of cells, less where the whole ends; likewise */
+} tc_planes;
+
+/* Fills the arrays, or sets them to memory of its own, which stays as it is until the next call or the end of the
+ * stream. Within a pass no window begins or ends before the one before it, except that parts of the window asked for
+ * last may be asked for again, where a mesh is too large. Nonzero ends the stream. */
+typedef int (*tc_read_planes)(void *user, tc_planes *planes);
+
+/* Told once, between the passes: counts of each surface, in their order. Nonzero ends the stream. */
+typedef int (*tc_take_counts)(void *user, const tc_counts *counts);
+
+/* A piece of a mesh. */
+typedef struct tc_mesh_piece {
+    size_t struct_size;
+    size_t surface;                        /* index of the surface */
+    uint64_t first_vertex, first_triangle; /* in the whole mesh */
+    const tc_mesh_data *mesh; /* valid during the call; add first_vertex to the indices of its triangles, of which those
+                                 from mesh->vertex_count on are vertices of the next piece */
+    tc_grid *grid;            /* of the piece, for tc_interpolate_field and tc_grid_origin */
+    int64_t first_plane, plane_count; /* of the whole: those that the grid has */
+} tc_mesh_piece;
+
+/* Takes the next piece: of each surface in the order of the mesh, those without vertices and triangles left out.
+ * Nonzero ends the stream. */
+typedef int (*tc_take_piece)(void *user, const tc_mesh_piece *piece);
+
+typedef struct tc_stream_options {
+    size_t struct_size;          /* set by tc_stream_options_init */
+    const tc_grid_options *grid; /* the whole, uniform or rectilinear, without samples. Arrays of blanked samples or
+                                    cells are not looked at: not NULL says that planes have them */
+    const tc_extract_options *surfaces; /* one for each surface */
+    size_t surface_count;
+    uint64_t max_memory_bytes; /* host memory for a window of samples and a piece of a mesh; 0: 256 MiB. At least that
+                                  of a few planes, and of the mesh of one layer of bricks, is taken */
+    tc_read_planes read;
+    tc_take_counts counted; /* NULL: none */
+    tc_take_piece take;     /* NULL: the stream ends when all is counted */
+    void *user;             /* handed to these three, which run on the thread of the call */
+} tc_stream_options;
+
+/* Defaults: nothing given. */
+TC_API void tc_stream_options_init(tc_stream_options *options);
+
+/* Runs a stream on a context, with either engine. TC_ERROR_CANCELLED where a callback ends it; errors as of
+ * tc_grid_create and tc_extract, except that a whole mesh may have more than 2^32 - 1 vertices: a piece may not. */
+TC_API tc_status tc_stream(tc_context *context, const tc_stream_options *options);
 
 /* ---------------------------------------------------------------------------------------------------- other fields */
 

@@ -37,6 +37,7 @@ typedef struct arguments {
     double *origin_at, origin[3];
     uint32_t *seam, *next_seam; /* a grid that is no piece has none behind it */
     uint64_t seam_size, next_seam_size;
+    tc_stream_options stream_options, *stream_options_at;
     const char *job;
 } arguments;
 
@@ -72,6 +73,12 @@ static void arrays_fill(void) {
         lattice[3 * n + 2] = (float)(n / SIZE / SIZE);
     }
     for (int n = 0; n < SIZE; n++) axis[n] = (float)n;
+}
+
+static int planes_give(void *user, tc_planes *planes) {
+    (void)user;
+    planes->samples = samples + planes->first * SIZE * SIZE;
+    return 0;
 }
 
 static void arguments_fill(const world *w, arguments *a) {
@@ -116,6 +123,11 @@ static void arguments_fill(const world *w, arguments *a) {
     a->origin_at = a->origin;
     a->seam = seam, a->seam_size = tc_seam_size(w->grid);
     a->next_seam = NULL, a->next_seam_size = 0;
+    tc_stream_options_init(a->stream_options_at = &a->stream_options);
+    a->stream_options.grid = &a->grid_options;
+    a->stream_options.surfaces = &a->extract_options;
+    a->stream_options.surface_count = 1;
+    a->stream_options.read = planes_give;
     a->values = values;
     a->value_count = w->expected.vertex_count;
 }
@@ -127,6 +139,7 @@ static void defaults_fill(arguments *a) {
     tc_grid_options_init(&a->grid_options);
     tc_extract_options_init(&a->extract_options);
     tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
+    tc_stream_options_init(&a->stream_options);
     a->cells = (tc_cells){0};
     a->field = (tc_field){0};
     a->device_mesh = (tc_device_mesh){0};
@@ -253,6 +266,11 @@ static tc_status call_tc_extract_piece(arguments *a, bool *zero) {
     *zero = !mesh;
     tc_mesh_destroy(mesh);
     return status;
+}
+
+static tc_status call_tc_stream(arguments *a, bool *zero) {
+    *zero = true;
+    return tc_stream(a->context, a->stream_options_at);
 }
 
 static tc_status call_tc_mesh_get(arguments *a, bool *zero) {

@@ -2,8 +2,8 @@
  * test_grid_pieces.c - surfaces of pieces of a grid, one after the other, are the surface of the whole: every byte
  *
  * Random grids of all kinds, methods, missing data, normals and carried fields, cut anywhere that pieces may be cut,
- * with halos of any allowed size; by the reference and on the device, where all fits and in windows. Then what is
- * refused.
+ * with halos of any allowed size; by the reference and on the device, where all fits and in windows. The same as a
+ * stream with little memory, of two surfaces at once. Then what is refused, and streams that their callbacks end.
  *
  * Usage: test_grid_pieces [SEED [COUNT]]. A failure names the seed of its grid: `test_grid_pieces SEED 1` repeats it.
  */
@@ -211,6 +211,119 @@ static bool pieces_join(tc_context *context, const tc_grid_options *whole, const
     return good;
 }
 
+/* ---------------------------------------------------------------------------------------------------------- streams */
+
+enum { SURFACES = 2 };
+
+typedef struct flow {
+    const tc_grid_options *whole;
+    const tc_extract_options *surfaces;
+    bool in_place; /* the source has its planes in memory */
+    tc_counts counts[SURFACES];
+    joined meshes[SURFACES];
+    int64_t last[2];   /* planes asked for last */
+    bool backwards;    /* planes were asked for that neither follow these nor are among them */
+    int calls, end_at; /* the callback that ends the stream; 0: none */
+} flow;
+
+static int flow_call(flow *f) { return ++f->calls == f->end_at; }
+
+static int planes_give(void *user, tc_planes *planes) {
+    flow *f = user;
+    const int64_t *d = f->whole->dims, plane = d[0] * d[1], cells = (d[0] - 1) * (d[1] - 1), first = planes->first;
+    const int64_t cell_planes = planes->count - (first + planes->count == d[2]);
+    const size_t bytes = tc_type_bytes(f->whole->type) * (size_t)plane;
+    const bool is_within = first >= f->last[0] && first + planes->count <= f->last[1];
+    if (f->calls && !is_within && (first < f->last[0] || first + planes->count < f->last[1]) &&
+        f->counts[0].struct_size == 0)
+        f->backwards = true;
+    if (!is_within) f->last[0] = first, f->last[1] = first + planes->count;
+    if (f->in_place) {
+        planes->samples = (char *)samples + bytes * (size_t)first;
+        if (planes->blanked_samples) planes->blanked_samples = blanked + plane * first;
+        if (planes->blanked_cells) planes->blanked_cells = blanked_cells + cells * first;
+    } else {
+        memcpy(planes->samples, (char *)samples + bytes * (size_t)first, bytes * (size_t)planes->count);
+        if (planes->blanked_samples)
+            memcpy(planes->blanked_samples, blanked + plane * first, (size_t)(plane * planes->count));
+        if (planes->blanked_cells)
+            memcpy(planes->blanked_cells, blanked_cells + cells * first, (size_t)(cells * cell_planes));
+    }
+    return flow_call(f);
+}
+
+static int counts_take(void *user, const tc_counts *counts) {
+    flow *f = user;
+    memcpy(f->counts, counts, sizeof f->counts);
+    return flow_call(f);
+}
+
+static int piece_take(void *user, const tc_mesh_piece *piece) {
+    flow *f = user;
+    joined *j = &f->meshes[piece->surface];
+    EXPECT(piece->first_vertex == j->vertex_count && piece->first_triangle == j->triangle_count,
+           "a piece of a stream does not follow the one before");
+    float *values =
+        values_carried(piece->grid, &f->surfaces[piece->surface],
+                       field + piece->first_plane * f->whole->dims[0] * f->whole->dims[1], piece->mesh->vertex_count);
+    join(j, piece->mesh, values);
+    free(values);
+    return flow_call(f);
+}
+
+static tc_status flow_run(tc_context *context, flow *f, uint64_t budget) {
+    tc_stream_options o;
+    tc_stream_options_init(&o);
+    o.grid = f->whole;
+    o.surfaces = f->surfaces;
+    o.surface_count = SURFACES;
+    o.max_memory_bytes = budget;
+    o.read = planes_give;
+    o.counted = counts_take;
+    o.take = piece_take;
+    o.user = f;
+    return tc_stream(context, &o);
+}
+
+static void flow_release(flow *f) {
+    for (int n = 0; n < SURFACES; n++) {
+        free(f->meshes[n].positions);
+        free(f->meshes[n].normals);
+        free(f->meshes[n].values);
+        free(f->meshes[n].triangles);
+    }
+}
+
+static void expect_streamed(tc_context *context, const tc_grid_options *whole, const tc_extract_options *how,
+                            uint64_t seed) {
+    const tc_extract_options surfaces[SURFACES] = {*how, *how};
+    const uint64_t plane = tc_type_bytes(whole->type) * (uint64_t)(whole->dims[0] * whole->dims[1]);
+    flow f = {.whole = whole, .surfaces = surfaces, .in_place = random_below(2)};
+    tc_extract_options *second = (tc_extract_options *)&surfaces[1];
+    second->isovalue = 40;
+    tc_status status = flow_run(context, &f, random_below(8) ? 2 * plane * (1 + random_below(60)) : 0);
+    EXPECT(status == TC_OK, "seed %" PRIu64 ": a stream: %s", seed, tc_message());
+    EXPECT(!f.backwards, "seed %" PRIu64 ": a stream goes backwards", seed);
+    for (int n = 0; n < SURFACES && !status; n++) {
+        tc_mesh *mesh = NULL;
+        tc_mesh_data data;
+        const joined *j = &f.meshes[n];
+        if (!extract(context, whole, &surfaces[n], &mesh, &data)) continue;
+        const tc_mesh_data sum = {.vertex_count = j->vertex_count,
+                                  .triangle_count = j->triangle_count,
+                                  .active_cell_count = f.counts[n].active_cell_count,
+                                  .positions = j->positions,
+                                  .normals = data.normals ? j->normals : NULL,
+                                  .triangles = j->triangles};
+        const char *difference = mesh_difference(&data, &sum);
+        EXPECT(!difference, "seed %" PRIu64 ": streamed: %s", seed, difference);
+        EXPECT(f.counts[n].vertex_count == data.vertex_count && f.counts[n].triangle_count == data.triangle_count,
+               "seed %" PRIu64 ": a stream counts otherwise", seed);
+        tc_mesh_destroy(mesh);
+    }
+    flow_release(&f);
+}
+
 static void expect_joined(tc_context *context, const tc_grid_options *options, const tc_extract_options *how,
                           uint64_t seed) {
     tc_mesh_data whole = {.struct_size = sizeof whole};
@@ -261,9 +374,13 @@ static void run(uint64_t seed) {
     grid_choose(&grid, &how, kind);
     how.closed = random_below(4) == 0;
     expect_joined(contexts[0], &grid, &how, seed);
+    if (kind != CURVILINEAR) expect_streamed(contexts[0], &grid, &how, seed);
     how.closed = 0;
     for (int n = 1; n < ENGINES && runs_on_device(&grid, &how, kind); n++)
-        if (contexts[n]) expect_joined(contexts[n], &grid, &how, seed);
+        if (contexts[n]) {
+            expect_joined(contexts[n], &grid, &how, seed);
+            if (kind != CURVILINEAR) expect_streamed(contexts[n], &grid, &how, seed);
+        }
 }
 
 /* ---------------------------------------------------------------------------------------------------------- refused */
@@ -324,6 +441,35 @@ static void test_refused(void) {
     tc_grid_destroy(grid);
 }
 
+/* Every callback ends the stream in its turn. */
+static void test_ended(void) {
+    tc_grid_options whole;
+    tc_extract_options how;
+    random_state = 7;
+    do grid_choose(&whole, &how, UNIFORM);
+    while (whole.dims[2] < 40 || whole.has_nodata);
+    const tc_extract_options surfaces[SURFACES] = {how, how};
+    flow f = {.whole = &whole, .surfaces = surfaces};
+    EXPECT(flow_run(contexts[0], &f, 1) == TC_OK && f.calls > 20, "a stream with little memory: %s", tc_message());
+    const int calls = f.calls;
+    flow_release(&f);
+    for (int n = 1; n <= calls; n++) {
+        f = (flow){.whole = &whole, .surfaces = surfaces, .end_at = n};
+        EXPECT_REFUSED(flow_run(contexts[0], &f, 1), TC_ERROR_CANCELLED, "a stream that a callback ends");
+        EXPECT(f.calls == n, "a stream goes on after callback %d", n);
+        flow_release(&f);
+    }
+    tc_grid_options bad = whole;
+    f = (flow){.whole = &bad, .surfaces = surfaces};
+    bad.points = points;
+    EXPECT_REFUSED(flow_run(contexts[0], &f, 1), TC_ERROR_ARGUMENT, "a stream of a curvilinear grid");
+    bad = whole;
+    bad.dims[0] = INT64_MAX;
+    EXPECT_REFUSED(flow_run(contexts[0], &f, 1), TC_ERROR_DATA, "a stream of a grid that cannot be");
+    EXPECT_REFUSED(tc_stream(NULL, NULL), TC_ERROR_ARGUMENT, "a stream without a context");
+    EXPECT_REFUSED(tc_stream(contexts[0], NULL), TC_ERROR_ARGUMENT, "a stream without options");
+}
+
 int main(int argc, char **argv) {
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 10) : 1,
                    count = argc > 2 ? strtoull(argv[2], NULL, 10) : 300;
@@ -337,6 +483,7 @@ int main(int argc, char **argv) {
         contexts[2] = context_open(&options);
     }
     test_refused();
+    test_ended();
     for (uint64_t n = 0; n < count; n++) run(seed + n);
     for (int n = 0; n < ENGINES; n++) tc_context_destroy(contexts[n]);
     for (int n = 0; n < 2; n++) free(seams[n]);

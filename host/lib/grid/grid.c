@@ -67,7 +67,8 @@ tc_status seam_numbers_check(const tc_grid *grid, uint64_t vertex_count) {
 
 unsigned grid_parity(const tc_grid *grid) { return (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1; }
 
-static tc_status sizes_check(const tc_grid_options *o) {
+tc_status grid_sizes_check(const tc_grid_options *o) {
+    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     for (int axis = 0; axis < 3; axis++) {
         if (o->dims[axis] == 1)
             return (tc_status)fail(TC_ERROR_DATA, "the grid has one sample along %c: a surface needs two or more",
@@ -266,7 +267,7 @@ static tc_status whole_take(const tc_grid_options *given, const tc_grid *grid, t
     }
     if (!given) return TC_OK;
     tc_status status = struct_copy_in(&o, sizeof o, given, "whole grid");
-    if (!status) status = sizes_check(&o);
+    if (!status) status = grid_sizes_check(&o);
     if (!status) status = place_take(&o, whole);
     if (status) return status;
     int is_within = 1;
@@ -310,8 +311,7 @@ static tc_status own_take(const tc_grid_options *o, const tc_grid *whole, tc_gri
 
 tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     tc_grid whole;
-    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
-    tc_status status = sizes_check(o);
+    tc_status status = grid_sizes_check(o);
     if (status) return status;
     if (!o->samples && !o->cl_samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
     if (o->samples && o->cl_samples)

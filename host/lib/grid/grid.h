@@ -53,6 +53,9 @@ struct tc_grid {
     struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
+/* Whether sizes, indices and type are those of a grid. */
+tc_status grid_sizes_check(const tc_grid_options *options);
+
 /* Checks the options and fills *grid, which is zeroed, except for context, scan and device. Release it in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 void grid_release(tc_grid *grid);
