@@ -448,6 +448,9 @@ typedef struct tc_stream_options {
     tc_take_counts counted; /* NULL: none */
     tc_take_piece take;     /* NULL: the stream ends when all is counted */
     void *user;             /* handed to these three, which run on the thread of the call */
+    int64_t owned[2];       /* only the pieces of planes owned[0] to before owned[1] of the whole, multiples of 4 or its
+                               ends: numbers then count from 0 there, and the last triangles may use vertices of the
+                               piece behind, as in tc_extract_piece. 0, 0: all */
 } tc_stream_options;
 
 /* Defaults: nothing given. */

@@ -42,6 +42,7 @@ typedef struct stream {
     uint64_t seam_size;
     unit *units;
     size_t unit_count, unit_room;
+    size_t own_units; /* without the one behind */
     int64_t halo[2];
     uint64_t plane_bytes[ARRAY_COUNT];
     host_block room[ARRAY_COUNT]; /* for what the source does not have in memory */
@@ -196,16 +197,37 @@ static void progress_share(stream *s, double begin, double share) {
     s->context->progress_share = share;
 }
 
+/* Of what follows the planes that are asked for, one layer tells where vertices lie in its bricks. */
+static tc_status behind_count(stream *s, uint32_t *seam) {
+    const int64_t first = s->o.owned[1], nz = s->whole.dims[2];
+    uint64_t most;
+    tc_counts *totals = s->totals, *ignored = calloc(s->o.surface_count, sizeof *ignored);
+    if (first == nz || !s->o.take) {
+        free(ignored);
+        return TC_OK;
+    }
+    tc_status status = ignored ? unit_add(s, first, min_i64(first + BRICK_PLANES, nz))
+                               : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the seams of a stream");
+    s->totals = ignored;
+    if (!status) status = grid_open(s, &s->units[s->unit_count - 1]);
+    if (!status) status = unit_count(s, &s->units[s->unit_count - 1], seam, &most);
+    s->totals = totals;
+    free(ignored);
+    return status;
+}
+
 static tc_status units_count(stream *s, int64_t window) {
-    const double planes = (double)s->whole.dims[2], part = s->o.take ? 0.5 : 1;
+    const double planes = (double)(s->o.owned[1] - s->o.owned[0]), part = s->o.take ? 0.5 : 1;
     uint32_t *seam = malloc(s->seam_size * sizeof *seam);
     tc_counts *before = calloc(s->o.surface_count, sizeof *before);
     tc_status status = seam && before ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the seams of a stream");
-    for (int64_t z = 0; z < s->whole.dims[2] && !status; z += window) {
-        const int64_t end = min_i64(z + window, s->whole.dims[2]);
-        progress_share(s, part * (double)z / planes, part * (double)(end - z) / planes);
+    for (int64_t z = s->o.owned[0]; z < s->o.owned[1] && !status; z += window) {
+        const int64_t end = min_i64(z + window, s->o.owned[1]);
+        progress_share(s, part * (double)(z - s->o.owned[0]) / planes, part * (double)(end - z) / planes);
         status = planes_count(s, z, end, seam, before);
     }
+    s->own_units = s->unit_count;
+    if (!status) status = behind_count(s, seam);
     free(seam);
     free(before);
     return status;
@@ -214,7 +236,7 @@ static tc_status units_count(stream *s, int64_t window) {
 static void totals_add(stream *s) {
     for (size_t n = 0; n < s->o.surface_count; n++) {
         tc_counts *t = &s->totals[n];
-        for (size_t u = 0; u < s->unit_count; u++) {
+        for (size_t u = 0; u < s->own_units; u++) {
             t->vertex_count += s->units[u].surfaces[n].vertex_count;
             t->triangle_count += s->units[u].surfaces[n].triangle_count;
         }
@@ -233,7 +255,7 @@ static bool unit_emits(const stream *s, const unit *u) {
 
 static tc_status piece_take(stream *s, size_t unit_index, size_t surface, tc_mesh **mesh, tc_mesh_piece *piece) {
     const unit *u = &s->units[unit_index];
-    const bool is_last = u->end == s->whole.dims[2];
+    const bool is_last = u->end == s->whole.dims[2]; /* else there is a unit behind, counted for its seam */
     const uint32_t *seam = is_last ? NULL : s->units[unit_index + 1].surfaces[surface].seam;
     const unit_surface *counted = &u->surfaces[surface];
     tc_mesh_data data = {.struct_size = sizeof data};
@@ -270,8 +292,8 @@ static tc_status units_emit(stream *s) {
     tc_mesh_piece *next = calloc(s->o.surface_count, sizeof *next); /* of each surface */
     tc_status status = next ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the pieces of a stream");
     for (size_t n = 0; n < s->o.surface_count && !status; n++) next[n].struct_size = sizeof *next;
-    for (size_t u = 0; u < s->unit_count && !status; u++) {
-        progress_share(s, 0.5 + 0.5 * (double)u / (double)s->unit_count, 0.5 / (double)s->unit_count);
+    for (size_t u = 0; u < s->own_units && !status; u++) {
+        progress_share(s, 0.5 + 0.5 * (double)u / (double)s->own_units, 0.5 / (double)s->own_units);
         status = unit_emit(s, u, &mesh, next);
     }
     tc_mesh_destroy(mesh);
@@ -296,12 +318,27 @@ static tc_status options_check(const stream *s) {
     return grid_sizes_check(&s->whole);
 }
 
+static tc_status owned_take(stream *s) {
+    int64_t *owned = s->o.owned;
+    const int64_t nz = s->whole.dims[2];
+    if (owned[0] == 0 && owned[1] == 0) owned[1] = nz;
+    if (owned[0] >= 0 && owned[0] < owned[1] && owned[1] <= nz && owned[0] % BRICK_PLANES == 0 &&
+        (owned[1] % BRICK_PLANES == 0 || owned[1] == nz))
+        return TC_OK;
+    return (tc_status)fail(
+        TC_ERROR_ARGUMENT,
+        "planes %lld to %lld of %lld: a stream's own begin at a multiple of %d and end there or with "
+        "the whole",
+        (long long)owned[0], (long long)owned[1] - 1, (long long)nz, BRICK_PLANES);
+}
+
 static tc_status options_take(stream *s, const tc_stream_options *options) {
     tc_stream_options_init(&s->o);
     tc_grid_options_init(&s->whole);
     tc_status status = struct_copy_in(&s->o, sizeof s->o, options, "stream options");
     if (!status && s->o.grid) status = struct_copy_in(&s->whole, sizeof s->whole, s->o.grid, "grid options");
     if (!status) status = options_check(s);
+    if (!status) status = owned_take(s);
     if (status) return status;
     s->surfaces = calloc(s->o.surface_count, sizeof *s->surfaces);
     s->totals = calloc(s->o.surface_count, sizeof *s->totals);
@@ -331,7 +368,7 @@ static int64_t window_planes(stream *s) {
     const uint64_t planes = bytes ? budget / 2 / bytes : 0;
     s->whole.blanked_samples = s->whole.blanked_cells = NULL;
     s->mesh_bytes = budget / 2;
-    if (planes >= (uint64_t)w->dims[2]) return w->dims[2];
+    if (planes >= (uint64_t)(s->o.owned[1] - s->o.owned[0])) return s->o.owned[1] - s->o.owned[0];
     const int64_t own = (int64_t)planes - s->halo[0] - s->halo[1];
     return own < BRICK_PLANES ? BRICK_PLANES : own / BRICK_PLANES * BRICK_PLANES;
 }

@@ -188,6 +188,8 @@ static const place places[] = {
     AT(tc_stream, stream_options.counted, absent),
     AT(tc_stream, stream_options.take, absent),
     AT(tc_stream, stream_options.user, LISTED({8, OK})),
+    AT(tc_stream, stream_options.owned[0], LISTED({1, ARGUMENT}, {I64(-4), ARGUMENT}, {INT64_MAX, ARGUMENT})),
+    AT(tc_stream, stream_options.owned[1], LISTED({1, ARGUMENT}, {I64(-4), ARGUMENT}, {INT64_MAX, ARGUMENT})),
     AT(tc_mesh_get, mesh, null),
     AT(tc_mesh_get, mesh_data_at, null),
     OPTIONS_OF_EXTRACTION(tc_interpolate_field),
