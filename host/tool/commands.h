@@ -10,6 +10,7 @@
 #include "command_line/options.h"
 
 int extract_run(const options *o);
+int join_run(const options *o);
 int info_run(const options *o);
 int tetrahedralize_run(const options *o);
 int devices_run(const options *o);

@@ -278,7 +278,7 @@ static int make_surfaces(job *j) {
 
 /* Makes the surfaces window by window, where they would not fit into memory; else j->streams is 0 afterwards. */
 static int make_streamed(job *j) {
-    const stream_input in = {j->o, &j->data, &j->blocks, &j->carried};
+    const stream_input in = {j->o, &j->data, &j->field, &j->blocks, &j->carried};
     const size_t count = j->o->isovalue_count;
     int status = stream_may_be_needed(&in, &j->streams);
     if (status || !j->streams) return status;
@@ -295,7 +295,8 @@ static int make_streamed(job *j) {
     j->report.surface_count = count;
     for (size_t n = 0; n < count; n++) j->report.write_ms += s[n].write_ms;
     for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
-    for (size_t n = 0; n < count && !status; n++) status = surface_tell_empty(&j->data, &j->field, &s[n]);
+    for (size_t n = 0; n < count && !status && !j->o->piece[1]; n++)
+        status = surface_tell_empty(&j->data, &j->field, &s[n]); /* a part may well be empty */
     return status;
 }
 

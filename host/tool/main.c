@@ -54,6 +54,15 @@ static const command commands[] = {
      "  xz -dc ct.nrrd.xz | tetracubes extract - --iso 300 -o ct.ply\n"
      "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"
      "  tetracubes extract engine.vtu --field temperature --iso 400 -o hot.ply"},
+    {"join", COMMAND_JOIN, join_run, NULL, "the parts of a surface as one mesh",
+     "tetracubes join PARTS... -o FILE [options]",
+     "Makes the mesh of the files that 'extract --part I/N' has written, of all N in any order: to the\n"
+     "byte the file that one process would write. Parts of other volumes, isovalues or versions,\n"
+     "missing, damaged or given twice are refused, and no file is written.\n"
+     "\n"
+     "  tetracubes extract ct.nrrd --iso 300 --part 0/2 -o ct-0.tcpart\n"
+     "  tetracubes extract ct.nrrd --iso 300 --part 1/2 -o ct-1.tcpart\n"
+     "  tetracubes join ct-*.tcpart -o ct.ply"},
     {"info", COMMAND_INFO, info_run, NULL, "what a file holds, and isovalues worth trying",
      "tetracubes info INPUT... [options]",
      "Prints the kind of grid, its sizes and place, cells by type and fields with their ranges, for\n"

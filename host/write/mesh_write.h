@@ -94,6 +94,9 @@ typedef struct mesh_file mesh_file;
 /* 0 where the format can be written so: to be called before any work is done. */
 int mesh_file_check(const char *path, const mesh_write_options *options);
 
+/* Whether the vertices and the triangles of a piece may be added one after the other, as pieces without the other. */
+int mesh_file_takes_halves(const char *path, const mesh_write_options *options);
+
 /* whole: counts, origin, and which channels there are (pointers that are not NULL); of options->fields only names and
  * components matter. *file is to be closed or discarded; NULL after a failure. path and options outlive it. */
 int mesh_file_open(const char *path, const mesh_write_options *options, const tc_mesh_data *whole, mesh_file **file);

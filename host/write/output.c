@@ -195,6 +195,8 @@ void output_rewind(output *o) {
     o->position = 0;
 }
 
+void output_seek(output *o, uint64_t position) { o->position = position; }
+
 int output_status(const output *o) { return o->error ? fail_write(o->name, o->error) : 0; }
 
 void output_finish(output *o) {

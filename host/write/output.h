@@ -77,6 +77,9 @@ void output_span(output *o, record_span span, size_t record_bytes, output_encode
 /* Begins the next pass, the first one too. Sets an error where the output is no file of its own. */
 void output_rewind(output *o);
 
+/* In passes: goes on at this byte of the file. */
+void output_seek(output *o, uint64_t position);
+
 /* What has gone wrong so far: 0, or STATUS_FAILED with its message. */
 int output_status(const output *o);
 

@@ -252,6 +252,11 @@ int mesh_file_check(const char *path, const mesh_write_options *options) {
                                        path);
 }
 
+int mesh_file_takes_halves(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return !choose_format(path, options, &f) && f->pieces == PIECES_NUMBERS;
+}
+
 int mesh_file_open(const char *path, const mesh_write_options *options, const tc_mesh_data *whole, mesh_file **file) {
     mesh_file *m = calloc(1, sizeof *m);
     *file = NULL;

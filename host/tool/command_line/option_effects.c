@@ -24,6 +24,8 @@ static int has_no_output_nor_reference(const situation *s) { return !s->o->outpu
 
 static int has_no_mesh(const situation *s) { return s->o->count; }
 
+static int makes_part(const situation *s) { return s->o->piece[1] != 0; }
+
 static int file_has_no_normals(const situation *s) {
     const mesh_write_options how = {.format = s->o->format};
     return s->o->output && mesh_write_lacks(s->o->output, &how, ROLE_NORMALS);
@@ -79,10 +81,11 @@ typedef struct effect {
     const char *text; /* behind the input's name, where that was read */
 } effect;
 
-#define NO_MESH  "--count makes no mesh: leave out "
-#define NOT_RAW  " describes raw input: give --dims NX,NY,NZ too, or leave it out"
-#define NOT_GRID " is for structured grids only"
-#define NO_FIELD " is for the values of one field, and none is chosen: see --field and --component"
+#define NO_MESH           "--count makes no mesh: leave out "
+#define PART_OPTION(name) name " is for the mesh of all parts: give it to 'tetracubes join'"
+#define NOT_RAW           " describes raw input: give --dims NX,NY,NZ too, or leave it out"
+#define NOT_GRID          " is for structured grids only"
+#define NO_FIELD          " is for the values of one field, and none is chosen: see --field and --component"
 
 static const effect table[] = {
     {COMMAND_EXTRACT, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--output, or --count"},
@@ -95,11 +98,15 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--carry", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--carry, or --count"},
     {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--origin-at, or --count"},
     {COMMAND_EXTRACT, "--stream", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--stream, or --count"},
+    {COMMAND_EXTRACT, "--part", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--part, or --count"},
     {COMMAND_EXTRACT, "--drop-degenerate", BEFORE_READING, has_no_mesh, REFUSED,
      NO_MESH "--drop-degenerate, or --count"},
 
     {COMMAND_EXTRACT, "--carry", BEFORE_READING, has_no_output, REFUSED,
      "--carry puts fields into the mesh's file: give -o FILE"},
+    {COMMAND_EXTRACT, "--part", BEFORE_READING, has_no_output, REFUSED, "--part writes a file: give -o FILE"},
+    {COMMAND_EXTRACT, "--format", BEFORE_READING, makes_part, REFUSED, PART_OPTION("--format")},
+    {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, makes_part, REFUSED, PART_OPTION("--origin-at")},
     {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_output, REFUSED, "--blocks names files: give -o FILE"},
     {COMMAND_EXTRACT, "--format", BEFORE_READING, has_no_output, REFUSED,
      "--format is that of the mesh's file: give -o FILE, or -o - for standard output"},

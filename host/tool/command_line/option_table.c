@@ -26,7 +26,7 @@ static const char *method_choices(int n) { return tc_method_name((tc_method)n); 
 
 static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
 
-#define REPORTS (READS | COMMAND_DEVICES | COMMAND_SELFTEST)
+#define REPORTS (READS | COMMAND_DEVICES | COMMAND_SELFTEST | COMMAND_JOIN)
 #define ALL     (REPORTS | COMMAND_GENERATE)
 #define IN(m)   offsetof(options, m)
 
@@ -44,6 +44,10 @@ const option option_table[] = {
      "standard output"},
     {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
      "unstructured grid to write: .vtu; - is standard output"},
+    {"--output", "-o", "FILE", COMMAND_JOIN, VALUE_TEXT, IN(output), NULL,
+     "mesh to write: .ply, .vtp or .stl"},
+    {"--format", NULL, "F", COMMAND_JOIN, VALUE_TEXT, IN(format), format_choices,
+     "ply, vtp or stl, whatever FILE ends in"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb or npz, whatever FILE ends in"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
@@ -62,7 +66,7 @@ const option option_table[] = {
      "STL and OFF); structured grids only"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
-    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT, VALUE_POINT, IN(origin_at), NULL,
+    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT | COMMAND_JOIN, VALUE_POINT, IN(origin_at), NULL,
      "write coordinates relative to this point of the input's space (default: the\n"
      "input's own; STL, which holds float32 alone, of data far from zero relative\n"
      "to a point near it, which is told)"},
@@ -99,6 +103,10 @@ const option option_table[] = {
      "read and write window by window, also where all would fit into memory: else\n"
      "it is done where it would not (uniform and rectilinear grids; to PLY, VTP\n"
      "and STL; not with --check, --verify, --soup, --drop-degenerate)"},
+    {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(piece), NULL,
+     "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
+     "join' makes the mesh of all N, which other processes may have made; uniform\n"
+     "and rectilinear grids, as --stream"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
@@ -159,7 +167,7 @@ const option option_table[] = {
      "write a JUnit file too: a suite per group, a case per trial"},
     {"--json", NULL, NULL, REPORTS, VALUE_NONE, IN(json), NULL,
      "print the results as one JSON object"},
-    {"--quiet", NULL, NULL, READS | COMMAND_GENERATE, VALUE_NONE, IN(quiet), NULL,
+    {"--quiet", NULL, NULL, READS | COMMAND_GENERATE | COMMAND_JOIN, VALUE_NONE, IN(quiet), NULL,
      "no progress, no notices, no report but that of --json"},
     {"--help", "-h", NULL, ALL, VALUE_NONE, IN(help), NULL,
      "print this"},

@@ -26,6 +26,7 @@ typedef enum value_kind {
     VALUE_RANGES,    /* world_ranges */
     VALUE_STEP,      /* int64_t[3], from 1; one number goes for all */
     VALUE_THRESHOLD, /* double, 0 to 0.5 */
+    VALUE_PIECE,     /* int64_t[2]: I/N */
 } value_kind;
 
 typedef struct option {

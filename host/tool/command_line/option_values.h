@@ -19,6 +19,7 @@ enum command_bit {
     COMMAND_GENERATE = 8,
     COMMAND_SELFTEST = 16,
     COMMAND_TETRAHEDRALIZE = 32,
+    COMMAND_JOIN = 64,
 };
 
 /* Commands that read an input. */
@@ -54,6 +55,7 @@ typedef struct options {
     double nodata;
     int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
     part_request part;
+    int64_t piece[2]; /* --part: which, from 0, of how many; 0 of 0 where not given */
     const char *mask;
     uint64_t max_memory; /* 0 where not given */
     uint64_t seed;

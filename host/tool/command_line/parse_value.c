@@ -168,6 +168,17 @@ static int parse_step(const option *spec, const char *text, int64_t out[3]) {
     return 0;
 }
 
+static int parse_piece(const option *spec, const char *text, int64_t out[2]) {
+    const char *at = text;
+    uint64_t number, count;
+    const int good = take_whole(&at, &number) && *at++ == '/' && take_whole(&at, &count) && !*at;
+    if (!good || count > INT32_MAX || number >= count)
+        return fail(STATUS_USAGE, "%s: '%s' is no part I of N, from 0 to N - 1, as in 0/8 or 7/8", spec->name, text);
+    out[0] = (int64_t)number;
+    out[1] = (int64_t)count;
+    return 0;
+}
+
 /* Bytes: a whole number, then K, M, G or T, with iB or B after it if one likes. */
 static int parse_size(const option *spec, const char *text, uint64_t *out) {
     static const char units[] = "KMGT";
@@ -249,6 +260,8 @@ int parse_value(const option *spec, const char *text, options *o) {
         return parse_ranges(spec, text, place);
     case VALUE_STEP:
         return parse_step(spec, text, place);
+    case VALUE_PIECE:
+        return parse_piece(spec, text, place);
     }
     return fail(STATUS_USAGE, "%s: not understood", spec->name);
 }

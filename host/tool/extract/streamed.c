@@ -5,6 +5,7 @@
 #include "host_memory.h"
 #include "input/input.h"
 #include "library_status.h"
+#include "part_surface.h"
 #include "progress.h"
 #include "surface_files.h"
 
@@ -34,7 +35,8 @@ typedef struct stream_job {
     streamed_surface *surfaces;
     size_t count;
     output_group files;
-    int status; /* of a callback that has ended the stream, with its message */
+    int64_t owned[2]; /* planes */
+    int status;       /* of a callback that has ended the stream, with its message */
     char text[1024];
     int fits; /* all of it fits into memory: the stream ends when it is counted */
 } stream_job;
@@ -51,8 +53,11 @@ static const char *obstacle(const stream_input *in) {
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
+    if (o->soup && o->piece[1]) return "--soup needs the whole mesh";
     return NULL;
 }
+
+static int is_asked_for(const options *o) { return o->stream || o->piece[1]; }
 
 static uint64_t memory_of_stream(const options *o) {
     if (o->max_memory) return o->max_memory / 2; /* the device's buffers take the other half */
@@ -123,8 +128,25 @@ static int take_counts(void *user, const tc_counts *counts) {
         s->active_cell_count = counts[n].active_cell_count;
         s->classify_ms = counts[n].classify_ms;
     }
-    j->fits = !j->in->o->stream && fits_memory(j);
+    j->fits = !is_asked_for(j->in->o) && fits_memory(j);
     return j->fits;
+}
+
+static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *whole) {
+    part_header header = {.number = j->in->o->piece[0],
+                          .count = j->in->o->piece[1],
+                          .planes = {j->owned[0], j->owned[1]},
+                          .vertex_count = whole->vertex_count,
+                          .triangle_count = whole->triangle_count,
+                          .has_origin = to->report->piece_count > 0};
+    memcpy(header.origin, whole->origin, sizeof header.origin);
+    header.surface = part_surface_make(j->in, &j->grid, &j->how[to - j->surfaces], j->samples, j->blanked_samples);
+    int status = header.surface ? 0 : STATUS_FAILED;
+    if (!status)
+        status =
+            surface_files_open_pieces(j->in->o, to->report->iso, whole, &header, j->in->carried, &j->files, &to->file);
+    part_header_release(&header);
+    return status;
 }
 
 /* Opens the surface's file, now that its size, and the point that its positions are relative to, are known. */
@@ -140,7 +162,8 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     memcpy(to->report->origin, origin, sizeof whole.origin);
     to->report->has_origin = 1;
     if (!j->in->o->output || to->file) return 0;
-    return surface_files_open_pieces(j->in->o, s->iso, &whole, j->in->carried, &j->files, &to->file);
+    if (j->in->o->piece[1]) return open_part(j, to, &whole);
+    return surface_files_open_pieces(j->in->o, s->iso, &whole, NULL, j->in->carried, &j->files, &to->file);
 }
 
 static void add_bounds(surface_report *s, const tc_mesh_data *m) {
@@ -160,14 +183,14 @@ static int take_piece(void *user, const tc_mesh_piece *piece) {
     surface_report *s = to->report;
     const uint64_t plane = (uint64_t)(j->grid.dims[0] * j->grid.dims[1]);
     const double begin = now_ms();
-    int status = open_file(j, to, m->origin);
     s->piece_count++;
+    int status = open_file(j, to, m->origin);
     s->emit_ms += m->timings.emit_ms;
     s->readback_ms += m->timings.readback_ms;
     if (!j->in->o->quiet || j->in->o->json) add_bounds(s, m);
     if (!status) status = carried_fields_of_piece(j->in->carried, piece, plane, &j->how[piece->surface]);
     if (!status && to->file)
-        status = mesh_file_add(to->file->file, piece->first_vertex, piece->first_triangle, m, j->in->carried->fields);
+        status = surface_files_add_piece(to->file, piece->first_vertex, piece->first_triangle, m, j->in->carried);
     s->write_ms += now_ms() - begin;
     return note(j, status ? status : progress_status());
 }
@@ -187,6 +210,8 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->blanked_samples = from->blanked_points;
     j->blanked_cells = from->blanked_cells;
     j->grid.samples = NULL;
+    j->owned[1] = j->grid.dims[2];
+    if (in->o->piece[1]) part_planes(j->grid.dims[2], in->o->piece[0], in->o->piece[1], j->owned);
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);
@@ -209,6 +234,8 @@ static int run(stream_job *j, engine *e) {
     o.counted = take_counts;
     o.take = take_piece;
     o.user = j;
+    memcpy(o.owned, j->owned, sizeof o.owned);
+    if (j->owned[0] == j->owned[1]) return 0; /* of more parts than layers some have nothing */
     const tc_status status = tc_stream(e->context, &o);
     e->fails_alike = status == TC_ERROR_LIMIT;
     if (j->fits) return 0;
@@ -239,12 +266,14 @@ int stream_may_be_needed(const stream_input *in, int *may) {
     const options *o = in->o;
     const mesh_write_options how = {.format = o->format, .soup = o->soup};
     *may = 0;
-    if (o->stream && why_not) return fail(STATUS_USAGE, "%s cannot be streamed: %s", o->operands[0], why_not);
-    const int status = why_not || !o->output ? 0 : mesh_file_check(o->output, &how);
+    if (is_asked_for(o) && why_not)
+        return fail(STATUS_USAGE, "%s cannot be %s: %s", o->operands[0],
+                    o->piece[1] ? "made in parts (--part)" : "streamed", why_not);
+    const int status = why_not || !o->output || o->piece[1] ? 0 : mesh_file_check(o->output, &how);
     if (o->stream && status) return status;
     const uint64_t samples = (uint64_t)in->data->blocks->point_count;
     const int is_large = samples > host_memory_available() / (MESH_MOST + ENGINE_KEEPS);
-    *may = !status && !why_not && !o->count && (o->stream || is_large);
+    *may = !status && !why_not && !o->count && (is_asked_for(o) || is_large);
     return 0;
 }
 

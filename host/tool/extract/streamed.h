@@ -15,12 +15,13 @@
 typedef struct stream_input {
     const options *o;
     const dataset *data;
+    const scalar *field;
     const block_list *blocks;
     carried_fields *carried;
 } stream_input;
 
-/* *may: whether the surfaces are to be streamed, as --stream asks for it, or may have to be, as a mesh of such a grid
- * can be larger than memory. Returns STATUS_USAGE where --stream is given and cannot be followed. */
+/* *may: whether the surfaces are to be streamed, as --stream or --part asks for it, or may have to be, as a mesh of
+ * such a grid can be larger than memory. Returns STATUS_USAGE where such an option is given and cannot be followed. */
 int stream_may_be_needed(const stream_input *in, int *may);
 
 /* Counts the surfaces and, where --stream is given or one of them does not fit into memory, makes all of them and fills

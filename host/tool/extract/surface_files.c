@@ -82,7 +82,9 @@ int surface_files_check(const options *o, const dataset *d) {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (!o->output) return 0;
     int status = check_names(o);
-    if (!status) status = mesh_write_check(o->output, &how);
+    if (!status && o->piece[1] && !output_is_file(o->output))
+        return fail(STATUS_USAGE, "-o %s: a part is written at many places of a file: name a file", o->output);
+    if (!status && !o->piece[1]) status = mesh_write_check(o->output, &how);
     for (size_t n = 0; n < o->isovalue_count && !status; n++) status = check_files(o, d, &o->isovalues[n]);
     return status;
 }
@@ -141,7 +143,8 @@ int surface_files_write(const options *o, const typed_isovalue *iso, int block, 
 }
 
 int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const carried_fields *fields, output_group *group, piece_file **file) {
+                              const part_header *part, const carried_fields *fields, output_group *group,
+                              piece_file **file) {
     piece_file *p = calloc(1, sizeof *p);
     *file = NULL;
     if (!p) return fail(STATUS_FAILED, "out of memory for the file of a surface");
@@ -151,7 +154,11 @@ int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const
                                   .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
                                   .group = group};
     p->path = file_name(o, iso, ALL_BLOCKS);
-    const int status = p->path ? mesh_file_open(p->path, &p->how, whole, &p->file) : STATUS_FAILED;
+    int status = p->path ? 0 : STATUS_FAILED;
+    if (!status && part)
+        status = part_file_open(p->path, part, group, &p->part);
+    else if (!status)
+        status = mesh_file_open(p->path, &p->how, whole, &p->file);
     if (!status) {
         *file = p;
         return 0;
@@ -160,13 +167,21 @@ int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const
     return status;
 }
 
+int surface_files_add_piece(piece_file *p, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,
+                            const carried_fields *fields) {
+    if (p->part) return part_file_add(p->part, first_vertex, first_triangle, piece, fields->fields);
+    return mesh_file_add(p->file, first_vertex, first_triangle, piece, fields->fields);
+}
+
 int surface_files_close_pieces(piece_file *p, int status) {
     if (!p) return 0;
     int closed = 0;
-    if (status)
+    if (status) {
         mesh_file_discard(p->file);
-    else
-        closed = mesh_file_close(p->file);
+        part_file_discard(p->part);
+    } else {
+        closed = p->part ? part_file_close(p->part) : mesh_file_close(p->file);
+    }
     free(p->path);
     free(p);
     return closed;

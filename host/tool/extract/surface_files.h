@@ -10,6 +10,7 @@
 #include "carried_fields.h"
 #include "result_mesh.h"
 #include "output_group.h"
+#include "parts/part_file.h"
 #include "precision.h"
 
 /* STATUS_USAGE where -o, --format, --blocks and --carry do not fit together, or would overwrite an input; STATUS_FAILED
@@ -33,13 +34,20 @@ int surface_files_write(const options *o, const typed_isovalue *iso, int block, 
 /* The file of a surface whose pieces come one after the other (mesh_file). It waits in the group when it is closed. */
 typedef struct piece_file {
     mesh_file *file;
+    part_file *part; /* instead: of --part */
     mesh_write_options how;
     char *path;
 } piece_file;
 
-/* whole: as for mesh_file_open. *file is to be closed. Returns 0 or a status. */
+/* whole: as for mesh_file_open. part: NULL, or what the file of --part begins with. *file is to be closed. Returns 0 or
+ * a status. */
 int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const carried_fields *fields, output_group *group, piece_file **file);
+                              const part_header *part, const carried_fields *fields, output_group *group,
+                              piece_file **file);
+
+/* The next piece, whose first vertex and triangle have these numbers in the file; fields of its vertices. */
+int surface_files_add_piece(piece_file *file, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,
+                            const carried_fields *fields);
 
 /* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
 int surface_files_close_pieces(piece_file *file, int status);

@@ -1,0 +1,95 @@
+#include "part_surface.h"
+
+#include "exit_status.h"
+#include "failure.h"
+#include "field.h"
+#include "terminal/json_report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+/* Bytes of samples that are hashed: so many places, so much at each. */
+enum { PLACES = 64, PLACE_BYTES = 4096 };
+
+static uint64_t hash_places(const void *values, uint64_t bytes, uint64_t seed) {
+    const uint64_t step = bytes / PLACES;
+    if (!values || bytes <= PLACES * PLACE_BYTES) return values ? XXH64(values, bytes, seed) : seed;
+    for (uint64_t n = 0; n < PLACES; n++) {
+        const uint64_t at = n + 1 < PLACES ? n * step : bytes - PLACE_BYTES;
+        seed = XXH64((const char *)values + at, PLACE_BYTES, seed);
+    }
+    return seed;
+}
+
+static uint64_t hash_grid(const tc_grid_options *g) {
+    uint64_t hash = XXH64(g->matrix, sizeof g->matrix, 0);
+    hash = XXH64(g->first_index, sizeof g->first_index, hash);
+    for (int axis = 0; axis < 3; axis++) {
+        const size_t count = (size_t)g->dims[axis];
+        if (g->axes[axis]) hash = XXH64(g->axes[axis], count * sizeof *g->axes[axis], hash);
+        if (g->axes_f64[axis]) hash = XXH64(g->axes_f64[axis], count * sizeof *g->axes_f64[axis], hash);
+    }
+    return hash;
+}
+
+static json_t *hash_json(uint64_t hash) {
+    char text[24];
+    snprintf(text, sizeof text, "%016" PRIx64, hash);
+    return json_string(text);
+}
+
+static json_t *input_json(const options *o, const tc_grid_options *g, const void *samples, const uint8_t *blanked) {
+    const uint64_t points = (uint64_t)(g->dims[0] * g->dims[1] * g->dims[2]);
+    json_t *bytes = json_array();
+    struct stat file;
+    for (int n = 0; n < o->operand_count; n++)
+        if (stat(o->operands[n], &file) == 0 && S_ISREG(file.st_mode))
+            json_array_append_new(bytes, json_integer((json_int_t)file.st_size));
+    const uint64_t content = hash_places(blanked, points, hash_places(samples, points * tc_type_bytes(g->type), 0));
+    return json_pack("{s:o, s:o, s:o}", "file_bytes", bytes, "grid", hash_json(hash_grid(g)), "samples",
+                     hash_json(content));
+}
+
+static json_t *channels_json(const tc_extract_options *how) {
+    json_t *names = json_array();
+    for (int n = 0; n < CHANNEL_COUNT; n++)
+        if (channel_is_asked(how, n)) json_array_append_new(names, json_string(mesh_channels[n].name));
+    return names;
+}
+
+/* Names and components; NULL, with its message, where a name is no text that JSON holds. */
+static json_t *carried_json(const carried_fields *c) {
+    json_t *list = json_array();
+    for (int n = 0; n < c->count; n++) {
+        json_t *name = json_string(c->fields[n].name);
+        if (!name) {
+            json_decref(list);
+            fail(STATUS_USAGE, "--part: the name of the field '%s' is no UTF-8, which a part's file holds",
+                 c->fields[n].name);
+            return NULL;
+        }
+        json_array_append_new(list, json_pack("[o, i]", name, c->fields[n].components));
+    }
+    return list;
+}
+
+json_t *part_surface_make(const stream_input *in, const tc_grid_options *grid, const tc_extract_options *how,
+                          const void *samples, const uint8_t *blanked_samples) {
+    json_t *carried = carried_json(in->carried);
+    if (!carried) return NULL;
+    json_t *surface = json_pack(
+        "{s:s, s:o, s:s, s:o, s:i, s:f, s:s, s:o, s:b, s:o, s:o, s:o}", "version", tc_version(), "dims",
+        integers_json(grid->dims), "type", tc_type_name(grid->type), "field", string_json(in->field->name), "component",
+        in->field->component, "isovalue", how->isovalue, "method", tc_method_name(how->method), "snap",
+        how->method == TC_METHOD_SNAP ? json_real(how->snap) : json_null(), "closed", how->closed, "nodata",
+        in->o->has_nodata ? json_real(in->o->nodata) : json_null(), "channels", channels_json(how), "carried", carried);
+    json_t *input = input_json(in->o, grid, samples, blanked_samples);
+    if (surface && !json_object_set_new(surface, "input", input)) return surface;
+    json_decref(surface);
+    fail(STATUS_FAILED, "out of memory for the header of a part");
+    return NULL;
+}
