@@ -3,6 +3,7 @@
 
 #include "input/part_report.h"
 #include "output.h"
+#include "parts/part_header.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
 #include "terminal/notice.h"
@@ -90,6 +91,16 @@ static json_t *timings_json(const extract_report *r) {
                      "total", ms_json(r->total_ms));
 }
 
+/* Of --part: which, of how many, and the planes that it owns. */
+static void piece_json(json_t *object, const extract_report *r) {
+    const int64_t *piece = r->o->piece;
+    int64_t planes[2];
+    if (!piece[1] || !r->grid) return;
+    part_planes(r->grid->dims[2], piece[0], piece[1], planes);
+    json_object_set_new(object, "part", json_pack("[I, I]", (json_int_t)piece[0], (json_int_t)piece[1]));
+    json_object_set_new(object, "planes", json_pack("[I, I]", (json_int_t)planes[0], (json_int_t)planes[1]));
+}
+
 int extract_report_json(const extract_report *r) {
     json_t *surfaces = json_array(), *object = json_object();
     for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
@@ -99,6 +110,7 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "method", json_string(tc_method_name((tc_method)r->o->method)));
     json_object_set_new(object, "dims", r->grid ? integers_json(r->grid->dims) : json_null());
     part_report_json(object, r->grid);
+    piece_json(object, r);
     json_object_set_new(object, "cells", count_json(r->cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
@@ -174,6 +186,18 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
 }
 
+static void piece_text(const extract_report *r) {
+    const int64_t *piece = r->o->piece;
+    int64_t planes[2];
+    if (!piece[1] || !r->grid) return;
+    part_planes(r->grid->dims[2], piece[0], piece[1], planes);
+    printf("part %" PRId64 " of %" PRId64 ": ", piece[0], piece[1]);
+    if (planes[0] == planes[1])
+        printf("no planes: there are fewer layers of four than parts\n");
+    else
+        printf("planes %" PRId64 " to %" PRId64 "\n", planes[0], planes[1] - 1);
+}
+
 static void input_text(const extract_report *r) {
     printf("%s: ", r->o->operands[0]);
     if (r->block_count > 1) printf("%d blocks, ", r->block_count);
@@ -184,6 +208,7 @@ static void input_text(const extract_report *r) {
     printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
            tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
     part_report_text("part: ", r->grid);
+    piece_text(r);
 }
 
 void extract_report_text(const extract_report *r) {
