@@ -12,7 +12,8 @@
 /* Whether so many bytes are more than the process should take of its memory. */
 int temporary_file_is_better(uint64_t bytes);
 
-/* A file of that size, 0 for one that grows, with room on the disk for all of it. -1, with its message, where there is none. */
+/* A file of that size, 0 for one that grows, with room on the disk for all of it. -1, with its message, where there is
+ * none. */
 int temporary_file(uint64_t bytes);
 
 #endif

@@ -112,6 +112,7 @@ static int fits_memory(const stream_job *j) {
     for (size_t n = 0; n < j->count; n++) {
         const tc_counts *c = &j->surfaces[n].counts;
         const uint64_t bytes = c->mesh_bytes + vertex_bytes * c->vertex_count;
+        if (c->vertex_count > UINT32_MAX) return 0;
         if (bytes > mesh) mesh = bytes;
     }
     return mesh <= most && keeps <= most - mesh;
