@@ -8,8 +8,10 @@
 #define COMMANDS_H
 
 #include "command_line/options.h"
+#include "extract/team.h"
 
 int extract_run(const options *o);
+int extract_run_together(const options *o, team *t); /* as one of a team; all of it return the same status */
 int join_run(const options *o);
 int info_run(const options *o);
 int tetrahedralize_run(const options *o);

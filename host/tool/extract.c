@@ -33,6 +33,7 @@
 
 typedef struct job {
     const options *o;
+    team *team; /* or NULL */
     read_request request;
     dataset data;
     scalar field;
@@ -67,6 +68,9 @@ static int read_input(job *j) {
     j->report.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
+
+/* Ends a stage: of a team, when all have ended it. */
+static int together(const job *j, int status) { return j->team ? j->team->agree(j->team, status) : status; }
 
 /* Called when the main engine has failed. With --engine auto the reference takes its place, and gets the blocks that
  * were uploaded, unless it would fail in the same way. Returns 0, or the status that stays. */
@@ -278,7 +282,7 @@ static int make_surfaces(job *j) {
 
 /* Makes the surfaces window by window, where they would not fit into memory; else j->streams is 0 afterwards. */
 static int make_streamed(job *j) {
-    const stream_input in = {j->o, &j->data, &j->field, &j->blocks, &j->carried};
+    const stream_input in = {j->o, &j->data, &j->field, &j->blocks, &j->carried, j->team};
     const size_t count = j->o->isovalue_count;
     int status = stream_may_be_needed(&in, &j->streams);
     if (status || !j->streams) return status;
@@ -286,6 +290,7 @@ static int make_streamed(job *j) {
     if (!s) return fail(STATUS_FAILED, "out of memory for the report");
     status = stream_surfaces(&in, &j->main, s, &j->streams);
     if (status && !(status = fall_back(j, status))) status = stream_surfaces(&in, &j->main, s, &j->streams);
+    if (status && j->team && !j->team->has_failed) j->team->leave(j->team, status);
     if (!status) status = describe_device(j);
     if (!status && !j->streams) {
         free(s);
@@ -303,21 +308,30 @@ static int make_streamed(job *j) {
 static int print_report(job *j, double begin_ms) {
     j->report.total_ms = now_ms() - begin_ms;
     progress_clear();
+    if (j->team) {
+        double sent = (double)j->team->sent_bytes(j->team);
+        j->team->most(j->team, &sent, 1);
+        j->report.rank_count = j->team->size;
+        j->report.sent_bytes = (uint64_t)sent;
+        if (j->team->rank) return 0;
+    }
     if (j->o->json) return extract_report_json(&j->report);
     if (!j->o->quiet) extract_report_text(&j->report);
     return 0;
 }
 
-int extract_run(const options *o) {
+int extract_run(const options *o) { return extract_run_together(o, NULL); }
+
+int extract_run_together(const options *o, team *t) {
     double begin = now_ms();
-    job j = {.o = o};
+    job j = {.o = o, .team = t};
     j.report.o = o;
     j.report.engine = o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
-    int status = check_usage(&j);
+    int status = together(&j, check_usage(&j));
     if (status) goto cleanup;
-    if ((status = read_and_start(&j))) goto cleanup;
-    if ((status = cut(&j))) goto cleanup;
-    if ((status = make_streamed(&j))) goto cleanup;
+    if ((status = together(&j, read_and_start(&j)))) goto cleanup;
+    if ((status = together(&j, cut(&j)))) goto cleanup;
+    if ((status = together(&j, make_streamed(&j)))) goto cleanup;
     if (!j.streams && (status = upload(&j))) goto cleanup;
     if (!j.streams && (status = make_surfaces(&j))) goto cleanup;
     if ((status = print_report(&j, begin))) goto cleanup;

@@ -58,6 +58,8 @@ typedef struct mesh_write_options {
                                    coordinates; STL, which has only float32, has them relative to the mesh's origin */
     struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
                                    at once */
+    const struct output_shared *shared; /* of a file that several processes write piece by piece, each with pieces of
+                                           its own (output.h); NULL: this one alone */
 } mesh_write_options;
 
 /* To be called before any work is done. 0 where path's ending, or options->format, is a format that is written and
@@ -104,6 +106,11 @@ int mesh_file_open(const char *path, const mesh_write_options *options, const tc
 /* fields: of the piece's vertices, as many as options->fields has. Errors that last are told by mesh_file_close too. */
 int mesh_file_add(mesh_file *file, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,
                   const vertex_array *fields);
+
+/* Whether triangles wait for vertices of the next piece. Where another process has that, and writes all else of it,
+ * mesh_file_complete writes them. */
+int mesh_file_waits(const mesh_file *file);
+int mesh_file_complete(mesh_file *file, const tc_mesh_data *next);
 
 /* Puts the file under its name, or into options->group. Both accept NULL, and free the mesh_file. */
 int mesh_file_close(mesh_file *file);

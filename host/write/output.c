@@ -80,8 +80,12 @@ int output_open(output *o, const char *path) {
 /* Errors are ignored where a file is written in one go: where the file system lacks the call, or room, the writes will
  * show it. One that takes long to make, in passes, is not begun without room. */
 void output_expect(output *o, uint64_t bytes) {
-    if (!o->temporary || o->error || bytes <= o->expected || bytes > INT64_MAX) return;
+    if ((!o->temporary && !o->shared) || o->error || bytes <= o->expected || bytes > INT64_MAX) return;
     o->expected = bytes;
+    if (o->shared) {
+        if (o->shared->writes_frame) o->error = o->shared->expect(o->shared->user, bytes);
+        return;
+    }
     if (fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes) != 0 && o->in_passes && errno == ENOSPC)
         o->error = errno;
 }
@@ -90,11 +94,19 @@ static int (*stop_asked)(void);
 
 void output_stop_when(int (*asked)(void)) { stop_asked = asked; }
 
+void output_share(output *o, const char *name, const output_shared *shared) {
+    *o = (output){.name = name, .fd = -1, .lock = -1, .shared = shared};
+}
+
 static ssize_t write_some(output *o, const void *from, size_t bytes) {
+    if (o->shared) {
+        errno = o->shared->write_at(o->shared->user, from, bytes, o->position);
+        return errno ? -1 : (ssize_t)bytes;
+    }
     return o->in_passes ? pwrite(o->fd, from, bytes, (off_t)o->position) : write(o->fd, from, bytes);
 }
 
-void output_bytes(output *o, const void *data, uint64_t bytes) {
+static void write_bytes(output *o, const void *data, uint64_t bytes) {
     const unsigned char *from = data;
     while (bytes > 0 && !o->error) {
         ssize_t written = write_some(o, from, bytes < WRITE_MOST ? bytes : WRITE_MOST);
@@ -110,6 +122,13 @@ void output_bytes(output *o, const void *data, uint64_t bytes) {
             if (errno == EFAULT) truncation_note();
         }
     }
+}
+
+void output_bytes(output *o, const void *data, uint64_t bytes) {
+    if (o->shared && !o->shared->writes_frame)
+        o->position += bytes;
+    else
+        write_bytes(o, data, bytes);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- records */
@@ -141,7 +160,7 @@ static void write_in_turn(records *r, const unsigned char *data, size_t bytes, u
     pthread_mutex_lock(&r->lock);
     while (r->turn != first) pthread_cond_wait(&r->turned, &r->lock);
     pthread_mutex_unlock(&r->lock);
-    output_bytes(r->o, data, bytes);
+    write_bytes(r->o, data, bytes);
     pthread_mutex_lock(&r->lock);
     r->turn = end;
     r->stopped = r->o->error != 0;
@@ -185,12 +204,12 @@ void output_span(output *o, record_span span, size_t record_bytes, output_encode
     if (encode)
         write_records_of(o, span.first, span.end, record_bytes, encode, source);
     else
-        output_bytes(o, source, (span.end - span.first) * record_bytes);
+        write_bytes(o, source, (span.end - span.first) * record_bytes);
     o->position = begin + span.count * record_bytes;
 }
 
 void output_rewind(output *o) {
-    if (!o->temporary && !o->error) o->error = ESPIPE;
+    if (!o->temporary && !o->shared && !o->error) o->error = ESPIPE;
     o->in_passes = 1;
     o->position = 0;
 }

@@ -24,6 +24,16 @@ enum {
     OUTPUT_BLOCK = 1 << 20
 }; /* bytes of records that a thread writes in one turn; large, so that turns cost little */
 
+/* How bytes get into a file that several processes write together, each in passes, and that one of them puts under its
+ * name. What is no record, as a header, all of them know, and one writes. */
+typedef struct output_shared {
+    int (*write_at)(void *user, const void *data, uint64_t bytes, uint64_t position); /* 0 or an errno; by one thread at
+                                                                                         a time, not always the same */
+    int (*expect)(void *user, uint64_t bytes);                                        /* likewise; as output_expect */
+    void *user;
+    int writes_frame; /* also what is no record */
+} output_shared;
+
 typedef struct output {
     const char *name; /* as the caller gave it, for messages; borrowed */
     char *path;       /* final name, symbolic links resolved */
@@ -32,8 +42,9 @@ typedef struct output {
     int lock;  /* the temporary file once more: its lock is held until it is gone */
     int error; /* errno of the first failure */
     int in_passes;
-    uint64_t position; /* in passes: where the next byte goes */
-    uint64_t expected; /* bytes of the file that room was asked for */
+    uint64_t position;           /* in passes: where the next byte goes */
+    uint64_t expected;           /* bytes of the file that room was asked for */
+    const output_shared *shared; /* borrowed; or NULL */
 } output;
 
 /* Of `count` records that a file has one after the other, those from `first` to end - 1. */
@@ -60,6 +71,10 @@ int output_check(const char *path);
 
 /* Returns 0 or STATUS_FAILED with its message; the output then needs no output_close. path must outlive the output. */
 int output_open(output *o, const char *path);
+
+/* An output of a file that other processes write as well: it opens nothing, and output_close only tells what went
+ * wrong. Both outlive it. */
+void output_share(output *o, const char *name, const output_shared *shared);
 
 /* Announces how many bytes the file will have: room for all at once costs a third less than piece by piece. */
 void output_expect(output *o, uint64_t bytes);

@@ -269,7 +269,10 @@ int mesh_file_open(const char *path, const mesh_write_options *options, const tc
     if (!status) status = check_counts(path, whole, 0, m->format);
     if (!status) status = set_offsets(&m->shown, options, m->format, &m->parts);
     if (!status) status = set_arrays(&m->shown, options, m->format, &m->arrays);
-    if (!status) status = output_open(&m->o, path);
+    if (!status && options && options->shared)
+        output_share(&m->o, path, options->shared);
+    else if (!status)
+        status = output_open(&m->o, path);
     if (!status) {
         *file = m;
         return 0;
@@ -309,6 +312,16 @@ int mesh_file_add(mesh_file *m, uint64_t first_vertex, uint64_t first_triangle, 
     ready = *piece;
     if (!status) status = held_take(&m->held, first_triangle, &ready);
     return status ? status : write_piece(m, 0, first_triangle, &ready);
+}
+
+int mesh_file_waits(const mesh_file *m) { return m && m->held.count > 0; }
+
+int mesh_file_complete(mesh_file *m, const tc_mesh_data *next) {
+    tc_mesh_data ready;
+    uint64_t first_ready;
+    const int status = held_complete(&m->held, next, &ready, &first_ready) ? write_piece(m, 0, first_ready, &ready) : 0;
+    m->held.count = 0;
+    return status;
 }
 
 static void free_mesh_file(mesh_file *m) {

@@ -111,6 +111,8 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "dims", r->grid ? integers_json(r->grid->dims) : json_null());
     part_report_json(object, r->grid);
     piece_json(object, r);
+    if (r->rank_count) json_object_set_new(object, "ranks", json_integer(r->rank_count));
+    if (r->rank_count) json_object_set_new(object, "sent_bytes", count_json(r->sent_bytes));
     json_object_set_new(object, "cells", count_json(r->cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
@@ -214,6 +216,8 @@ static void input_text(const extract_report *r) {
 void extract_report_text(const extract_report *r) {
     input_text(r);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
+    if (r->rank_count)
+        printf("ranks: %d, each of which sent at most %" PRIu64 " bytes to the others\n", r->rank_count, r->sent_bytes);
     for (size_t n = 0; n < r->surface_count; n++)
         surface_text(&r->surfaces[n], r->has_tetrahedra ? "tetrahedra" : "cells");
     printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,

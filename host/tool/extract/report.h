@@ -59,6 +59,8 @@ typedef struct extract_report {
     uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
     char device[160];                                    /* "" for the reference engine */
     double read_ms, upload_ms, write_ms, total_ms;
+    int rank_count;         /* processes that made the surfaces together; 0: this one alone */
+    uint64_t sent_bytes;    /* then: to the others, at most by one of them */
     double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
     surface_report *surfaces;
     size_t surface_count;

@@ -9,6 +9,7 @@
 #include "part_surface.h"
 #include "progress.h"
 #include "surface_files.h"
+#include "team_files.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,8 +37,10 @@ typedef struct stream_job {
     streamed_surface *surfaces;
     size_t count;
     output_group files;
-    int64_t owned[2]; /* planes */
-    int status;       /* of a callback that has ended the stream, with its message */
+    team_surface *shared; /* of a team, one per surface */
+    int is_counted;       /* by all of the team */
+    int64_t owned[2];     /* planes */
+    int status;           /* of a callback that has ended the stream, with its message */
     char text[1024];
     int fits; /* all of it fits into memory: the stream ends when it is counted */
 } stream_job;
@@ -54,15 +57,17 @@ static const char *obstacle(const stream_input *in) {
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
-    if (o->soup && o->piece[1]) return "--soup needs the whole mesh";
+    if (o->separate_blocks && in->team) return "--blocks separate names files of blocks";
+    if (o->soup && (o->piece[1] || in->team)) return "--soup needs the whole mesh";
     return NULL;
 }
 
-static int is_asked_for(const options *o) { return o->stream || o->piece[1]; }
+static int is_asked_for(const stream_input *in) { return in->o->stream || in->o->piece[1] || in->team; }
 
-static uint64_t memory_of_stream(const options *o) {
+static uint64_t memory_of_stream(const stream_input *in) {
+    const options *o = in->o;
     if (o->max_memory) return o->max_memory / 2; /* the device's buffers take the other half */
-    const uint64_t share = host_memory_available() / 4;
+    const uint64_t share = host_memory_available() / 4 / (in->team ? (uint64_t)in->team->node_size : 1);
     return share < window_least ? window_least : share < window_most ? share : window_most;
 }
 
@@ -123,6 +128,20 @@ static int fits_memory(const stream_job *j) {
     return mesh <= most && keeps <= most - mesh;
 }
 
+/* Between the passes of all members of a team: how many vertices and triangles lie before this one's, and the files. */
+static int count_together(stream_job *j) {
+    team *t = j->in->team;
+    int status = 0;
+    team_surfaces_count(t, j->surfaces->report, j->shared, j->count);
+    j->is_counted = 1;
+    for (size_t n = 0; n < j->count && j->in->o->output && !status; n++) {
+        char *path = surface_files_describe(j->in->o, j->surfaces[n].report->iso, 1);
+        status = team_surface_open(t, path, &j->shared[n]);
+        free(path);
+    }
+    return note(j, status);
+}
+
 static int take_counts(void *user, const tc_counts *counts) {
     stream_job *j = user;
     for (size_t n = 0; n < j->count; n++) {
@@ -133,7 +152,8 @@ static int take_counts(void *user, const tc_counts *counts) {
         s->active_cell_count = counts[n].active_cell_count;
         s->classify_ms = counts[n].classify_ms;
     }
-    j->fits = !is_asked_for(j->in->o) && fits_memory(j);
+    if (j->in->team) return count_together(j);
+    j->fits = !is_asked_for(j->in) && fits_memory(j);
     return j->fits;
 }
 
@@ -148,8 +168,8 @@ static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *wh
     header.surface = part_surface_make(j->in, &j->grid, &j->how[to - j->surfaces], j->samples, j->blanked_samples);
     int status = header.surface ? 0 : STATUS_FAILED;
     if (!status)
-        status =
-            surface_files_open_pieces(j->in->o, to->report->iso, whole, &header, j->in->carried, &j->files, &to->file);
+        status = surface_files_open_pieces(j->in->o, to->report->iso, whole, &header, NULL, j->in->carried, &j->files,
+                                           &to->file);
     part_header_release(&header);
     return status;
 }
@@ -168,7 +188,8 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     to->report->has_origin = 1;
     if (!j->in->o->output || to->file) return 0;
     if (j->in->o->piece[1]) return open_part(j, to, &whole);
-    return surface_files_open_pieces(j->in->o, s->iso, &whole, NULL, j->in->carried, &j->files, &to->file);
+    const output_shared *shared = j->in->team ? &j->shared[to - j->surfaces].shared : NULL;
+    return surface_files_open_pieces(j->in->o, s->iso, &whole, NULL, shared, j->in->carried, &j->files, &to->file);
 }
 
 static void add_bounds(surface_report *s, const tc_mesh_data *m) {
@@ -187,15 +208,17 @@ static int take_piece(void *user, const tc_mesh_piece *piece) {
     const tc_mesh_data *m = piece->mesh;
     surface_report *s = to->report;
     const uint64_t plane = (uint64_t)(j->grid.dims[0] * j->grid.dims[1]);
+    const team_surface none = {0}, *before = j->in->team ? &j->shared[piece->surface] : &none;
     const double begin = now_ms();
     s->piece_count++;
     int status = open_file(j, to, m->origin);
     s->emit_ms += m->timings.emit_ms;
     s->readback_ms += m->timings.readback_ms;
-    if (!j->in->o->quiet || j->in->o->json) add_bounds(s, m);
+    if (!j->in->o->quiet || j->in->o->json || j->in->team) add_bounds(s, m);
     if (!status) status = carried_fields_of_piece(j->in->carried, piece, plane, &j->how[piece->surface]);
     if (!status && to->file)
-        status = surface_files_add_piece(to->file, piece->first_vertex, piece->first_triangle, m, j->in->carried);
+        status = surface_files_add_piece(to->file, before->first_vertex + piece->first_vertex,
+                                         before->first_triangle + piece->first_triangle, m, j->in->carried);
     s->write_ms += now_ms() - begin;
     return note(j, status ? status : progress_status());
 }
@@ -209,7 +232,8 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->count = in->o->isovalue_count;
     j->how = calloc(j->count, sizeof *j->how);
     j->surfaces = calloc(j->count, sizeof *j->surfaces);
-    if (!j->how || !j->surfaces) return fail(STATUS_FAILED, "out of memory for the surfaces");
+    j->shared = calloc(j->count, sizeof *j->shared);
+    if (!j->how || !j->surfaces || !j->shared) return fail(STATUS_FAILED, "out of memory for the surfaces");
     block_describe(in->blocks, 0, &j->grid, &whole);
     j->samples = from->samples;
     j->blanked_samples = from->blanked_points;
@@ -217,15 +241,46 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->grid.samples = NULL;
     j->owned[1] = j->grid.dims[2];
     if (in->o->piece[1]) part_planes(j->grid.dims[2], in->o->piece[0], in->o->piece[1], j->owned);
+    if (in->team) part_planes(j->grid.dims[2], in->team->rank, in->team->size, j->owned);
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);
-        *s = (surface_report){.iso = &in->o->isovalues[n], .has_mesh = 1, .is_streamed = 1};
+        *s = (surface_report){.iso = &in->o->isovalues[n], .has_mesh = !in->o->count, .is_streamed = 1};
         for (int axis = 0; axis < 3; axis++)
             s->summary.bounds[0][axis] = INFINITY, s->summary.bounds[1][axis] = -INFINITY;
         j->surfaces[n].report = s;
     }
     return 0;
+}
+
+/* Of more parts than layers some have nothing. */
+static int run_without_planes(stream_job *j) {
+    tc_counts *none = calloc(j->count, sizeof *none);
+    if (!none) return fail(STATUS_FAILED, "out of memory for the surfaces");
+    take_counts(j, none);
+    free(none);
+    return j->status ? fail(j->status, "%s", j->text) : 0;
+}
+
+static int take_corners(void *user, const tc_mesh_piece *piece) {
+    stream_job *j = user;
+    const piece_file *file = j->surfaces[piece->surface].file;
+    return file ? note(j, mesh_file_complete(file->file, piece->mesh)) : 0;
+}
+
+/* In a format without numbers of vertices (STL), triangles wait for vertices that the next member of the team makes.
+ * Those are of the layer behind this one's planes: it is made here once more. */
+static tc_status complete_triangles(stream_job *j, engine *e, const tc_stream_options *how) {
+    tc_stream_options o = *how;
+    const int64_t nz = j->grid.dims[2], end = j->owned[1] + LAYER_PLANES;
+    int waits = 0;
+    for (size_t n = 0; n < j->count; n++) waits |= j->surfaces[n].file && mesh_file_waits(j->surfaces[n].file->file);
+    if (!waits) return TC_OK;
+    o.owned[0] = j->owned[1];
+    o.owned[1] = end < nz ? end : nz;
+    o.counted = NULL;
+    o.take = take_corners;
+    return tc_stream(e->context, &o);
 }
 
 static int run(stream_job *j, engine *e) {
@@ -234,19 +289,36 @@ static int run(stream_job *j, engine *e) {
     o.grid = &j->grid;
     o.surfaces = j->how;
     o.surface_count = j->count;
-    o.max_memory_bytes = memory_of_stream(j->in->o);
+    o.max_memory_bytes = memory_of_stream(j->in);
     o.read = give_planes;
     o.counted = take_counts;
-    o.take = take_piece;
+    o.take = j->in->o->count ? NULL : take_piece;
     o.user = j;
     memcpy(o.owned, j->owned, sizeof o.owned);
-    if (j->owned[0] == j->owned[1]) return 0; /* of more parts than layers some have nothing */
-    const tc_status status = tc_stream(e->context, &o);
+    if (j->owned[0] == j->owned[1]) return run_without_planes(j);
+    tc_status status = tc_stream(e->context, &o);
+    if (!status && j->in->team) status = complete_triangles(j, e, &o);
     e->fails_alike = status == TC_ERROR_LIMIT;
     if (j->fits) return 0;
     if (j->status) return fail(j->status, "%s", j->text);
     if (status == TC_ERROR_CANCELLED && progress_status()) return progress_status();
     return status ? input_status(j->in->o, status) : 0;
+}
+
+/* The files of a team appear when those of all members are closed. */
+static int publish_together(stream_job *j, int status) {
+    team *t = j->in->team;
+    if (status && !t->has_failed) t->leave(t, status);
+    if (!t->has_failed) status = team_surfaces_close(t, j->shared, j->count, &j->files);
+    if (!status) team_surfaces_report(t, j->surfaces->report, j->count);
+    if (!status) status = t->agree(t, output_group_publish(&j->files));
+    output_group_discard(&j->files);
+    return status;
+}
+
+/* Whether this process has to open the surface's file although it has nothing to put there. */
+static int writes_frame(const stream_job *j, const streamed_surface *s) {
+    return !j->in->team || j->shared[s - j->surfaces].shared.writes_frame;
 }
 
 /* All files, or none. */
@@ -255,12 +327,13 @@ static int publish(stream_job *j, int status) {
     for (size_t n = 0; n < j->count; n++) {
         streamed_surface *to = &j->surfaces[n];
         const double begin_ms = now_ms();
-        if (!status && !to->report->piece_count) status = open_file(j, to, zero);
+        if (!status && !to->report->piece_count && writes_frame(j, to)) status = open_file(j, to, zero);
         const int closed = surface_files_close_pieces(to->file, status);
         if (!status) status = closed;
         if (!status && j->in->o->output) to->report->path = surface_files_describe(j->in->o, to->report->iso, 1);
         to->report->write_ms += now_ms() - begin_ms;
     }
+    if (j->is_counted) return publish_together(j, status);
     if (!status) return output_group_publish(&j->files);
     output_group_discard(&j->files);
     return status;
@@ -271,14 +344,17 @@ int stream_may_be_needed(const stream_input *in, int *may) {
     const options *o = in->o;
     const mesh_write_options how = {.format = o->format, .soup = o->soup};
     *may = 0;
-    if (is_asked_for(o) && why_not)
+    if (is_asked_for(in) && why_not)
         return fail(STATUS_USAGE, "%s cannot be %s: %s", o->operands[0],
-                    o->piece[1] ? "made in parts (--part)" : "streamed", why_not);
+                    in->team      ? "made by several ranks"
+                    : o->piece[1] ? "made in parts (--part)"
+                                  : "streamed",
+                    why_not);
     const int status = why_not || !o->output || o->piece[1] ? 0 : mesh_file_check(o->output, &how);
-    if (o->stream && status) return status;
+    if (is_asked_for(in) && status) return status;
     const uint64_t samples = (uint64_t)in->data->blocks->point_count;
     const int is_large = samples > host_memory_available() / (MESH_MOST + ENGINE_KEEPS);
-    *may = !status && !why_not && !o->count && (is_asked_for(o) || is_large);
+    *may = !status && !why_not && (!o->count || in->team) && (is_asked_for(in) || is_large);
     return 0;
 }
 
@@ -292,6 +368,7 @@ int stream_surfaces(const stream_input *in, engine *e, surface_report *surfaces,
     if (j.fits) status = 0;
     if (!status && *made) carried_fields_tell(in->carried);
     free(j.how);
+    free(j.shared);
     free(j.surfaces);
     return status;
 }

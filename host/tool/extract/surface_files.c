@@ -143,8 +143,8 @@ int surface_files_write(const options *o, const typed_isovalue *iso, int block, 
 }
 
 int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const part_header *part, const carried_fields *fields, output_group *group,
-                              piece_file **file) {
+                              const part_header *part, const output_shared *shared, const carried_fields *fields,
+                              output_group *group, piece_file **file) {
     piece_file *p = calloc(1, sizeof *p);
     *file = NULL;
     if (!p) return fail(STATUS_FAILED, "out of memory for the file of a surface");
@@ -152,7 +152,8 @@ int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const
                                   .fields = fields->fields,
                                   .field_count = fields->count,
                                   .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
-                                  .group = group};
+                                  .group = shared ? NULL : group,
+                                  .shared = shared};
     p->path = file_name(o, iso, ALL_BLOCKS);
     int status = p->path ? 0 : STATUS_FAILED;
     if (!status && part)

@@ -39,11 +39,11 @@ typedef struct piece_file {
     char *path;
 } piece_file;
 
-/* whole: as for mesh_file_open. part: NULL, or what the file of --part begins with. *file is to be closed. Returns 0 or
- * a status. */
+/* whole: as for mesh_file_open. part: NULL, or what the file of --part begins with. shared: NULL, or the file that a
+ * team writes, which does not wait in the group. *file is to be closed. Returns 0 or a status. */
 int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const part_header *part, const carried_fields *fields, output_group *group,
-                              piece_file **file);
+                              const part_header *part, const output_shared *shared, const carried_fields *fields,
+                              output_group *group, piece_file **file);
 
 /* The next piece, whose first vertex and triangle have these numbers in the file; fields of its vertices. */
 int surface_files_add_piece(piece_file *file, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,

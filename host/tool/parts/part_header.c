@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LAYER_PLANES = 4, LINE_MOST = 1 << 20, ARRAYS_MOST = 4096, COMPONENTS_MOST = 4096 };
+enum { LINE_MOST = 1 << 20, ARRAYS_MOST = 4096, COMPONENTS_MOST = 4096 };
 
 static const char mark[] = "{\"tetracubes_part\": ";
 

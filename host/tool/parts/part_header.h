@@ -18,7 +18,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { PART_VERSION = 1, PART_ALIGNMENT = 64, PART_DIGEST_BYTES = 64 };
+/* LAYER_PLANES: of a layer of bricks, which planes are owned by. */
+enum { LAYER_PLANES = 4, PART_VERSION = 1, PART_ALIGNMENT = 64, PART_DIGEST_BYTES = 64 };
 
 typedef struct part_header {
     json_t *surface;

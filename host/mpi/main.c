@@ -1,0 +1,101 @@
+/*
+ * main.c - tetracubes-mpi: the tool's extract, by the ranks of an MPI job together
+ *
+ * Ranks own consecutive layers of the grid. Each reads its planes and a halo, counts, learns what lies before it from
+ * an exclusive sum over the ranks, emits, and writes its pieces at their places in the one file. README.md says why
+ * that is the file of one process, byte for byte.
+ *
+ * Rank 0 alone prints. A driver that is tried in a process of its own (TRIAL_COMMAND) is no part of the job.
+ */
+#include "command_run.h"
+#include "commands.h"
+#include "drivers/driver_trial.h"
+#include "exit_status.h"
+#include "failure.h"
+#include "library_status.h"
+#include "ranks.h"
+#include "shared_device.h"
+#include "terminal/notice.h"
+#include "terminal/standard_streams.h"
+#include "truncation.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static ranks job;
+static char device[DEVICE_BYTES];
+static int shared_devices; /* fewer than ranks, on some machine; 0: none */
+
+/* What is right for the tool alone. */
+static int check_options(const options *o) {
+    if (o->piece[1]) return fail(STATUS_USAGE, "--part is for processes that know nothing of each other: leave it out");
+    return 0;
+}
+
+static int take_options(options *o, int status) {
+    int count = 0;
+    if (!status) status = check_options(o);
+    if (!status && o->device) {
+        status = shared_device_choose(o->device, job.node_rank, job.team.node_size, device, &count);
+        o->device = device;
+    }
+    status = job.team.agree(&job.team, status);
+    if (!status) shared_devices = ranks_largest(&job, count);
+    if (job.team.rank) {
+        o->quiet = 1;
+        o->json = 0;
+        if (o->help && !freopen("/dev/null", "w", stdout)) o->help = 0;
+    }
+    return status;
+}
+
+static int extract_by_ranks(const options *o) {
+    if (shared_devices)
+        notice("%d ranks share the %d devices that --device names, some of which serve several: start as many ranks "
+               "as there are devices",
+               job.team.node_size, shared_devices);
+    return extract_run_together(o, &job.team);
+}
+
+static int run(int argc, char **argv) {
+    static const char usage[] = "mpirun -np RANKS tetracubes-mpi extract INPUT... --iso V[,V...] [-o FILE] [options]";
+    command c = *command_find("extract");
+    c.run = extract_by_ranks;
+    c.usage = usage;
+    c.text = "Extracts a surface as 'tetracubes extract' does, by the ranks of an MPI job together: each reads and\n"
+             "contours planes of its own, and all write one file, to the byte that of one process. Uniform and\n"
+             "rectilinear grids; PLY, VTP and STL. Options are those of the tool, but for what needs the whole\n"
+             "mesh at once (--check, --verify, --soup, --drop-degenerate) and --part. In --device, %r stands for\n"
+             "the number of the rank on its machine, from 0.\n"
+             "\n"
+             "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply\n"
+             "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply --device gpu:%r";
+    const int wants_command = argc >= 2 && strcmp(argv[1], c.name) == 0;
+    const int wants_help = argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0);
+    if (wants_command) return command_run(&c, argc - 2, argv + 2, take_options);
+    if (wants_help && job.team.rank == 0) command_help(&c, stdout);
+    if (argc >= 2 && strcmp(argv[1], "--version") == 0) {
+        if (job.team.rank == 0) version_print("tetracubes-mpi", stdout);
+        return 0;
+    }
+    return wants_help ? 0 : fail(STATUS_USAGE, "tetracubes-mpi has one command: %s", usage);
+}
+
+int main(int argc, char **argv) {
+    int provided;
+    truncation_watch();
+    if (argc == 3 && strcmp(argv[1], TRIAL_COMMAND) == 0) return trial_child(argv[2]);
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided); /* threads write in turn */
+    ranks_begin(&job);
+    int status = job.team.agree(&job.team, provided >= MPI_THREAD_SERIALIZED
+                                               ? 0
+                                               : fail(STATUS_FAILED, "this MPI takes no calls from several threads"));
+    if (!status) status = run(argc, argv);
+    if (fflush(stdout) && !status) status = fail(STATUS_FAILED, "standard output does not take the report");
+    streams_restore();
+    if (status && job.team.rank == 0) message("%s", failure_text());
+    MPI_Finalize();
+    if (driver_is_distrusted()) _exit(status);
+    return status;
+}
