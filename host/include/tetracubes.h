@@ -159,8 +159,8 @@ struct tc_expert_options; /* at the end of this header */
 typedef struct tc_context_options {
     size_t struct_size; /* set by tc_context_options_init */
     tc_engine engine;
-    const char *device; /* an index, "platform:device", "cpu", "gpu" or part of a name; NULL: the environment's
-                           TETRACUBES_DEVICE, else the first CPU or other device found */
+    const char *device; /* an index, "platform:device", "cpu", "gpu", "gpu:1" (the second one) or part of a name; NULL:
+                           the environment's TETRACUBES_DEVICE, else the first CPU or other device found */
     struct _cl_context *cl_context;     /* the caller's own, retained while the context lives; NULL: made here */
     struct _cl_command_queue *cl_queue; /* of cl_context, in order (TC_ERROR_ARGUMENT otherwise); needed where
                                            cl_context is given, not looked at elsewhere */

@@ -52,8 +52,8 @@ static int take_options(options *o, int status) {
 
 static int extract_by_ranks(const options *o) {
     if (shared_devices)
-        notice("%d ranks share the %d devices that --device names, some of which serve several: start as many ranks "
-               "as there are devices",
+        notice("more ranks than devices: %d ranks of a machine share %d of those that --device names; start as many "
+               "ranks as there are",
                job.team.node_size, shared_devices);
     return extract_run_together(o, &job.team);
 }

@@ -193,14 +193,33 @@ static bool indices_match(const char *specification, int index, const device_cho
     return *is_index && first == d->platform_index && device == d->device_index;
 }
 
+/* The length of the type that "gpu" or "gpu:1" begins with, 0 where there is none; *number: 1, or 0 of "gpu". */
+static size_t type_length(const char *specification, long *number) {
+    static const char *const types[] = {"cpu", "gpu", "accelerator"};
+    *number = 0;
+    for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+        const size_t length = strlen(types[n]);
+        if (strncasecmp(specification, types[n], length) != 0) continue;
+        if (!specification[length]) return length;
+        char *end = NULL;
+        if (specification[length] == ':') *number = strtol(specification + length + 1, &end, 10);
+        if (end > specification + length + 1 && !*end && *number >= 0) return length;
+    }
+    *number = 0;
+    return 0;
+}
+
 static bool device_matches(const char *specification, int index, const device_choice *d) {
     bool is_index;
+    long number;
     tc_device_info info;
     bool same = indices_match(specification, index, d, &is_index);
+    const size_t type = type_length(specification, &number);
     if (is_index) return same;
-    if (!strcasecmp(specification, "cpu") || !strcasecmp(specification, "gpu") ||
-        !strcasecmp(specification, "accelerator"))
-        return !strcasecmp(specification, type_name(&(questions){d->device, CL_SUCCESS}));
+    if (type) {
+        const char *own = type_name(&(questions){d->device, CL_SUCCESS});
+        return strlen(own) == type && !strncasecmp(specification, own, type);
+    }
     if (device_describe(d->device, &info)) return false;
     return text_contains(info.name, specification) || text_contains(info.platform, specification);
 }
@@ -214,11 +233,13 @@ tc_status device_choose(const char *specification, device_choice *choice) {
     const char *origin = specification ? "" : " (from TETRACUBES_DEVICE)";
     if (!specification) specification = getenv("TETRACUBES_DEVICE");
     const char *wanted = specification && *specification ? specification : "cpu";
+    long number; /* of those that match; beyond 0 where it is one of a type */
+    (void)type_length(wanted, &number);
     for (cl_uint p = 0; p < platforms.count; p++) {
         int n = list.count;
         devices_append(&list, &platforms, p);
         for (; n < list.count; n++)
-            if (device_matches(wanted, n, &list.devices[n])) {
+            if (device_matches(wanted, n, &list.devices[n]) && number-- == 0) {
                 *choice = list.devices[n];
                 return TC_OK;
             }
@@ -227,7 +248,7 @@ tc_status device_choose(const char *specification, device_choice *choice) {
     if (specification && *specification)
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "no device \"%s\"%s among the %d of this machine: give an index, "
-                               "platform:device, cpu, gpu or part of a name",
+                               "platform:device, cpu, gpu, gpu:1 (the second) or part of a name",
                                specification, origin, list.count);
     *choice = list.devices[0];
     return TC_OK;

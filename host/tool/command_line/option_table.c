@@ -93,7 +93,7 @@ const option option_table[] = {
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
     {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
-     "an index, platform:device, cpu, gpu or part of a name, see\n"
+     "an index, platform:device, cpu, gpu, gpu:1 or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
     {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_BOUND, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024), and\n"
