@@ -7,6 +7,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,21 +25,57 @@ typedef struct told_status {
 
 static ranks *ranks_of(team *t) { return (ranks *)(void *)t; }
 
-/* ---------------------------------------------------------------------------------------------------------- waiting */
+/* ----------------------------------------------------------------------------------------------------------- ending */
+
+static pthread_mutex_t files_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static void remove_unfinished(ranks *r) {
+    pthread_mutex_lock(&files_lock);
+    for (int n = 0; n < r->file_count; n++) unlink(r->files[n]->temporary);
+    r->file_count = 0;
+    pthread_mutex_unlock(&files_lock);
+}
 
 /* Of a run that is ended from outside, or by another rank, one rank tells it. */
+static void tell_cancelled(const ranks *r) {
+    if (r->team.rank == 0) message("ended by a signal, or with another rank; no file was left unfinished");
+}
+
 static __attribute__((noreturn)) void leave(team *t, int status) {
     ranks *r = ranks_of(t);
-    for (int n = 0; n < r->file_count; n++)
-        if (r->files[n]) unlink(r->files[n]->temporary);
+    remove_unfinished(r);
     if (!progress_cancelled())
         message("rank %d: %s", t->rank, failure_text());
-    else if (t->rank == 0)
-        message("ended by a signal, or with another rank; no file was left unfinished");
+    else
+        tell_cancelled(r);
     fflush(NULL);
     MPI_Abort(r->all, status ? status : STATUS_FAILED);
     _exit(status ? status : STATUS_FAILED);
 }
+
+/* A rank within a call that does not return, as others have ended, is ended by a thread of its own: mpirun sends
+ * SIGTERM to all, and kills them a second later. */
+static void *watch(void *user) {
+    const struct timespec often = {0, 50000000}, patience = {0, 300000000};
+    ranks *r = user;
+    while (!progress_cancelled()) nanosleep(&often, NULL);
+    nanosleep(&patience, NULL);
+    remove_unfinished(r);
+    tell_cancelled(r);
+    _exit(STATUS_FAILED);
+}
+
+/* The thread takes no signals. */
+static void watch_begin(ranks *r) {
+    pthread_t watching;
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    if (pthread_create(&watching, NULL, watch, r) == 0) pthread_detach(watching);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- waiting */
 
 /* Waits without using the processor, which other ranks may need, and ends with a signal. */
 static void wait_for(ranks *r, MPI_Request *request) {
@@ -182,7 +220,9 @@ static int open_file(team *t, const char *temporary, output_shared *shared) {
         return status;
     }
     f->ranks = r;
+    pthread_mutex_lock(&files_lock);
     r->files[r->file_count++] = f;
+    pthread_mutex_unlock(&files_lock);
     shared->write_at = write_at;
     shared->expect = expect;
     shared->user = f;
@@ -191,11 +231,12 @@ static int open_file(team *t, const char *temporary, output_shared *shared) {
 
 static int close_file(team *t, output_shared *shared) {
     rank_file *f = shared->user;
+    int status = agree(t, 0); /* a rank that is not there any more is waited for here, not within the call */
     errno = 0;
     const int code = MPI_File_close(&f->file);
-    const int status = code == MPI_SUCCESS ? 0
-                                           : fail(STATUS_FAILED, "%s: cannot be written: %s", f->temporary,
-                                                  strerror(errno_of(code, errno)));
+    status = code == MPI_SUCCESS
+                 ? 0
+                 : fail(STATUS_FAILED, "%s: cannot be written: %s", f->temporary, strerror(errno_of(code, errno)));
     return agree(t, status);
 }
 
@@ -218,4 +259,5 @@ void ranks_begin(ranks *r) {
     MPI_Comm_rank(node, &r->node_rank);
     MPI_Comm_size(node, &r->team.node_size);
     MPI_Comm_free(&node);
+    watch_begin(r);
 }

@@ -1,9 +1,9 @@
 /*
  * ranks.h - the processes of an MPI job as a team (extract/team.h)
  *
- * Waiting looks for signals, as a rank that is killed lets mpirun end the others; all waits but those within MPI-IO's
- * own calls are such. What a rank sends is counted. Files are written by MPI-IO: opened and closed by all ranks
- * together, written in large blocks by each at its places.
+ * Waiting looks for signals, as mpirun ends all ranks by one where a rank was killed; a thread ends a rank that hangs
+ * in a call by then. Unfinished files are removed by whoever ends. What a rank sends is counted. Files are written by
+ * MPI-IO: opened and closed by all ranks together, written in large blocks by each at its places.
  */
 #ifndef RANKS_H
 #define RANKS_H

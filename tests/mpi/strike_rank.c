@@ -3,20 +3,28 @@
  * interface
  *
  *     RANK_STRIKE="RANK CALL N kill"        before its call N of CALL, from 1, the rank is killed
- *     RANK_STRIKE="RANK CALL N interrupt"   then mpirun, its parent, gets an interrupt, as from a terminal
- *     RANK_STRIKE="RANK CALL N full"        from then on there is no room (MPI_File_write_at)
+ *     RANK_STRIKE="RANK CALL N interrupt"   then mpirun, its parent, gets an interrupt, as from a terminal, and the
+ * rank hangs for half a minute RANK_STRIKE="RANK CALL N full"        from then on there is no room (MPI_File_write_at)
  *
  * CALL: MPI_Iallreduce, MPI_Iexscan, MPI_File_open, MPI_File_write_at, MPI_File_close, rename
  */
 #include <dlfcn.h>
+#include <errno.h>
 #include <mpi.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define EXPORT __attribute__((visibility("default")))
+
+static void interrupt(void) {
+    struct timespec left = {30, 0};
+    kill(getppid(), SIGINT);
+    while (nanosleep(&left, &left) && errno == EINTR) continue;
+}
 
 /* Nonzero: no room is left. */
 static int strike(const char *call) {
@@ -29,7 +37,7 @@ static int strike(const char *call) {
     if (is_there) PMPI_Comm_rank(MPI_COMM_WORLD, &rank);
     if (!is_there || rank != wanted) return 0;
     if (++count == at && strcmp(what, "kill") == 0) raise(SIGKILL);
-    if (count == at && strcmp(what, "interrupt") == 0) kill(getppid(), SIGINT);
+    if (count == at && strcmp(what, "interrupt") == 0) interrupt();
     if (count == at && strcmp(what, "full") == 0) is_full = 1;
     return is_full;
 }

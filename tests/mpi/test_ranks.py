@@ -89,7 +89,7 @@ class SameBytes(RankCase):
     def test_isovalues_and_surfaces_apart(self):
         """A surface that only the last ranks have, one that nobody has, and one of all; far from zero."""
         volume = self.generate("sphere", "s.nrrd", "15,14,29")
-        more = ["--roi", ":,:,4:"] if False else ["--origin", "7e6,-3e6,1e7"]
+        more = ["--origin", "7e6,-3e6,1e7"]
         isovalues = ["250", "100", "900"]
         for ending in ("ply", "stl"):
             self.extract_by(4, volume, "--iso", ",".join(isovalues), *more, *self.engine, "-o",
@@ -185,8 +185,7 @@ class Endings(RankCase):
 
     def test_interrupted(self):
         for strike in self.strikes("interrupt"):
-            if "close" not in strike:
-                self.fails(strike, ".")
+            self.fails(strike, "ended by a signal|killed|Killed|exited|aborted")
 
     def test_full_disk(self):
         for strike in ["1 MPI_File_write_at 1 full"] + (["0 MPI_File_write_at 2 full", "2 MPI_File_write_at 3 full"]
