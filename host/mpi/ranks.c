@@ -56,7 +56,7 @@ static __attribute__((noreturn)) void leave(team *t, int status) {
 /* A rank within a call that does not return, as others have ended, is ended by a thread of its own: mpirun sends
  * SIGTERM to all, and kills them a second later. */
 static void *watch(void *user) {
-    const struct timespec often = {0, 50000000}, patience = {0, 300000000};
+    const struct timespec often = {0, 10000000}, patience = {0, 50000000};
     ranks *r = user;
     while (!progress_cancelled()) nanosleep(&often, NULL);
     nanosleep(&patience, NULL);

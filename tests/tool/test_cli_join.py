@@ -93,6 +93,18 @@ class Joined(JoinCase):
         parts = self.parts(2, volume, "--field", "f", "--iso", "9", "--carry", "v", *self.engine())
         self.refuses(2, "join", *parts, "-o", self.path("x.stl"), says="holds no fields")
 
+    def test_curvilinear(self):
+        self.needs_xml()
+        dims = (7, 6, 15)
+        points = lattice(dims)
+        for number, bend in enumerate((0.02, 0.03)):
+            places = [(x + bend * y * z, y - bend * x * x, z + bend * x * y) for x, y, z in points]
+            values = [(x - 3) ** 2 + (y - 3) ** 2 + (z - 7) ** 2 + 0.3 for x, y, z in points]
+            volume = self.write(f"c{number}.vts", vts_text(dims, places, [("f", "f32", values)]))
+            self.compare((3,), volume, "--iso", "9", *self.engine(), formats=("vtp",))
+            parts = self.parts(2, volume, "--iso", "9", *self.engine(), name=f"c{number}-")
+        self.refuses(4, "join", self.path("c0-0.tcpart"), parts[1], "-o", self.path("x.ply"), says="another volume")
+
     def test_isovalues(self):
         volume = self.generate("sphere", "s.nrrd", "15,14,18")
         isovalues = ("100", "0x1.8p7")
@@ -132,7 +144,7 @@ class OnDevice(Joined):
         self.assertEqual(self.joined("ply", [reference[0], device[1]]), self.one("ply", volume, "--iso", "127.5"))
 
     test_normals_and_missing_data = test_more_parts_than_layers = test_far_from_zero = None
-    test_carried_fields = test_isovalues = test_report = None
+    test_carried_fields = test_curvilinear = test_isovalues = test_report = None
 
 
 class Refused(JoinCase):
@@ -232,10 +244,9 @@ class Refused(JoinCase):
 
     def test_other_grids(self):
         self.needs_xml()
-        points = lattice((5, 6, 7))
-        grid = self.write("c.vts", vts_text((5, 6, 7), points, [("f", "f32", [float(x) for x, y, z in points])]))
-        self.refuses(2, "extract", grid, "--iso", "2.5", "--part", "0/2", "-o", self.path("x.part"),
-                     says="not uniform or rectilinear")
+        cells = self.write_hexahedra("c.vtu")
+        self.refuses(2, "extract", cells, "--field", "bump", "--iso", "2.5", "--part", "0/2", "-o", self.path("x.part"),
+                     says="made in parts .* unstructured")
 
     def test_full_disk(self):
         """No file appears, and none is left under another name."""

@@ -101,12 +101,12 @@ const option option_table[] = {
      "never another result"},
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
-     "it is done where it would not (uniform and rectilinear grids; to PLY, VTP\n"
-     "and STL; not with --check, --verify, --soup, --drop-degenerate)"},
+     "it is done where it would not (one structured grid; to PLY, VTP and STL;\n"
+     "not with --check, --verify, --soup, --drop-degenerate)"},
     {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(piece), NULL,
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
-     "join' makes the mesh of all N, which other processes may have made; uniform\n"
-     "and rectilinear grids, as --stream"},
+     "join' makes the mesh of all N, which other processes may have made; of what\n"
+     "can be streamed"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

@@ -33,7 +33,9 @@ static uint64_t hash_grid(const tc_grid_options *g) {
         if (g->axes[axis]) hash = XXH64(g->axes[axis], count * sizeof *g->axes[axis], hash);
         if (g->axes_f64[axis]) hash = XXH64(g->axes_f64[axis], count * sizeof *g->axes_f64[axis], hash);
     }
-    return hash;
+    const uint64_t points = (uint64_t)(g->dims[0] * g->dims[1] * g->dims[2]);
+    hash = hash_places(g->points, points * 3 * sizeof *g->points, hash);
+    return hash_places(g->points_f64, points * 3 * sizeof *g->points_f64, hash);
 }
 
 static json_t *hash_json(uint64_t hash) {
