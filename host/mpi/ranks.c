@@ -36,9 +36,9 @@ static void remove_unfinished(ranks *r) {
     pthread_mutex_unlock(&files_lock);
 }
 
-/* Of a run that is ended from outside, or by another rank, one rank tells it. */
+/* Of a run that is ended from outside, or by another rank, two ranks tell it, as one of them may hang. */
 static void tell_cancelled(const ranks *r) {
-    if (r->team.rank == 0) message("ended by a signal, or with another rank; no file was left unfinished");
+    if (r->team.rank <= 1) message("ended by a signal, or with another rank; no file was left unfinished");
 }
 
 static __attribute__((noreturn)) void leave(team *t, int status) {

@@ -20,8 +20,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 from expect import expect, finish, run
 
 PAGES = ["README.md", "host/README.md", "host/include/README.md", "host/read/README.md", "host/tool/README.md",
-         "host/tool/DRIVERS.md", "host/python/README.md", "kernels/README.md", "tests/README.md", "bench/README.md",
-         ".github/CONTRIBUTING.md", ".github/CHANGELOG.md"]
+         "host/tool/DRIVERS.md", "host/python/README.md", "host/mpi/README.md", "kernels/README.md", "tests/README.md",
+         "bench/README.md", ".github/CONTRIBUTING.md", ".github/CHANGELOG.md"]
 README_BYTES = 10240
 
 
