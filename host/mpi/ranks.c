@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +39,9 @@ static void remove_unfinished(ranks *r) {
 
 /* Of a run that is ended from outside, or by another rank, two ranks tell it, as one of them may hang. */
 static void tell_cancelled(const ranks *r) {
-    if (r->team.rank <= 1) message("ended by a signal, or with another rank; no file was left unfinished");
+    static atomic_flag is_told = ATOMIC_FLAG_INIT;
+    if (r->team.rank <= 1 && !atomic_flag_test_and_set(&is_told))
+        message("ended by a signal, or with another rank; no file was left unfinished");
 }
 
 static __attribute__((noreturn)) void leave(team *t, int status) {

@@ -6,6 +6,7 @@
  */
 #include "commands.h"
 #include "exit_status.h"
+#include "extract/surface_files.h"
 #include "failure.h"
 #include "input/input.h"
 #include "mesh_write.h"
@@ -85,6 +86,7 @@ static int open_file(join_job *j) {
         const part_array *a = &l->arrays[l->channel_count + n];
         j->fields[n] = (vertex_array){a->name, a->components, NULL, ROLE_DATA};
     }
+    if (mesh_write_is_relative(j->o->output, &whole, &j->how)) surface_files_tell_relative(whole.origin, 0);
     j->takes_halves = mesh_file_takes_halves(j->o->output, &j->how);
     return mesh_file_open(j->o->output, &j->how, &whole, &j->file);
 }
@@ -199,10 +201,9 @@ static int add_parts(join_job *j) {
 static int print_report(const join_job *j, double total_ms) {
     progress_clear();
     if (j->o->json)
-        return json_report_print(json_pack("{s:o, s:I, s:o, s:o, s:{s:f}}", "output", string_json(j->o->output),
-                                           "parts", (json_int_t)j->count, "vertices", count_json(j->vertex_count),
-                                           "triangles", count_json(j->triangle_count), "timings_ms", "total",
-                                           total_ms));
+        return json_report_print(json_pack("{s:o, s:I, s:o, s:o, s:f}", "output", string_json(j->o->output), "parts",
+                                           (json_int_t)j->count, "vertices", count_json(j->vertex_count), "triangles",
+                                           count_json(j->triangle_count), "total_ms", total_ms));
     if (!j->o->quiet)
         printf("%s: %" PRIu64 " vertices, %" PRIu64 " triangles of %zu parts, in %.2f ms\n", j->o->output,
                j->vertex_count, j->triangle_count, j->count, total_ms);

@@ -144,6 +144,7 @@ def test_keys(text, tool):
     page = "host/tool/README.md"
     table = section(page, text, "| of `extract` | |", "With `--count`")
     documented = set(re.findall(r"`([a-z_0-9]+)`", table)) - {"extract", "verified"}
+    documented -= {"ranks", "sent_bytes"}  # of tetracubes-mpi: tests/mpi/test_ranks.py
     with tempfile.TemporaryDirectory() as folder:
         run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
         extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]
@@ -151,10 +152,13 @@ def test_keys(text, tool):
             test_keys_of(text, command, keys_of(json.loads(run(tool, command, "a.nrrd", *more, "--json",
                                                                cwd=folder).stdout)))
         known = set()
-        for more in ["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"], ["--stream"]:
+        for more in (["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"], ["--stream"],
+                     ["-o", "a.part", "--part", "0/1"]):
             done = run(*extract, *more, cwd=folder)
             expect(done.returncode == 0, f"{more}: {done.stderr}")
             known |= keys_of(json.loads(done.stdout))
+        joined = run(tool, "join", "a.part", "-o", "b.ply", "--json", cwd=folder)
+        test_keys_of(text, "join", keys_of(json.loads(joined.stdout)))
     expect(known == documented, f"{page}: keys left out: {sorted(known - documented)}, not there: "
                                 f"{sorted(documented - known)}")
 

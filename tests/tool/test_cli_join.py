@@ -64,7 +64,7 @@ class Joined(JoinCase):
     def test_normals_and_missing_data(self):
         volume = self.generate("gyroid", "g.nrrd", "40,21,29")
         self.compare((3,), volume, "--iso", "127.5", "--nodata", "140", "--normals", *self.engine(),
-                     formats=("ply", "vtp"))
+                     "--max-memory", "20K", formats=("ply", "vtp"))  # parts of several pieces
         self.compare((2,), volume, "--iso", "99", "--closed", *self.engine(), formats=("stl",))
 
     def test_more_parts_than_layers(self):
@@ -77,6 +77,8 @@ class Joined(JoinCase):
         volume = self.generate("sphere", "s.nrrd", "15,14,18")
         place = [volume, "--iso", "127.5", "--origin", "7e6,-3e6,1e7", *self.engine()]
         self.compare((3,), *place)
+        told = self.expect(0, "join", *self.parts(2, *place), "-o", self.path("x.stl"))
+        self.assertIn("relative to 7000000,-3000000,10000000", told.stderr)
         at = ["--origin-at", "7000000,-3000000,9999999"]
         self.assertEqual(self.joined("ply", self.parts(2, *place), *at), self.one("ply", *place, *at))
 

@@ -167,7 +167,8 @@ static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *wh
                           .triangle_count = whole->triangle_count,
                           .has_origin = to->report->piece_count > 0};
     memcpy(header.origin, whole->origin, sizeof header.origin);
-    header.surface = part_surface_make(j->in, &j->grid, &j->how[to - j->surfaces], j->samples, j->blanked_samples);
+    header.surface = part_surface_make(j->in->o, j->in->field, j->in->carried, &j->grid, &j->how[to - j->surfaces],
+                                       j->samples, j->blanked_samples);
     int status = header.surface ? 0 : STATUS_FAILED;
     if (!status)
         status = surface_files_open_pieces(j->in->o, to->report->iso, whole, &header, NULL, j->in->carried, &j->files,

@@ -99,8 +99,7 @@ static mesh_write_options write_options(const options *o, const result_mesh *mes
                                 .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
 }
 
-/* STL holds float32 alone: its coordinates count from the mesh's origin. */
-static void tell_relative(const double *origin, int is_own) {
+void surface_files_tell_relative(const double *origin, int is_own) {
     static const char why[] = "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to";
     static const char what[] = "PLY, VTP and OBJ hold full coordinates";
     if (is_own)
@@ -124,7 +123,7 @@ int surface_files_count_coarse(const options *o, const surface_source *source, c
 }
 
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s) {
-    if (s->is_relative) tell_relative(s->origin, o->separate_blocks && block_count > 1);
+    if (s->is_relative) surface_files_tell_relative(s->origin, o->separate_blocks && block_count > 1);
     precision_tell_file(s, options_given(o, "--origin-at"));
 }
 

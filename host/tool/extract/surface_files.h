@@ -22,6 +22,10 @@ int surface_files_check(const options *o, const dataset *d);
 int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
                                surface_report *s);
 
+/* The notice that STL, which holds float32 alone, has coordinates that count from the mesh's origin; is_own: from that
+ * of each block. */
+void surface_files_tell_relative(const double *origin, int is_own);
+
 /* Notices: which point the file's coordinates count from, where it is not the input's own; where its numbers are coarse
  * (precision.h). */
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
