@@ -106,7 +106,7 @@ MUTANTS = [
            ("host/write/mesh_write.h", "test_cli_far", 'ROW(obj, "OBJ", HAS_NORMALS, 1,', 'ROW(obj, "OBJ", HAS_NORMALS, 0,',
             "OBJ is written relative to the origin"),
            ("host/write/vtp.c", "test_cli_far", "if (!s->is_moved)", "if (1)", "VTP is written relative to the origin"),
-           ("host/tool/extract/surface_files.c", "test_cli_far", "if (s->is_relative) tell_relative", "if (0) tell_relative", "nothing is told of an STL that is relative"),
+           ("host/tool/extract/surface_files.c", "test_cli_far", "if (s->is_relative) surface_files_tell_relative", "if (0) surface_files_tell_relative", "nothing is told of an STL that is relative"),
            ("host/tool/extract/surface_totals.c", "test_cli_far",
             "bounds[0][axis] = fmin(bounds[0][axis], own->bounds[0][axis] + origin[axis]);",
             "bounds[0][axis] = fmin(bounds[0][axis], own->bounds[0][axis]); (void)origin;",
