@@ -3,6 +3,7 @@
 
     man.py tool PROGRAM PAGE        tetracubes(1)
     man.py bench PROGRAM PAGE       tetracubes-bench(1)
+    man.py ranks PROGRAM PAGE       tetracubes-mpi(1)
     man.py library HEADER PAGE      libtetracubes(3)
     man.py ... --version TEXT       of the project; default 0
 
@@ -134,6 +135,15 @@ def bench_page(program, version):
             ".BR tetracubes (1)"]
 
 
+def ranks_page(program, version):
+    before, behind = split_at(help_of(program), r"Options:$")
+    listed, rest = options(behind)
+    return [title("tetracubes-mpi", 1, version), ".SH NAME",
+            "tetracubes\\-mpi \\- isosurfaces by the ranks of an MPI job", ".SH SYNOPSIS", usage(before[0]),
+            ".SH DESCRIPTION", *paragraphs(before[1:]), ".SH OPTIONS", *listed, *paragraphs(rest), ".SH SEE ALSO",
+            ".BR tetracubes (1), mpirun (1)"]
+
+
 def comment_lines(comment):
     """A comment's text, without its frame."""
     return [re.sub(r"^ ?\* ?", "", line).rstrip() for line in comment[2:-2].strip().split("\n")]
@@ -185,12 +195,12 @@ def library_page(header, version):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["tool", "bench", "library"])
+    parser.add_argument("kind", choices=["tool", "bench", "ranks", "library"])
     parser.add_argument("source", type=Path)
     parser.add_argument("page", type=Path)
     parser.add_argument("--version", default="0", metavar="TEXT")
     given = parser.parse_args()
-    make = {"tool": tool_page, "bench": bench_page, "library": library_page}[given.kind]
+    make = {"tool": tool_page, "bench": bench_page, "ranks": ranks_page, "library": library_page}[given.kind]
     given.page.write_text("\n".join(make(given.source, given.version)) + "\n", encoding="utf-8")
 
 

@@ -20,6 +20,7 @@
 #include "truncation.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -58,34 +59,48 @@ static int extract_by_ranks(const options *o) {
     return extract_run_together(o, &job.team);
 }
 
-static int run(int argc, char **argv) {
-    static const char usage[] = "mpirun -np RANKS tetracubes-mpi extract INPUT... --iso V[,V...] [-o FILE] [options]";
+static const char usage[] = "mpirun -np RANKS tetracubes-mpi extract INPUT... --iso V[,V...] [-o FILE] [options]";
+
+static command extract_command(void) {
     command c = *command_find("extract");
     c.run = extract_by_ranks;
     c.usage = usage;
     c.text = "Extracts a surface as 'tetracubes extract' does, by the ranks of an MPI job together: each reads and\n"
-             "contours planes of its own, and all write one file, to the byte that of one process. Uniform and\n"
-             "rectilinear grids; PLY, VTP and STL. Options are those of the tool, but for what needs the whole\n"
+             "contours planes of its own, and all write one file, to the byte that of one process. One\n"
+             "structured grid; PLY, VTP and STL. Options are those of the tool, but for what needs the whole\n"
              "mesh at once (--check, --verify, --soup, --drop-degenerate) and --part. In --device, %r stands for\n"
              "the number of the rank on its machine, from 0.\n"
              "\n"
              "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply\n"
              "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply --device gpu:%r";
-    const int wants_command = argc >= 2 && strcmp(argv[1], c.name) == 0;
-    const int wants_help = argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0);
-    if (wants_command) return command_run(&c, argc - 2, argv + 2, take_options);
-    if (wants_help && job.team.rank == 0) command_help(&c, stdout);
-    if (argc >= 2 && strcmp(argv[1], "--version") == 0) {
-        if (job.team.rank == 0) version_print("tetracubes-mpi", stdout);
-        return 0;
-    }
-    return wants_help ? 0 : fail(STATUS_USAGE, "tetracubes-mpi has one command: %s", usage);
+    return c;
+}
+
+static int run(int argc, char **argv) {
+    const command c = extract_command();
+    if (argc >= 2 && strcmp(argv[1], c.name) == 0) return command_run(&c, argc - 2, argv + 2, take_options);
+    return fail(STATUS_USAGE, "tetracubes-mpi has one command: %s", usage);
+}
+
+/* Whether what needs no job was asked for and done: --help and --version, also where MPI cannot be started. Of ranks
+ * that launchers number in the environment, the first prints. */
+static int print_texts(int argc, char **argv) {
+    const char *word = argc == 2 ? argv[1] : "", *numbers[] = {getenv("OMPI_COMM_WORLD_RANK"), getenv("PMI_RANK")};
+    const int wants_help = strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+    const int wants_version = strcmp(word, "--version") == 0;
+    const command c = extract_command();
+    for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++)
+        if (numbers[n] && strcmp(numbers[n], "0") != 0) return wants_help || wants_version;
+    if (wants_help) command_help(&c, stdout);
+    if (wants_version) version_print("tetracubes-mpi", stdout);
+    return wants_help || wants_version;
 }
 
 int main(int argc, char **argv) {
     int provided;
     truncation_watch();
     if (argc == 3 && strcmp(argv[1], TRIAL_COMMAND) == 0) return trial_child(argv[2]);
+    if (print_texts(argc, argv)) return fflush(stdout) ? STATUS_FAILED : 0;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided); /* threads write in turn */
     ranks_begin(&job);
     int status = job.team.agree(&job.team, provided >= MPI_THREAD_SERIALIZED

@@ -200,7 +200,7 @@ class Installation:
         header = (self.prefix / "include" / "tetracubes.h").read_text(encoding="utf-8")
         for word in re.findall(r"^TC_API[^;(]*?\b(\w+)\(|^} (\w+);", header, re.MULTILINE):
             expect("".join(word) in texts["libtetracubes.3"], f"libtetracubes.3 does not have {word}")
-        helps = {"tetracubes-bench": [run(self.prefix / "bin" / "tetracubes-bench", "--help")]} if programs else {}
+        helps = {name: [run(self.prefix / "bin" / name, "--help")] for name in programs if name != "tetracubes"}
         if programs:
             overview = run(self.prefix / "bin" / "tetracubes", "--help")
             commands = re.findall(r"^  tetracubes ([a-z]+) ", overview.split("\n\n")[1], re.MULTILINE)
@@ -304,7 +304,7 @@ def test(arguments, folder):
     other = Installation(arguments, build_other_kind(arguments, folder), folder, "other")
     expect(here.is_shared != other.is_shared, "the two builds are of one kind")
     here.test_tool()
-    programs = [name for name in ("tetracubes", "tetracubes-bench") if (here.prefix / "bin" / name).exists()]
+    programs = [name for name in ("tetracubes", "tetracubes-bench", "tetracubes-mpi") if (here.prefix / "bin" / name).exists()]
     here.test_manuals(programs)
     other.test_manuals([])
     if "tetracubes" in programs:

@@ -248,7 +248,7 @@ class Refused(JoinCase):
         self.needs_xml()
         cells = self.write_hexahedra("c.vtu")
         self.refuses(2, "extract", cells, "--field", "bump", "--iso", "2.5", "--part", "0/2", "-o", self.path("x.part"),
-                     says="made in parts .* unstructured")
+                     "--engine", "reference", says="made in parts .* unstructured")
 
     def test_full_disk(self):
         """No file appears, and none is left under another name."""
