@@ -87,10 +87,11 @@ class SameBytes(RankCase):
         self.compare((3,), volume, "--field", "f", "--iso", "9", "--carry", "v", *self.engine, formats=("ply",))
 
     def test_isovalues_and_surfaces_apart(self):
-        """A surface that only the last ranks have, one that nobody has, and one of all; far from zero."""
-        volume = self.generate("sphere", "s.nrrd", "15,14,29")
-        more = ["--origin", "7e6,-3e6,1e7"]
-        isovalues = ["250", "100", "900"]
+        """Surfaces that one rank alone has, the first or the last, and one that nobody has; far from zero."""
+        dims = (9, 8, 29)
+        volume, *more = self.raw("z.raw", "u8", dims, [4 * z for x, y, z in lattice(dims)])
+        more += ["--origin", "7e6,-3e6,1e7"]
+        isovalues = ["110", "2", "250"]
         for ending in ("ply", "stl"):
             self.extract_by(4, volume, "--iso", ",".join(isovalues), *more, *self.engine, "-o",
                             self.path("all-%." + ending), "--quiet")
