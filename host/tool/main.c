@@ -173,7 +173,7 @@ static int run_command(const command *c, int argc, char **argv) {
     if (!status && o.help) {
         print_command_help(c, stdout);
     } else if (!status) {
-        streams_choose(o.output);
+        streams_choose(o.output, o.preview);
         progress_begin(o.quiet);
         json_report_begin();
         notice_begin(o.quiet, o.json);
