@@ -156,6 +156,23 @@ class Preview(PictureCase):
         self.assertEqual([name for name in self.files() if name.startswith("o")],
                          ["o_b0.ply", "o_b0.png", "o_b1.ply", "o_b1.png"])
 
+    def test_blocks_with_own_origins(self):
+        """Two, as one cell of each is thin (host/common/far.h); one 16 sizes away from the other."""
+        dims, blocks = (9, 8, 9), []
+        for first in (0, 144):
+            points = [(first + min(x, 7 + x / 128), y, z) for x, y, z in lattice(dims)]
+            blocks.append((dims, points, [bump(point) for point in lattice(dims)]))
+        inputs = self.write_plot3d("f", blocks)
+        words = ["extract", *inputs, "--field", "density", "--iso", "3.1", *REFERENCE, "--preview", self.path("f.png"),
+                 "--view", "front", "--preview-size", "300,40", "--json"]
+        [surface] = json.loads(self.expect(0, *words).stdout)["surfaces"]
+        self.assertIsNone(surface["origin"])
+        columns = sorted({x for x, _ in seen(self.picture(self.path("f.png"))[2])})
+        gap = max(b - a for a, b in zip(columns, columns[1:]))
+        low, high = surface["bounds"]
+        self.assertAlmostEqual((columns[-1] - columns[0]) / (gap + (columns[-1] - columns[0] - gap) / 2),
+                               (high[0] - low[0]) / 144, delta=0.02)
+
     def test_stream(self):
         volume = self.generate("sphere", "s.nrrd")
         words = [tool_case.TOOL, "extract", volume, "--iso", "100", *REFERENCE, "--preview", "-", "--preview-size", "40,30"]

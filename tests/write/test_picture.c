@@ -340,6 +340,8 @@ static void test_sphere(void) {
         for (int x = 0; x < 200; x++)
             if (hypot(x + 0.5 - 100, y + 0.5 - 75) < radius - 2)
                 EXPECT(!is_outer(pixel(&p, x, y)), "an outer side at %d %d", x, y);
+    EXPECT(pixel(&p, bright_x, bright_y)[0] > 230 && pixel(&p, 140, 120)[0] < pixel(&p, bright_x, bright_y)[0] - 30,
+           "the light is not where it is on an outer side");
     picture_release(&p);
 }
 
