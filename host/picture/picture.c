@@ -40,6 +40,8 @@ int picture_write(const picture *p, const char *path, output_group *group) {
     if (status) return status;
 #if HAVE_PNG
     status = picture_png(p, path, &o);
+#else
+    (void)p; /* picture_check has refused it */
 #endif
     if (!status) return group ? output_wait(&o, group) : output_close(&o);
     output_discard(&o);
