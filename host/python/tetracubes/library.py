@@ -211,11 +211,20 @@ FUNCTIONS = {
     "tc_context_tuning_save": (_STATUS, c_void_p),
 }
 
-# The tool's writers and its hash: mesh_files.c beside this package.
+class view_angles(Structure):
+    """Where a picture is looked at from, in degrees (view.h)."""
+
+    _fields_ = [("azimuth", c_double), ("elevation", c_double)]
+
+
+# The tool's writers, its hash and its pictures: mesh_files.c beside this package.
 FILE_FUNCTIONS = {
     "mesh_files_hash": (c_uint64, POINTER(tc_mesh_data)),
     "mesh_files_save": (_STATUS, c_char_p, c_char_p, POINTER(tc_mesh_data), c_int, POINTER(c_char_p), POINTER(c_int),
                         POINTER(c_void_p), POINTER(c_int)),
+    "mesh_files_view": (c_char_p, c_int, POINTER(view_angles)),
+    "mesh_files_draw": (_STATUS, POINTER(tc_mesh_data), view_angles, c_int, c_int, c_void_p),
+    "mesh_files_save_picture": (_STATUS, c_char_p, c_int, c_int, c_void_p),
     "mesh_files_message": (c_char_p,),
 }
 
