@@ -7,10 +7,10 @@
 #include "info/no_surface.h"
 #include "info/open_choices.h"
 #include "info/slice_preview.h"
-#include "output.h"
 #include "input/input.h"
 #include "input/part_report.h"
 #include "input/statistics.h"
+#include "output.h"
 #include "progress.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
@@ -155,11 +155,7 @@ static void print_field(const facts *f) {
     print_suggestions(f);
 }
 
-static void print_preview(const options *o) {
-    if (o->preview) printf("preview       %s\n", output_is_dash(o->preview) ? "standard output" : o->preview);
-}
-
-static void print_text(const facts *f) {
+static void print_text(const options *o, const facts *f) {
     printf("%s\n", f->path);
     printf("format        %s\n", f->d->format);
     if (f->d->frames)
@@ -167,6 +163,7 @@ static void print_text(const facts *f) {
     else
         describe_blocks_text(f->d);
     print_field(f);
+    if (o->preview) printf("preview       %s\n", output_is_dash(o->preview) ? "standard output" : o->preview);
 }
 
 /* A notice for each field that was rounded in some block; input_select gives that of the chosen one. */
@@ -229,10 +226,8 @@ int info_run(const options *o) {
     if (status) goto cleanup;
     if (o->json)
         status = print_json(&f);
-    else if (!o->quiet) {
-        print_text(&f);
-        print_preview(o);
-    }
+    else if (!o->quiet)
+        print_text(o, &f);
 cleanup:
     open_choices_release(&f.open);
     dataset_release(&d);

@@ -122,6 +122,9 @@ static int draw(const options *o, const sliced_volume *v) {
 
 int slice_preview_write(const options *o, const dataset *d, const scalar *field, const statistics *s) {
     const int block = largest_block(d);
+    if (block < 0 || !d->blocks[block].point_count)
+        return fail(STATUS_INPUT, "%s: there is no structured block with points that --preview could show",
+                    o->operands[0]);
     const dataset_block *b = &d->blocks[block];
     const scalar_block *samples = &field->blocks[block];
     double *places = malloc((size_t)(b->dims[0] + b->dims[1] + b->dims[2]) * sizeof *places);
