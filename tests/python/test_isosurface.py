@@ -111,6 +111,8 @@ def test_carried_values_are_written(surface, tmp_path):
 def test_save_fails(surface, tmp_path):
     with pytest.raises(ValueError, match="ply"):
         surface().save(tmp_path / "a.gltf")
+    with pytest.raises(ValueError, match="name the format by format=$"):
+        surface().save(tmp_path / "a")
     with pytest.raises(OSError, match="nowhere"):
         surface().save(tmp_path / "nowhere" / "a.ply")
     surface().save(tmp_path / "a.dat", format="ply")

@@ -18,7 +18,7 @@ _SIDES = 16, 8192  # pixels, of picture.h
 def _check(status):
     """Raises what a status of the writers means."""
     if status:
-        text = files.mesh_files_message().decode(errors="replace")
+        text = files.mesh_files_message().decode(errors="replace").replace("--format", "format=")
         error = ValueError if status == _USAGE else MemoryError if text.startswith(_NO_MEMORY_FOR) else OSError
         raise error(text)
 
