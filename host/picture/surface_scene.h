@@ -76,12 +76,13 @@ static inline int scene_corners(const scene *s, const scene_part *part, uint64_t
     return 1;
 }
 
-/* Twice the area of the triangle a, b, c among the samples; positive where it runs clockwise there, y being down. */
+/* Twice the area of the triangle of a, b and a place among the samples; positive where it runs clockwise, as y is down.
+ */
 static inline int64_t corner_area(const corner *a, const corner *b, int64_t x, int64_t y) {
     return (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x);
 }
 
-/* The part that a vertex or a triangle belongs to. */
+/* The part that the triangle belongs to. */
 static inline const scene_part *scene_part_of_triangle(const scene *s, uint64_t triangle) {
     int low = 0, high = s->part_count - 1;
     while (low < high) {
