@@ -438,8 +438,9 @@ typedef int (*tc_take_piece)(void *user, const tc_mesh_piece *piece);
 
 typedef struct tc_stream_options {
     size_t struct_size;          /* set by tc_stream_options_init */
-    const tc_grid_options *grid; /* the whole, uniform or rectilinear, without samples. Arrays of blanked samples or
-                                    cells are not looked at: not NULL says that planes have them */
+    const tc_grid_options *grid; /* the whole. Its samples are not looked at, nor arrays of blanked samples or cells:
+                                    not NULL says that planes have them. But of a curvilinear grid all of these, and
+                                    points, have to be in memory, or mapped: which way round it is follows from them */
     const tc_extract_options *surfaces; /* one for each surface */
     size_t surface_count;
     uint64_t max_memory_bytes; /* host memory for a window of samples and a piece of a mesh; 0: 256 MiB. At least that

@@ -134,6 +134,29 @@ class tc_mesh_data(_Sized):
                 ("origin", c_double * 3)]
 
 
+class tc_planes(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("first", c_int64), ("count", c_int64), ("samples", c_void_p),
+                ("blanked_samples", c_void_p), ("blanked_cells", c_void_p)]
+
+
+class tc_mesh_piece(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("surface", c_size_t), ("first_vertex", c_uint64),
+                ("first_triangle", c_uint64), ("mesh", POINTER(tc_mesh_data)), ("grid", c_void_p),
+                ("first_plane", c_int64), ("plane_count", c_int64)]
+
+
+tc_read_planes = CFUNCTYPE(c_int, c_void_p, POINTER(tc_planes))
+tc_take_counts = CFUNCTYPE(c_int, c_void_p, POINTER(tc_counts))
+tc_take_piece = CFUNCTYPE(c_int, c_void_p, POINTER(tc_mesh_piece))
+
+
+class tc_stream_options(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("grid", POINTER(tc_grid_options)),
+                ("surfaces", POINTER(tc_extract_options)), ("surface_count", c_size_t),
+                ("max_memory_bytes", c_uint64), ("read", tc_read_planes), ("counted", tc_take_counts),
+                ("take", tc_take_piece), ("user", c_void_p), ("owned", c_int64 * 2)]
+
+
 class tc_field(_Sized):
     _fields_ = [("struct_size", c_size_t), ("type", c_int), ("components", c_int), ("values", c_void_p)]
 
@@ -196,6 +219,11 @@ FUNCTIONS = {
     "tc_extract_options_init": (None, POINTER(tc_extract_options)),
     "tc_count": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts)),
     "tc_extract": (_STATUS, c_void_p, POINTER(tc_extract_options), _OUT),
+    "tc_seam_size": (c_uint64, c_void_p),
+    "tc_count_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts), c_void_p, c_uint64),
+    "tc_extract_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), c_void_p, c_uint64, _OUT),
+    "tc_stream_options_init": (None, POINTER(tc_stream_options)),
+    "tc_stream": (_STATUS, c_void_p, POINTER(tc_stream_options)),
     "tc_mesh_get": (_STATUS, c_void_p, POINTER(tc_mesh_data)),
     "tc_mesh_destroy": (None, c_void_p),
     "tc_interpolate_field": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_field), c_void_p, c_uint64),

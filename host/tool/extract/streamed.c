@@ -47,7 +47,7 @@ static const char *obstacle(const stream_input *in) {
     const options *o = in->o;
     const dataset_block *b = in->data->blocks;
     if (in->blocks->count != 1) return "its blocks are extracted together";
-    if (b->kind != BLOCK_UNIFORM && b->kind != BLOCK_RECTILINEAR) return "its grid is not uniform or rectilinear";
+    if (b->kind == BLOCK_UNSTRUCTURED) return "it is unstructured";
     if (b->whole) return "--roi and --step take a part of it";
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
@@ -83,10 +83,12 @@ static int give_planes(void *user, tc_planes *planes) {
     const uint64_t bytes = plane * tc_type_bytes(g->type),
                    cells = (uint64_t)(g->dims[0] - 1) * (uint64_t)(g->dims[1] - 1);
     const uint64_t window = (uint64_t)planes->count * bytes;
+    progress_bytes(window);
     const char *at = j->samples + first * bytes;
     advise(j->in->data, at > j->samples + window ? at - window : j->samples,
            at > j->samples + window ? window : (uint64_t)(at - j->samples), MADV_DONTNEED);
     advise(j->in->data, at, 2 * window, MADV_WILLNEED);
+    if (g->points) advise(j->in->data, (const char *)g->points, 12 * plane * first, MADV_DONTNEED);
     planes->samples = (void *)(uintptr_t)at;
     if (j->blanked_samples) planes->blanked_samples = (uint8_t *)(uintptr_t)(j->blanked_samples + first * plane);
     if (j->blanked_cells) planes->blanked_cells = (uint8_t *)(uintptr_t)(j->blanked_cells + first * cells);
@@ -172,6 +174,7 @@ static int take_piece(void *user, const tc_mesh_piece *piece) {
     s->readback_ms += m->timings.readback_ms;
     if (!j->in->o->quiet || j->in->o->json) add_bounds(s, m);
     if (!status) status = carried_fields_of_piece(j->in->carried, piece, plane, &j->how[piece->surface]);
+    progress_bytes(12 * (m->vertex_count + m->triangle_count));
     if (!status && to->file)
         status = mesh_file_add(to->file->file, piece->first_vertex, piece->first_triangle, m, j->in->carried->fields);
     s->write_ms += now_ms() - begin;
@@ -192,7 +195,6 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->samples = from->samples;
     j->blanked_samples = from->blanked_points;
     j->blanked_cells = from->blanked_cells;
-    j->grid.samples = NULL;
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);
@@ -215,6 +217,7 @@ static int run(stream_job *j, engine *e) {
     o.counted = take_counts;
     o.take = take_piece;
     o.user = j;
+    progress_job_begin();
     const tc_status status = tc_stream(e->context, &o);
     e->fails_alike = status == TC_ERROR_LIMIT;
     if (j->fits) return 0;
