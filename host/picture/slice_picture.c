@@ -119,9 +119,10 @@ static void draw_values(const picture *p, const panel *at, const sliced_volume *
 static int draw_panel(const picture *p, const panel *at, const sliced_volume *v, const double *isovalues,
                       size_t isovalue_count) {
     const size_t width = (size_t)at->width, height = (size_t)at->height;
-    between *columns = malloc((width + height) * sizeof *columns), *rows = columns + width;
+    between *columns = malloc(width * sizeof *columns), *rows = malloc(height * sizeof *rows);
     double *values = malloc(width * height * sizeof *values);
-    if (columns && values) {
+    const int is_done = columns && rows && values;
+    if (columns && rows && values) {
         spread(v, at->right, at->width, columns);
         spread(v, at->up, at->height, rows);
         for (size_t y = 0; y < height; y++)
@@ -131,8 +132,8 @@ static int draw_panel(const picture *p, const panel *at, const sliced_volume *v,
         for (size_t n = 0; n < isovalue_count; n++)
             draw_line(p, at, values, isovalues[n], line_colours[n % LINE_COLOURS]);
     }
-    const int is_done = columns && values;
     free(columns);
+    free(rows);
     free(values);
     return is_done ? 0 : fail(STATUS_FAILED, "out of memory for a picture of %d x %d pixels", p->width, p->height);
 }
