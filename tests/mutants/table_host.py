@@ -253,7 +253,7 @@ MUTANTS = [
            ("(apex < 0 || signs[corners[(n + 1) % 3]] == INSIDE)", "apex < 0",
             "closed: the chord between two inside corners turned",
             {"same": "the other chord from an inside corner is as good: it is in one triangle of the border alone"}),
-           ("if (signs[a] == ZERO) vertex_add", "if (0) vertex_add", "closed: zeros of snap left out"),
+           ("if (signs[a] != OUTSIDE) vertex_add", "if (signs[a] == INSIDE) vertex_add", "closed: zeros of snap left out"),
            ("if (inside == 10) {", "if (0) {", "closed: two inside corners of a face are always joined"),
            ("mirrored ? after : next", "next", "closed: mirrored grids are not turned"),
            ("const bool turned = (face & 1) == (face / 2 == 1);", "const bool turned = false;",
