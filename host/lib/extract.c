@@ -37,8 +37,6 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other variant of the kernels.
  */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
-    if (options->closed && grid->device)
-        return (tc_status)fail(TC_ERROR_DEVICE, "kernels do not close surfaces: use the reference engine");
     if (!surface_needs_kernels(grid, options)) return TC_OK;
     if (method_has_zeros(options->method) && !device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: method snap takes %s samples by the reference engine",

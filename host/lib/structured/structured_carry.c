@@ -5,7 +5,7 @@
  *
  * Where the workspace holds these results no longer, the surface is counted again first. Of grids in slabs they are
  * kept on the host from the first field that is carried on (device_grid: carries). In method snap the reference
- * carries: it knows on which edges the vertices of snapped samples lie.
+ * carries: it knows on which edges the vertices of snapped samples lie. So it does to closed surfaces.
  */
 #include "structured/structured.h"
 
@@ -353,21 +353,24 @@ static tc_status mapping_open(tc_context *context, const slab_plan *plan, mappin
 
 void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 
+static bool carries_by_reference(const tc_extract_options *options) {
+    return options->closed || method_has_zeros(options->method);
+}
+
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
-    if (options->closed) return false; /* the kernels close no surfaces */
-    if (inside_range_of(grid->type, options->isovalue).uniform || method_has_zeros(options->method)) return true;
+    if (carries_by_reference(options) || inside_range_of(grid->type, options->isovalue).uniform) return true;
     return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
-           device->classified_options.method == options->method &&
-           (device->plan.words_whole || device->store.words != NULL);
+           device->classified_options.method == options->method && !device->classified_options.closed &&
+           (device->plans[0][0].words_whole || device->store.words != NULL);
 }
 
 tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                            uint64_t *vertex_count) {
     const struct device_grid *device = grid->device;
-    carry_job j = {.grid = grid, .plan = &device->plan, .carry = c, .isovalue = options->isovalue};
+    carry_job j = {.grid = grid, .plan = &device->plans[0][0], .carry = c, .isovalue = options->isovalue};
     mapping m;
-    if (method_has_zeros(options->method)) return reference_carry(grid, options, c, vertex_count);
+    if (carries_by_reference(options)) return reference_carry(grid, options, c, vertex_count);
     *vertex_count = 0;
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
     for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];

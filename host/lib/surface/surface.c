@@ -13,7 +13,7 @@ bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *option
     if (grid->context->options.engine != TC_ENGINE_OPENCL) return false;
     if (grid->complex && !grid->complex->tetrahedron_count) return false;
     if (grid->complex && options->method != TC_METHOD_TETRA) return false; /* there are none: refused later */
-    return !inside_range_of(grid->type, options->isovalue).uniform;
+    return inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed);
 }
 
 tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
