@@ -2,7 +2,6 @@
 
 #include "failure.h"
 #include "slab.h"
-#include "grid/method.h"
 #include "grid/tables.h"
 
 /* The most samples of a slab: a cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan
@@ -114,7 +113,7 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
     uint64_t cases = 8 * CASES_TWO_SIGNS + (plan->needs.zeros ? 4 * CASES_THREE_SIGNS : 0),
              constant = plan->needs.zeros ? 4 : 2;
-    if (plan->needs.closed) cases = 2 * cases + 2 * METHOD_COUNT * CAP_ENTRIES;
+    if (plan->needs.closed) cases += (plan->needs.zeros ? 6ull : 4) * CAP_ENTRIES;
     uint64_t fixed =
         cases * CUBE_CASE_BYTES + constant * 8 * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
     *largest = signs;
