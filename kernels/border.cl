@@ -160,6 +160,11 @@ inline_always uint border_case(uint odd, uint face, uint inside, uint zeros) {
     return CAP_FIRST(METHOD_TYPES) + (odd * CAP_FACES + face) * CAP_FACE_CASES + digits;
 }
 
+/* Samples of rows a that are vertices in their own places. */
+inline_always lanes places_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w, global const ulong *cells) {
+    return r->zero[0] | (r->a0 & border_samples(s, cells, y, z, w));
+}
+
 #endif
 
 /* Vertices owned by the samples of rows a: those on edges that present cubes have, and those in the samples' own
@@ -171,7 +176,7 @@ inline_always crossings vertices_owned(const slab *s, const cube_rows *r, uint y
     crossings_keep(s, cells, y, z, w, &edges);
 #endif
 #if CLOSED
-    edges.type[PLACE_TYPE] = r->zero[0] | (r->a0 & border_samples(s, cells, y, z, w));
+    edges.type[PLACE_TYPE] = places_owned(s, r, y, z, w, cells);
 #endif
     return edges;
 }

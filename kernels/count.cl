@@ -76,12 +76,14 @@ typedef struct row_counts {
 inline_always row_counts rows_count(const slab *s, const cube_rows *r, uint y, uint z, uint w,
                                     global const ulong *cells) {
     row_counts c = {0, 0, 0, 0};
-    crossings edges = vertices_owned(s, r, y, z, w, cells);
+    crossings edges = crossings_owned(r); /* not by vertices_owned: this order needs fewer registers */
     lanes active = cubes_active(r), in_border = 0;
 #if MISSING
+    crossings_keep(s, cells, y, z, w, &edges);
     active &= cells_rows(s, cells, y, z, w);
 #endif
 #if CLOSED
+    edges.type[PLACE_TYPE] = places_owned(s, r, y, z, w, cells);
     border_faces faces = border_faces_of(s, cells, y, z, w);
     if (lanes_any(border_faces_any(&faces))) in_border = border_triangles(r, &faces);
 #endif

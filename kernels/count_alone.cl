@@ -163,7 +163,8 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
     global const brick_range *here = ranges + s->results.range_offset + brick_index(s, y, z, w);
     uint sign = run_sign(&s->test, here, count);
 #if CLOSED
-    if (sign == SIGN_INSIDE && (MISSING || bricks_at_border(s, NULL, y, z, w, count))) return false;
+    const bool closes = MISSING ? true : bricks_at_border(s, NULL, y, z, w, count);
+    if (sign == SIGN_INSIDE && closes) return false;
 #endif
     return sign != SIGN_MIXED && run_sign(&s->test, here + up, count) == sign &&
            run_sign(&s->test, here + deep, count) == sign && run_sign(&s->test, here + up + deep, count) == sign &&

@@ -158,7 +158,8 @@ inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong pl
         uint bit = lowest_bit(places);
         number[NUMBER_STEP * bit + PLACE_TYPE] = first + count;
 #ifdef REAL
-        if (ZEROS && (!CLOSED || work->zero_corners[z][2 * y] >> bit & 1))
+        const bool is_zero = ZEROS ? (CLOSED ? work->zero_corners[z][2 * y] >> bit & 1 : 1) : 0;
+        if (is_zero)
             work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, work->link_offsets, in);
         else
             work->list[count] = EDGE_PLACE + row + bit;

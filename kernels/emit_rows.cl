@@ -102,7 +102,8 @@ inline_always void table_make(const slab *s, corner brick, row_results k1, local
 /* The edge of the vertex of a type at a bit of the row (y, z), whose first sample is at `row` in EDGE_CODE. */
 inline_always uint edge_at(const slab *s, corner brick, uint y, uint z, uint type, uint bit, uint row, ulong even,
                            ulong zeros, grid_arrays in) {
-    if (ZEROS && type == PLACE_TYPE && (!CLOSED || zeros >> bit & 1))
+    const bool is_zero = CLOSED ? zeros >> bit & 1 : 1;
+    if (ZEROS && type == PLACE_TYPE && is_zero)
         return snapped_edge(s, edges_corner(brick), brick.x + bit, y, z, NULL, in);
     return (CLOSED && type == PLACE_TYPE ? EDGE_PLACE : edge_code(type, !(even >> bit & 1))) + row + bit;
 }
