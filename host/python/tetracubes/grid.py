@@ -97,10 +97,11 @@ class GridBase:
             raise ValueError("the grid is closed")
         self._context.call(function, self._handle, *arguments)
 
-    def count(self, level: float, *, method: str = "tetra", snap: float | None = None) -> Counts:
+    def count(self, level: float, *, method: str = "tetra", snap: float | None = None, closed: bool = False) -> Counts:
         """The sizes of the surface that ``extract`` would make, as Counts; makes none."""
         counts = tc_counts()
-        self._call(tc.tc_count, ctypes.byref(extract_options(level, method, snap)), ctypes.byref(counts))
+        self._call(tc.tc_count, ctypes.byref(extract_options(level, method, snap, closed=closed)),
+                   ctypes.byref(counts))
         return Counts(counts.vertex_count, counts.triangle_count, counts.active_cell_count, counts.mesh_bytes)
 
     def extract(self, level: float, *, method: str = "tetra", snap: float | None = None, normals: bool = False,
@@ -111,7 +112,7 @@ class GridBase:
         method: "tetra"; of volumes also "hybrid" (fewer triangles) or "snap" (fewest, of good shape).
         snap: of method "snap", how far a sample may move, as a part of an edge: 0 to 0.5.
         normals: whether vertices have unit normals; of volumes only.
-        closed: whether the surface is closed at the grid's border and beside missing samples; by the reference engine.
+        closed: whether the surface is closed at the grid's border and beside missing samples; of volumes only.
         carry: {name: array}: other fields of the grid, interpolated at the vertices into ``mesh.values``; arrays have
         the volume's shape, or one axis more, of components.
         """
@@ -236,7 +237,7 @@ class Grid(GridBase):
         return grid
 
     def extract_on_device(self, level: float, *, method: str = "tetra", snap: float | None = None,
-                          normals: bool = False) -> DeviceMesh:
+                          normals: bool = False, closed: bool = False) -> DeviceMesh:
         """The surface in OpenCL buffers of the context given to ``from_opencl``, as a DeviceMesh.
 
         The kernels are enqueued in its queue; nothing waits for them but ``event``.
@@ -244,7 +245,7 @@ class Grid(GridBase):
         import pyopencl  # pylint: disable=import-outside-toplevel
         if self._opencl is None:
             raise ValueError("the grid was not made by Grid.from_opencl: there is no OpenCL context to leave a mesh in")
-        how = extract_options(level, method, snap, normals)
+        how = extract_options(level, method, snap, normals, closed)
         counts, origin, event = tc_counts(), (ctypes.c_double * 3)(), ctypes.c_void_p()
         self._call(tc.tc_count, ctypes.byref(how), ctypes.byref(counts))
 
@@ -272,8 +273,6 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
 
     Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it.
     """
-    if closed and engine == "auto":
-        engine = "reference"  # no kernel closes surfaces
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
         return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)

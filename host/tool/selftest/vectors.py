@@ -51,6 +51,11 @@ def cases():
     yield "gyroid", (67, 33, 20), "i16", "127.5", "tetra", "nodata=100"
     yield "gyroid", (67, 33, 20), "u8", "127.5", "hybrid", "nodata=100"
     yield "gyroid", (67, 33, 20), "u8", "127.5", "snap", "nodata=100"
+    for method in ("tetra", "hybrid", "snap"):
+        yield "gyroid", (130, 33, 20), "u8", "127.5", method, "closed"
+        yield "noise", (67, 13, 11), "f32", "127.5", method, "seed=13,closed"
+        yield "gyroid", (67, 33, 20), "u8", "127.5", method, "nodata=100,closed"
+    yield "full", (20, 20, 20), "f32", "127.5", "tetra", "closed"
     for name in ("u8", "i16", "f32", "f64"):
         yield "gyroid", (30, 20, 13), name, "127.5", "tetra", "tetrahedra"
     for field in ("sphere", "torus", "gyroid", "marschner-lobb", "tangle"):
@@ -85,6 +90,8 @@ def line(tool, folder, case):
         source, how = cut, []
     if "nodata" in given:
         how += ["--nodata", given["nodata"]]
+    if "closed" in given:
+        how += ["--closed"]
     surface = json.loads(run(tool, "extract", source, *how, "--iso", iso, "--method", method, "--engine", "reference",
                              "--json", "--quiet"))["surfaces"][0]
     words = [field, *dims, kind, iso, method, options, surface["vertices"], surface["triangles"], surface["hash"]]
