@@ -22,9 +22,10 @@ HEAD = """\
 # FIELD: of `tetracubes generate --help`. Sample i of n along an axis lies at 2 i / (n - 1) - 1, computed in double; f32
 # rounds to nearest, integers truncate toward zero and saturate. METHOD: tetra (five tetrahedra per cube), hybrid or snap
 # (threshold 0.5). OPTIONS: - or, with commas between: nodata=V: samples equal to V are missing; seed=S of noise, else 0;
-# tetrahedra: the grid cut into tetrahedra and extracted as an unstructured one. Positions are in index space: sample
-# (i, j, k) lies at i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices, then the uint32 indices of
-# all triangles, both little-endian, in the order that kernels/README.md describes; 16 hexadecimal digits.
+# tetrahedra: the grid cut into tetrahedra and extracted as an unstructured one; closed: closed at the border. Positions
+# are in index space: sample (i, j, k) lies at i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices,
+# then the uint32 indices of all triangles, both little-endian, in the order that kernels/README.md describes; 16
+# hexadecimal digits.
 """
 TYPES = ["u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"]
 
