@@ -112,7 +112,8 @@ class GridBase:
         method: "tetra"; of volumes also "hybrid" (fewer triangles) or "snap" (fewest, of good shape).
         snap: of method "snap", how far a sample may move, as a part of an edge: 0 to 0.5.
         normals: whether vertices have unit normals; of volumes only.
-        closed: whether the surface is closed at the grid's border and beside missing samples; of volumes only.
+        closed: whether the surface is closed at the grid's border and beside missing samples; of meshes by method
+        "tetra" and the engine "reference".
         carry: {name: array}: other fields of the grid, interpolated at the vertices into ``mesh.values``; arrays have
         the volume's shape, or one axis more, of components.
         """
