@@ -168,15 +168,15 @@ inline_always lanes places_owned(const slab *s, const cube_rows *r, uint y, uint
 #endif
 
 /* Vertices owned by the samples of rows a: those on edges that present cubes have, and those in the samples' own
- * places. */
-inline_always crossings vertices_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w,
+ * places; at_border: whether any of these may be on the border. */
+inline_always crossings vertices_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w, bool at_border,
                                        global const ulong *cells) {
     crossings edges = crossings_owned(r);
 #if MISSING
     crossings_keep(s, cells, y, z, w, &edges);
 #endif
 #if CLOSED
-    edges.type[PLACE_TYPE] = places_owned(s, r, y, z, w, cells);
+    edges.type[PLACE_TYPE] = at_border ? places_owned(s, r, y, z, w, cells) : r->zero[0];
 #endif
     return edges;
 }

@@ -17,9 +17,9 @@
 #include "emit_numbers.cl"
 #include "vertex.cl"
 
-#define PARITY_BIT (ZEROS ? 16 : 8)  /* of a case, after a pattern's bits and those of zero corners */
-#define BORDER_BIT (ZEROS ? 17 : 11) /* tells the index of an entry of the border from a case */
-#define CASE_BITS  (CLOSED ? BORDER_BIT + 1 : PARITY_BIT + 1)
+#define PARITY_BIT (ZEROS ? 16 : 8) /* of a case, after a pattern's bits and those of zero corners */
+#define BORDER_BIT 17               /* with zeros: an entry's index in place of a case */
+#define CASE_BITS  (CLOSED ? (ZEROS ? BORDER_BIT + 1 : 11) : PARITY_BIT + 1)
 #define CASE_STEP  (3 * OF_METHOD(triangles_usual)) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
@@ -52,8 +52,9 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
         const ulong sample = work->row_start[list[n] >> 7 & 0x7f] + (list[n] & 0x7f);
         const long step = work->step[list[n] >> 14];
         global const BITS *from = in.samples + sample;
-        work->a[n] = is_place(list[n]) ? (BITS)0 : *from; /* two different numbers, to divide by their difference */
-        work->b[n] = is_place(list[n]) ? (BITS)1 : from[step];
+        work->a[n] = *from;
+        work->b[n] = from[step];
+        if (CLOSED) work->b[n] = step ? work->b[n] : (BITS) ~*from; /* another number, to divide by the difference */
 #if GRID == 2
         global const float *p0 = in.coordinates + (3 * sample + s->arrays.point_offset);
         line_prefetch(p0);
@@ -188,6 +189,7 @@ inline_always uint faces_list(const slab *s, uint y, uint z, const ulong at[CAP_
     ulong8 zero_corners = 0;
     if (ZEROS)
         zero_corners = (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
+    const uint border = ZEROS ? 1u << BORDER_BIT : 0;
     const ulong any = at[0][y] | at[1][y] | at[2][y] | at[3][y] | at[4][y] | at[5][y];
     for (ulong rest = any; rest; rest &= rest - 1) {
         const uint x = lowest_bit(rest), inside = pattern_at(corners, x), odd = (x ^ row_odd(s, y, z)) & 1;
@@ -195,7 +197,7 @@ inline_always uint faces_list(const slab *s, uint y, uint z, const ulong at[CAP_
         for (uint face = 0; face < CAP_FACES && inside; face++)
             if (at[face][y] >> x & 1)
                 work->list[count++] =
-                    border_case(odd, face, inside, zeros) | 1u << BORDER_BIT | NUMBER_INDEX(x, y, z) << CASE_BITS;
+                    border_case(odd, face, inside, zeros) | border | NUMBER_INDEX(x, y, z) << CASE_BITS;
     }
     return count;
 }
@@ -244,8 +246,9 @@ inline_always void case_store(const uint *number, global const uchar *entry, uin
 
 /* The entry of a listed item in the table of cases. */
 inline_always global const uchar *entry_of(global const uchar *cases, uint item) {
+    if (!ZEROS) return cases + CUBE_CASE_BYTES * item;
     if (CLOSED && item >> BORDER_BIT) return cases + CUBE_CASE_BYTES * (item & ((1u << BORDER_BIT) - 1));
-    return ZEROS ? case_of(cases, item >> PARITY_BIT, item & 0xff, item >> 8 & 0xff) : cases + CUBE_CASE_BYTES * item;
+    return case_of(cases, item >> PARITY_BIT, item & 0xff, item >> 8 & 0xff);
 }
 
 inline_always void triangles_emit(uint count, global const uchar *cases, global uint *index, brick_work *work) {
@@ -315,18 +318,22 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     const corner c = brick_corner(s, number);
     const brick_state state = k1.bricks[number];
     uint first = s->mesh.vertex_base + state.vertices;
+#if CLOSED
+    const bool at_border = bricks_at_border(s, k1.cells, c.y, c.z, c.x / 64, 1);
+#else
+    const bool at_border = false;
+#endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
-    crossings_store(s, c, &signs, k1, work);
+    crossings_store(s, c, &signs, at_border, k1, work);
     uint count = edges_list(s, c, state.rows, first, in, work);
 #ifdef REAL
     vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif
-    plane_number(s, c, &signs, k1, work);
-    next_rows_number(s, c, &signs, k1, work);
-    column_number(s, c, &signs, k1, work);
+    plane_number(s, c, &signs, at_border, k1, work);
+    next_rows_number(s, c, &signs, at_border, k1, work);
+    column_number(s, c, &signs, at_border, k1, work);
 #if CLOSED
-    const bool at_border = bricks_at_border(s, k1.cells, c.y, c.z, c.x / 64, 1);
     count = at_border ? border_list(s, c, state.rows, k1, work) : cubes_list(s, state.rows, 0, work);
 #else
     count = cubes_list(s, state.rows, 0, work);

@@ -120,13 +120,14 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
     }
 }
 
-/* Crossed edges and active cubes of the brick itself. */
-inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, row_results k1,
+/* Crossed edges and active cubes of the brick itself. at_border: whether a closed surface may end in the brick; else
+ * none of its samples, and of those that its cubes have, is on the border. */
+inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
                                    brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
         cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
                                    signs->rows[0][n + 1], signs_up(signs, n + 1));
-        crossings edges = vertices_owned(s, &r, c.y, c.z + n, c.x / 64, k1.cells);
+        crossings edges = vertices_owned(s, &r, c.y, c.z + n, c.x / 64, at_border, k1.cells);
         lanes active = cubes_active(&r);
 #if MISSING
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
@@ -195,12 +196,13 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
 }
 
 /* Numbers the crossings in the next plane that the brick's cubes have. */
-inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
+                                brick_work *work) {
     const uint z = c.z + BRICK_PLANES, w = c.x / 64;
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
     if (z >= s->nz) return;
     cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
-    crossings edges = vertices_owned(s, &r, c.y, z, w, k1.cells);
+    crossings edges = vertices_owned(s, &r, c.y, z, w, at_border, k1.cells);
     ulong crossed[4][BRICK_ROWS];
     vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
     vstore8(edges.type[PLACE_TYPE], 0, crossed[3]);
@@ -217,7 +219,7 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
 }
 
 /* Numbers the crossings in the next row of each plane. */
-inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, row_results k1,
+inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
                                     brick_work *work) {
     const uint y = c.y + BRICK_ROWS, w = c.x / 64;
     const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
@@ -239,7 +241,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
 #endif
         ulong places = zero;
 #if CLOSED
-        places |= a0 & border_samples(s, k1.cells, y, c.z + n, w).s0;
+        if (at_border) places |= a0 & border_samples(s, k1.cells, y, c.z + n, w).s0;
 #endif
         if (!(x | z | xz | places)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
@@ -267,7 +269,8 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
 
 /* Numbers the crossings in the next column, x = 64. Called last, as the functions above leave meaningless numbers there
  * for rows without crossings. */
-inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+inline_always void column_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
+                                 brick_work *work) {
     const uint w = c.x / 64 + 1;
     if (w >= s->words_x) return;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
@@ -293,9 +296,11 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
 #endif
 #if CLOSED
-        edges.type[PLACE_TYPE] = za | (a & border_samples(s, k1.cells, c.y, z, w));
-        up.type[PLACE_TYPE] =
-            up.type[6] | (next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w));
+        edges.type[PLACE_TYPE] = za, up.type[PLACE_TYPE] = next_zeros(signs->rows[1][n]);
+        if (at_border) {
+            edges.type[PLACE_TYPE] |= a & border_samples(s, k1.cells, c.y, z, w);
+            up.type[PLACE_TYPE] |= next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w);
+        }
 #endif
         column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
         column_store(s, c.y, z, w, 2, lanes_nonzero(edges.type[2]), c, k1, work);

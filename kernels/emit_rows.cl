@@ -79,7 +79,7 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
     const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
     if (y >= s->ny || z >= s->nz) return;
     cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
-    crossings edges = vertices_owned(s, &r, y, z, w, k1.cells);
+    crossings edges = vertices_owned(s, &r, y, z, w, true, k1.cells);
     const owner o = owner_of(s, y, z, w, k1);
 #pragma unroll
     for (uint type = 0; type < VERTEX_TYPES; type++) table->crossed[type][n] = edges.type[type];
