@@ -35,7 +35,7 @@ int dataset_map(dataset *d, const char *path, mapping *m) {
 int dataset_keep(dataset *d, void *memory) {
     dataset_memory *entry = malloc(sizeof *entry);
     if (!entry) {
-        free(memory);
+        samples_free(memory);
         return fail(STATUS_FAILED, "no memory for the list of the input's arrays");
     }
     *entry = (dataset_memory){d->memory, memory};
@@ -126,7 +126,7 @@ int dataset_leave_out(dataset *d, const char *name, const char *format, ...) {
 void dataset_release(dataset *d) {
     for (dataset_memory *entry = d->memory, *next; entry; entry = next) {
         next = entry->next;
-        free(entry->memory);
+        samples_free(entry->memory);
         free(entry);
     }
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);
