@@ -234,7 +234,7 @@ MUTANTS = [
            ("active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);", "", "missing: cubes are emitted", MISSING)),
     *group("kernels/emit_brick.cl",
            ("if (CLOSED) t[n] = is_place(list[first + n]) ? 0 : t[n];", "", "closed: border samples are no crossings", CLOSED),
-           ("border_case(odd, face, inside, zeros) | 1u << BORDER_BIT", "border_case(odd, face, inside, zeros)",
+           ("border_case(odd, face, inside, zeros) | border", "border_case(odd, face, inside, zeros)",
             "closed: faces are taken for cubes", CLOSED_SNAP),
            ("& (bytes64)(char)(16 << n)", "& (bytes64)(char)(8 << n)", "cases: the next plane's samples", AVX512),
            ("lowest_bit(active);\n            x += skipped, active >>= skipped;", "lowest_bit(active);\n            x += skipped;",
