@@ -27,6 +27,8 @@ def test_closed(ball):
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     assert mesh.hash == tetracubes.isosurface(half, 0.0, closed=True, engine="reference").hash
     assert len(tetracubes.isosurface(half, 0.0).faces) < len(mesh.faces)
+    with tetracubes.Grid(half) as grid:
+        assert grid.count(0.0, closed=True).faces == len(mesh.faces) > grid.count(0.0).faces
 
 
 @pytest.mark.parametrize("ending", ["ply", "vtp", "stl", "obj"])
