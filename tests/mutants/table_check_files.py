@@ -164,7 +164,7 @@ MUTANTS = [
             "shared doubles are not counted", LIMITS)),
     *group("host/read/vtk_xml/vtk_xml_header.c",
            ("array_count == ARRAYS_MOST", "array_count == SIZE_MAX", "arrays without number", LIMITS)),
-    *group("host/read/image/data_names.c",
+    *group("host/read/dataset/data_names.c",
            ("if ((names->bytes += length) > ALL_NAMES_BYTES)", "if (0)", "names without end", LIMITS),
            ("else if (!lies_in(file, named)", "else if (0 && !lies_in(file, named)", "links out of the folder are followed",
             LIMITS),

@@ -17,6 +17,7 @@ typedef struct dataset_field {
     int components;   /* values per tuple: 1 for a scalar */
     tc_type type;     /* f64 where the file has 64-bit integers */
     int is_active;    /* the file's active scalars: taken where none of several fields is chosen */
+    int is_number;    /* global numbers: points or cells of several pieces with the same number are one */
     int is_rounded;   /* no double holds some of these integers: the nearest stands for them */
     int is_scaled;    /* f64, made of stored values by a slope and an intercept that have the precision of f32 */
     const void *values;
@@ -107,6 +108,11 @@ int dataset_map(dataset *d, const char *path, struct mapping *m);
 /* Takes over memory from samples_allocate: it lives as long as the dataset, or is freed at once where this fails. 0 or
  * STATUS_FAILED. */
 int dataset_keep(dataset *d, void *memory);
+
+/* Takes over the blocks, files and memory of another dataset and what is to be told of it, which is told once; of
+ * notices_of that alone. *from is then empty. 0 or STATUS_FAILED, and both are to be released. */
+int dataset_absorb(dataset *to, dataset *from);
+int dataset_notices_of(dataset *to, const dataset *from);
 
 /* A copy of the text that lives as long as the dataset. */
 char *dataset_text(dataset *d, const char *text);
