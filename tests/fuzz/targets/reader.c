@@ -19,6 +19,7 @@
 #include "plot3d/plot3d.h"
 #include "read.h"
 #include "vtk_legacy/vtk_legacy.h"
+#include "vtk_parallel/vtk_parallel.h"
 #include "vtk_xml/vtk_xml.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF };
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF, VTK_PARALLEL };
 
 typedef struct format {
     const char *paths[4];
@@ -44,6 +45,7 @@ static const format formats[] = {
     [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
     [NPY] = {{"in/a.npy", "in/a.npy", "in/a.npy", "in/a.npy"}, .read = npy_read},
     [TIFF] = {{"in/a.tif", "in/a.tiff", "in/a.tif", "in/a.tif"}, .read = tiff_read},
+    [VTK_PARALLEL] = {{"in/a.pvti", "in/a.pvtu", "in/a.pvts", "in/a.vtm"}, .read = vtk_parallel_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading

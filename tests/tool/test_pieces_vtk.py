@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""test_pieces_vtk.py TOOL [reference] - parallel files that VTK itself writes give the surface of the grid they were made of;
+skipped where this Python has no VTK"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+import tool_case
+from tool_case import GridCase, counts
+
+try:
+    import vtk
+except ImportError:
+    print("skipped: this Python has no VTK")
+    sys.exit(77)
+
+FIELD = "RTData"
+kept = []  # sources, which pipelines do not keep
+
+
+def source():
+    wave = vtk.vtkRTAnalyticSource()
+    wave.SetWholeExtent(-6, 7, -5, 6, 0, 9)
+    kept.append(wave)
+    return wave
+
+
+def curvilinear():
+    to = vtk.vtkImageDataToPointSet()
+    to.SetInputConnection(source().GetOutputPort())
+    return to
+
+
+def hexahedra():
+    """Of the image, piece by piece."""
+    to = vtk.vtkAppendFilter()
+    to.SetInputConnection(source().GetOutputPort())
+    return to
+
+
+def write(writer, data, path, encoding, pieces=None, ghosts=0):
+    writer.SetInputConnection(data.GetOutputPort())
+    writer.SetFileName(path)
+    if encoding == "ascii":
+        writer.SetDataModeToAscii()
+    elif encoding == "raw":
+        writer.SetDataModeToAppended()
+        writer.EncodeAppendedDataOff()
+        writer.SetCompressorTypeToNone()
+    if pieces:
+        writer.SetNumberOfPieces(pieces)
+        writer.SetStartPiece(0)
+        writer.SetEndPiece(pieces - 1)
+        writer.SetGhostLevel(ghosts)
+    assert writer.Write(), path
+    return path
+
+
+class WrittenByVtk(GridCase):
+    def test_images_and_structured_grids(self):
+        for name, data, ending, one, many in (
+                ("image", source, "vti", vtk.vtkXMLImageDataWriter, vtk.vtkXMLPImageDataWriter),
+                ("structured", curvilinear, "vts", vtk.vtkXMLStructuredGridWriter, vtk.vtkXMLPStructuredGridWriter)):
+            for encoding in ("ascii", "raw", "packed"):
+                whole = write(one(), data(), self.path(f"whole.{ending}"), encoding)
+                for pieces in (1, 3, 8):
+                    for ghosts in (0, 1, 2):
+                        with self.subTest(name=name, encoding=encoding, pieces=pieces, ghosts=ghosts):
+                            parts = write(many(), data(), self.path(f"{name}{pieces}{ghosts}.p{ending}"), encoding,
+                                          pieces, ghosts)
+                            _, first = self.surface(whole, "--field", FIELD, "--iso", "150.5")
+                            _, second = self.surface(parts, "--field", FIELD, "--iso", "150.5")
+                            self.assertGreater(first["triangles"], 100)
+                            self.assertEqual(first["hash"], second["hash"])
+
+    def test_unstructured_grids(self):
+        """Without global numbers hexahedra are cut in another way; the surface has the same pieces and no seam."""
+        whole = write(vtk.vtkXMLUnstructuredGridWriter(), hexahedra(), self.path("whole.vtu"), "raw")
+        same = ("euler_characteristic", "components", "boundary_edges", "nonmanifold_edges")
+        _, first = self.surface(whole, "--field", FIELD, "--iso", "150.5")
+        for pieces in (1, 3, 8):
+            for ghosts in (0, 1):
+                with self.subTest(pieces=pieces, ghosts=ghosts):
+                    parts = write(vtk.vtkXMLPUnstructuredGridWriter(), hexahedra(), self.path(f"{pieces}{ghosts}.pvtu"),
+                                  "raw", pieces, ghosts)
+                    report, second = self.surface(parts, "--field", FIELD, "--iso", "150.5")
+                    self.assertEqual([first[k] for k in same], [second[k] for k in same])
+                    self.assertEqual(report["cells"], 13 * 11 * 9)
+
+    def test_blocks(self):
+        blocks = vtk.vtkMultiBlockDataSet()
+        image = source()
+        image.Update()
+        sphere = vtk.vtkSphereSource()
+        sphere.Update()
+        blocks.SetBlock(0, image.GetOutput())
+        blocks.SetBlock(1, None)
+        blocks.SetBlock(2, sphere.GetOutput())
+        writer = vtk.vtkXMLMultiBlockDataWriter()
+        writer.SetInputDataObject(blocks)
+        writer.SetFileName(self.path("a.vtm"))
+        self.assertTrue(writer.Write())
+        whole = write(vtk.vtkXMLImageDataWriter(), source(), self.path("whole.vti"), "raw")
+        _, first = self.surface(whole, "--iso", "150.5")
+        _, second = self.surface(self.path("a.vtm"), "--iso", "150.5")
+        self.assertEqual(first["hash"], second["hash"])
+        self.assertEqual(counts(first), counts(second))
+
+
+if __name__ == "__main__":
+    tool_case.main()
