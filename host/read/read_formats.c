@@ -3,6 +3,7 @@
 #include "file/xml_root.h"
 #include "image/image.h"
 #include "plot3d/plot3d.h"
+#include "vtk_hdf/vtk_hdf.h"
 #include "vtk_legacy/vtk_legacy.h"
 #include "vtk_parallel/vtk_parallel.h"
 #include "vtk_xml/vtk_xml.h"
@@ -107,10 +108,10 @@ const read_format read_formats[FORMAT_COUNT] = {
               .has_frames = 1},
     [HDF5] = {.name = "HDF5",
               .library = LIBRARY_HDF5,
-              .notes = {{"images", LIBRARY_NONE}},
+              .notes = {{"images", LIBRARY_NONE}, {"VTKHDF", LIBRARY_NONE}},
               .endings = "|.h5|.hdf5|.vtkhdf|",
               .begins = begins_as_hdf5,
-              .read = IF_BUILT(HAVE_HDF5, hdf5_read),
+              .read = IF_BUILT(HAVE_HDF5, vtk_hdf_read),
               .instead = "save the array as .npy or NRRD",
               .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},

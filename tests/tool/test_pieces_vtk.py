@@ -87,6 +87,41 @@ class WrittenByVtk(GridCase):
                     self.assertEqual([first[k] for k in same], [second[k] for k in same])
                     self.assertEqual(report["cells"], 13 * 11 * 9)
 
+    def test_vtkhdf(self):
+        """An unstructured grid in one part and in three, polyhedra, as vtkHDFWriter has them."""
+        whole = write(vtk.vtkXMLUnstructuredGridWriter(), hexahedra(), self.path("whole.vtu"), "raw")
+        _, first = self.surface(whole, "--field", FIELD, "--iso", "150.5")
+        for kind in ("whole", "parts", "polyhedra"):
+            grid = hexahedra()
+            grid.Update()
+            data = grid.GetOutput()
+            if kind == "polyhedra":  # of tetrahedra: VTK gives polyhedra of voxels faces that cross themselves
+                cut = vtk.vtkDataSetTriangleFilter()
+                cut.SetInputData(data)
+                to = vtk.vtkConvertToPolyhedra()
+                to.SetInputConnection(cut.GetOutputPort())
+                to.Update()
+                data = to.GetOutput()
+            if kind == "parts":
+                data = vtk.vtkPartitionedDataSet()
+                for n, (low, high) in enumerate(((-6, -2), (-2, 3), (3, 7))):
+                    cut = vtk.vtkExtractVOI()
+                    cut.SetInputConnection(kept[-1].GetOutputPort())
+                    cut.SetVOI(low, high, -5, 6, 0, 9)
+                    part = vtk.vtkAppendFilter()
+                    part.SetInputConnection(cut.GetOutputPort())
+                    part.Update()
+                    data.SetPartition(n, part.GetOutput())
+            writer = vtk.vtkHDFWriter()
+            writer.SetInputDataObject(data)
+            writer.SetFileName(self.path(kind + ".vtkhdf"))
+            self.assertTrue(writer.Write())
+            _, second = self.surface(self.path(kind + ".vtkhdf"), "--field", FIELD, "--iso", "150.5")
+            if kind == "whole":
+                self.assertEqual(first["hash"], second["hash"])
+            same = ("euler_characteristic", "components", "nonmanifold_edges", "misoriented_edges")
+            self.assertEqual([first[k] for k in same], [second[k] for k in same])
+
     def test_blocks(self):
         blocks = vtk.vtkMultiBlockDataSet()
         image = source()

@@ -35,6 +35,12 @@ typedef struct coordinates {
 
 static inline double coordinate_at(coordinates c, int64_t n) { return c.f64 ? c.f64[n] : (double)c.f32[n]; }
 
+/* Bits of vtkGhostType, which blanked_cells has of VTK's files: the cell is another piece's, too; it is hidden. */
+enum { CELL_IS_DUPLICATE = 1, CELL_IS_HIDDEN = 32, GHOST_CELL = CELL_IS_DUPLICATE | CELL_IS_HIDDEN };
+
+/* Of points it is hidden; there is no more to know. */
+enum { POINT_IS_HIDDEN = 2 };
+
 enum block_kind { BLOCK_UNIFORM, BLOCK_RECTILINEAR, BLOCK_CURVILINEAR, BLOCK_UNSTRUCTURED };
 
 /* Samples of a structured block, along each axis: the first one, counted from 0; how many; each so many after the one

@@ -36,4 +36,25 @@ int hdf5_load_chunks(const hdf5_file *h, unsigned char *to);
 
 void hdf5_close(hdf5_file *h);
 
+/* For files of several arrays: the file alone, and one array of it, which takes the place of the one before. An array
+ * without a value has stored_bytes 0. */
+int hdf5_open_file(hdf5_file *h, const char *path);
+int hdf5_open_array(hdf5_file *h, const char *name);
+
+/* Opens a group, links to other files not followed; below 0 where there is none. To be closed by H5Gclose. */
+hid_t hdf5_open_group(const hdf5_file *h, const char *name);
+
+/* Whether the group has a link of that name. */
+int hdf5_has(hid_t group, const char *name);
+
+/* An attribute that is text of a fixed length; "" where there is none. */
+enum { HDF5_TEXT_BYTES = 256 };
+void hdf5_read_text(hid_t object, const char *name, char text[HDF5_TEXT_BYTES]);
+
+/* An attribute of so many numbers. Returns 0, and leaves the values, where there is none. */
+int hdf5_read_numbers(hid_t object, const char *name, double *values, int count);
+
+/* STATUS_INPUT with what libhdf5 says of its last failure. */
+int hdf5_fail(const hdf5_file *h, const char *what);
+
 #endif

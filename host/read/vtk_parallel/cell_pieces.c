@@ -11,7 +11,6 @@
 #include "sample_types.h"
 #include "vtk_parallel/pieces.h"
 #include "vtk_parallel/shared_points.h"
-#include "vtk_xml/vtk_xml.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -19,9 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bits of vtkGhostType (vtkDataSetAttributes.h). */
-enum { HIDDEN_POINT = 2, GHOST_CELL = CELL_IS_DUPLICATE | CELL_IS_HIDDEN };
-
 /* --------------------------------------------------------------------------------------------------------- geometry */
 
 int vtk_xml_matrix(const read_request *request, const double origin[3], const double spacing[3],
@@ -74,7 +71,7 @@ static int is_ghost_array(const xml_reader *r, const xml_array *array) {
 static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
     int on_cells = array->section == SECTION_CELL_DATA, any = 0;
     const int is_level = strcmp(r->doc.names + array->name, "vtkGhostLevels") == 0;
-    const int64_t bits = is_level ? on_cells ? UINT8_MAX : 0 : on_cells ? GHOST_CELL : HIDDEN_POINT;
+    const int64_t bits = is_level ? on_cells ? UINT8_MAX : 0 : on_cells ? GHOST_CELL : POINT_IS_HIDDEN;
     const unsigned char *stored = NULL;
     void *owned;
     uint8_t *blanked = NULL;

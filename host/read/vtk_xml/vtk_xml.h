@@ -8,9 +8,6 @@
 
 int vtk_xml_read(const read_request *request, const mapping *file, dataset *out);
 
-/* Bits of dataset_block.blanked_cells as this reader sets them: the cell is another piece's, too; it is hidden. */
-enum { CELL_IS_DUPLICATE = 1, CELL_IS_HIDDEN = 32 };
-
 /* The same of a file of several, mapped, which is taken over also after a failure; no block where it has no points. */
 int vtk_xml_read_piece(const read_request *request, mapping *own, dataset *out);
 
