@@ -30,7 +30,8 @@
     ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL)                                                                    \
     ROW(off, "OFF", 0, 1, vertices, NULL)                                                                              \
     ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits)                                                                \
-    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
+    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
@@ -57,6 +58,10 @@ typedef struct mesh_write_options {
     struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
                                    at once */
 } mesh_write_options;
+
+/* Adds the writer of VTKHDF, which is refused without it: a part of the library mesh_write_hdf5, so that programs that
+ * do without libhdf5 need not have it. To be called once, before the others. */
+void mesh_write_add_hdf5(void);
 
 /* To be called before any work is done. 0 where path's ending, or options->format, is a format that is written and
  * takes the fields; else STATUS_USAGE with a message that names the formats. options may be NULL here and below. */

@@ -7,11 +7,16 @@
 #include "failure.h"
 #include "formats.h"
 #include "output_group.h"
+#include "vtkhdf.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+void (*vtkhdf_writer)(output *o, const shown_mesh *s);
+
+void vtkhdf_write(output *o, const shown_mesh *s) { vtkhdf_writer(o, s); }
 
 enum counted { COUNTS_vertices, COUNTS_triangles };
 
@@ -39,10 +44,7 @@ static const format *find_format(const char *name) {
     return NULL;
 }
 
-static int is_any(const format *f) {
-    (void)f;
-    return 1;
-}
+static int is_there(const format *f) { return f->write != vtkhdf_write || vtkhdf_writer; }
 
 static int has_role(const format *f, vertex_role role) { return f->roles >> role & 1; }
 
@@ -54,9 +56,9 @@ static int is_of_any_size(const format *f) { return !f->fits && f->counted == CO
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
     size_t used = 0;
     const format *last = formats;
-    for (const format *f = formats; f < formats + FORMAT_COUNT; f++) last = is_meant(f) ? f : last;
+    for (const format *f = formats; f < formats + FORMAT_COUNT; f++) last = is_there(f) && is_meant(f) ? f : last;
     for (const format *f = formats; f <= last; f++)
-        if (is_meant(f))
+        if (is_there(f) && is_meant(f))
             used += (size_t)snprintf(list + used, LIST_BYTES - used, "%s%s%s",
                                      !used       ? ""
                                      : f == last ? " or "
@@ -88,13 +90,15 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     int named = options && options->format;
     char list[LIST_BYTES];
     *chosen = find_format(named ? options->format : ending_of(path));
+    if (*chosen && !is_there(*chosen))
+        return fail(STATUS_USAGE, "%s: is VTKHDF, and this program was built without libhdf5: write vtp", path);
     if (*chosen) return check_fields(path, options, *chosen);
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as %s", options->format,
-                    list_formats(is_any, "", list));
+                    list_formats(is_there, "", list));
     if (output_is_dash(path)) return fail(STATUS_USAGE, "-o - has no ending: name the format by --format");
     return fail(STATUS_USAGE, "%s: its ending names no known format: let it end in %s, or name the format by --format",
-                path, list_formats(is_any, ".", list));
+                path, list_formats(is_there, ".", list));
 }
 
 static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {

@@ -30,7 +30,7 @@ def module(name):
         return None
 
 
-numpy, trimesh, pygltflib = map(module, ("numpy", "trimesh", "pygltflib"))
+numpy, trimesh, pygltflib, h5py = map(module, ("numpy", "trimesh", "pygltflib", "h5py"))
 
 
 class Written(GridCase):
@@ -119,12 +119,33 @@ class Written(GridCase):
                     self.assertEqual((archive[name].dtype.str, archive[name].shape), (kind, shape))
                     self.assertEqual(archive[name].ravel().tolist(), list(values))
 
+    def has_vtkhdf(self):
+        return "VTKHDF" in self.expect(0, "--version").stdout.split("writes:")[1]
+
+    def test_vtkhdf(self):
+        if not h5py or not self.has_vtkhdf():
+            self.skipTest("no h5py or built without libhdf5")
+        for iso, more in (("127.5", []), ("127.5", ["--soup", "--normals"]), ("300", ["--normals"])):
+            points, faces, _ = read_ply(self.written("ply", *more, iso=iso))
+            with h5py.File(self.written("vtkhdf", *more, iso=iso)) as file:
+                root = file["VTKHDF"]
+                self.assertEqual((root.attrs["Type"], list(root.attrs["Version"])), (b"PolyData", [2, 0]))
+                self.assertEqual([tuple(p) for p in root["Points"][()].tolist()], points)
+                corners = root["Polygons/Connectivity"][()]
+                self.assertEqual([tuple(t) for t in corners.reshape(-1, 3).tolist()], faces)
+                self.assertEqual(root["Polygons/Offsets"][()].tolist(), list(range(0, 3 * len(faces) + 1, 3)))
+                self.assertEqual(corners.dtype, "<i4")
+                counts = [root[name][0] for name in ("NumberOfPoints", "Polygons/NumberOfCells",
+                                                     "Polygons/NumberOfConnectivityIds", "Lines/NumberOfCells")]
+                self.assertEqual(counts, [len(points), len(faces), 3 * len(faces), 0])
+                self.assertEqual("Normals" in root["PointData"], "--normals" in more and bool(faces))
+
     def test_empty_npz(self):
         arrays = npz_arrays(self.written("npz", iso="300"))
         self.assertEqual({name: shape for name, (_, shape, _) in arrays.items()}, {"vertices": (0, 3), "faces": (0, 3)})
 
     def test_stream(self):
-        for ending in ("glb", "npz", "off"):
+        for ending in ("glb", "npz", "off", *(["vtkhdf"] if self.has_vtkhdf() else [])):
             with open(self.written(ending), "rb") as file:
                 good = file.read()
             with open(self.path("stream"), "wb") as out:
@@ -135,7 +156,7 @@ class Written(GridCase):
 
     def test_what_formats_lack(self):
         self.refuses(2, "extract", self.volume, "--iso", "1", *REFERENCE, "-o", self.path("a.off"), "--carry", "x",
-                     says="ply, vtp or npz")
+                     says="ply, vtp(,| or) npz")
         for ending in ("off",):
             said = self.expect(0, "extract", self.volume, "--iso", "127.5", *REFERENCE, "--normals", "-o",
                                self.path("a." + ending)).stderr

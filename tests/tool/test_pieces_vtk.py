@@ -10,6 +10,7 @@ from tool_case import GridCase, counts
 
 try:
     import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
 except ImportError:
     print("skipped: this Python has no VTK")
     sys.exit(77)
@@ -121,6 +122,26 @@ class WrittenByVtk(GridCase):
                 self.assertEqual(first["hash"], second["hash"])
             same = ("euler_characteristic", "components", "nonmanifold_edges", "misoriented_edges")
             self.assertEqual([first[k] for k in same], [second[k] for k in same])
+
+    def test_vtkhdf_surface(self):
+        """VTK reads the VTKHDF file that is written as it reads the VTP file: points, triangles, values by their roles."""
+        volume = self.generate("gyroid", "g.nrrd", "24,22,20")
+        for iso, more in (("127.5", ["--normals"]), ("127.5", ["--soup"]), ("300", [])):
+            meshes = []
+            for reader, ending in ((vtk.vtkHDFReader(), "vtkhdf"), (vtk.vtkXMLPolyDataReader(), "vtp")):
+                path = self.path("out." + ending)
+                self.expect(0, "extract", volume, "--iso", iso, "--engine", "reference", "--quiet", "-o", path, *more)
+                reader.SetFileName(path)
+                reader.Update()
+                meshes.append(reader.GetOutput())
+            for arrays in zip(*([vtk_to_numpy(array).tolist() for array in
+                                 (mesh.GetPolys().GetConnectivityArray(), mesh.GetPolys().GetOffsetsArray(),
+                                  *([mesh.GetPoints().GetData()] if mesh.GetNumberOfPoints() else []),
+                                  *([mesh.GetPointData().GetNormals()] if "--normals" in more else []))]
+                                for mesh in meshes)):
+                self.assertEqual(*arrays)
+            self.assertEqual(*(mesh.GetNumberOfPolys() for mesh in meshes))
+            self.assertEqual(meshes[0].GetNumberOfCells(), meshes[0].GetNumberOfPolys())
 
     def test_blocks(self):
         blocks = vtk.vtkMultiBlockDataSet()

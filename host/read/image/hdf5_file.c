@@ -5,6 +5,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "hdf5_memory.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -75,7 +76,8 @@ static int find_only(const hdf5_file *h, char name[NAME_BYTES]) {
     if (!f.count) return fail(STATUS_INPUT, "%s: holds no dataset of numbers with three axes or more", h->path);
     if (f.count > 1)
         return fail(STATUS_USAGE, "%s: holds %d datasets: name one behind a colon, as in %s:/%s, of: %s%s", h->path,
-                    f.count, h->path, f.only, f.list, f.count > NAMES_MOST ? ", ..." : "");
+                    f.count, mapping_is_standard_input(h->path) ? "/dev/stdin" : h->path, f.only, f.list,
+                    f.count > NAMES_MOST ? ", ..." : "");
     snprintf(name, NAME_BYTES, "%s", f.only);
     return 0;
 }
@@ -260,15 +262,13 @@ static int read_place(hdf5_file *h) {
     return 0;
 }
 
-int hdf5_open_file(hdf5_file *h, const char *path) {
+int hdf5_open_file(hdf5_file *h, const char *path, const mapping *file) {
     *h = (hdf5_file){.path = path, .file = -1, .dataset = -1};
     H5Eget_auto2(H5E_DEFAULT, &h->report, &h->report_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    H5Pset_file_locking(access, 0, 1); /* file systems of networks may have no locks */
-    h->file = H5Fopen(path, H5F_ACC_RDONLY, access);
-    H5Pclose(access);
+    const hid_t access = hdf5_memory_access(file->bytes, file->size, -1);
+    if (access >= 0) h->file = H5Fopen(path, H5F_ACC_RDONLY, access);
+    if (access >= 0) H5Pclose(access);
     return h->file < 0 ? hdf5_fail(h, "cannot be opened as HDF5; it is damaged or cut") : 0;
 }
 
@@ -281,9 +281,9 @@ int hdf5_open_array(hdf5_file *h, const char *name) {
     return status ? status : read_storage(h);
 }
 
-int hdf5_open(hdf5_file *h, const char *path, const char *name) {
+int hdf5_open(hdf5_file *h, const char *path, const mapping *file, const char *name) {
     char only[NAME_BYTES];
-    int status = hdf5_open_file(h, path);
+    int status = hdf5_open_file(h, path, file);
     if (!status && !name && !(status = find_only(h, only))) name = only;
     if (!status) status = hdf5_open_array(h, name);
     if (!status) status = check_stored(h);

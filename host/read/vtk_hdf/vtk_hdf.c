@@ -439,11 +439,11 @@ static int read_unstructured(hdf_reader *r, const read_request *request) {
     return status;
 }
 
-/* What VTKHDF file it is; "" where it is none, or is on a stream, which hdf5_read refuses. */
-static int find_type(hdf_reader *r, const read_request *request, char type[HDF5_TEXT_BYTES]) {
+/* What VTKHDF file it is; "" where it is none. */
+static int find_type(hdf_reader *r, const read_request *request, const mapping *file, char type[HDF5_TEXT_BYTES]) {
     type[0] = '\0';
-    if (request->inside || mapping_is_stream(request->path) || mapping_is_replaced(request->path)) return 0;
-    int status = hdf5_open_file(&r->h, request->path);
+    if (request->inside) return 0;
+    int status = hdf5_open_file(&r->h, request->path, file);
     const hid_t group = status ? -1 : hdf5_open_group(&r->h, "/VTKHDF");
     if (group < 0) return status;
     hdf5_read_text(group, "Type", type);
@@ -454,7 +454,7 @@ static int find_type(hdf_reader *r, const read_request *request, char type[HDF5_
 int vtk_hdf_read(const read_request *request, const mapping *file, dataset *out) {
     hdf_reader r = {.h = {.path = request->path, .file = -1, .dataset = -1}, .out = out};
     char type[HDF5_TEXT_BYTES];
-    int is_image = 0, status = find_type(&r, request, type);
+    int is_image = 0, status = find_type(&r, request, file, type);
     if (!status && strcmp(type, "UnstructuredGrid") == 0)
         status = read_unstructured(&r, request);
     else if (!status && *type && strcmp(type, "ImageData") != 0)

@@ -35,25 +35,25 @@ const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
      "isovalue, or several with commas between: samples >= V are inside"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb or .npz (left out: only\n"
-     "the report); with several isovalues, % in FILE stands for the isovalue as\n"
-     "typed; - is standard output (give --format): the report then goes to\n"
-     "standard error"},
+     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
+     "out: only the report); with several isovalues, % in FILE stands for the\n"
+     "isovalue as typed; - is standard output (give --format): the report then\n"
+     "goes to standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
     {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
      "unstructured grid to write: .vtu; - is standard output"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb or npz, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
      "field to contour, of data with several, see 'tetracubes info' (default:\n"
      "the file's active scalars, if it has such); values of cells are averaged\n"
      "to the points between them; point:NAME and cell:NAME choose where both\n"
      "have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
-     "other fields, interpolated onto the vertices (PLY, VTP, NPZ); a name that\n"
-     "the file needs itself, as Normals, gets _ behind"},
+     "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
+     "name that the file needs itself, as Normals, gets _ behind"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},
