@@ -66,6 +66,7 @@ int main(int argc, char **argv) {
     seeds_images();
     seeds_vtk();
     seeds_plot3d();
+    seeds_hdf5();
     seeds_grids();
     seeds_limits("size", size_cases, sizeof size_cases / sizeof *size_cases);
     seeds_limits("distance", distance_cases, sizeof distance_cases / sizeof *distance_cases);
