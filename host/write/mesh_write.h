@@ -53,6 +53,7 @@ typedef struct mesh_write_options {
     const mesh_part
         *parts; /* in the order of vertices; together all of them. part_count 0: one, with the mesh's origin */
     int part_count;
+    const char *world, *units;  /* of coordinates, as "LPS" and "mm", which go into headers; NULL or "": not known */
     const double *origin_at;    /* the world position that becomes 0, 0, 0 in the file. NULL: the file has world
                                    coordinates; STL, which has only float32, has them relative to the mesh's origin */
     struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
@@ -96,6 +97,7 @@ typedef struct complex_file {
     const uint32_t *tetrahedra;         /* 4 points each */
     const struct dataset_field *fields; /* of the points: host/read/dataset/dataset.h */
     int field_count;
+    const char *world, *units; /* as above */
 } complex_file;
 
 /* 0 where path ends with .vtu, else STATUS_USAGE: to be called before any work is done. */

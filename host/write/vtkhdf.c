@@ -157,6 +157,23 @@ static int add_number(hid_t root, const char *name, hsize_t count, int64_t value
     return is_made;
 }
 
+/* A string of the file's field data. */
+static int add_note(hid_t root, const char *name, const char *value) {
+    char path[64];
+    const hid_t type = H5Tcopy(H5T_C_S1), plan = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t space = H5Screate_simple(1, (hsize_t[1]){1}, NULL);
+    snprintf(path, sizeof path, "FieldData/%s", name);
+    H5Tset_size(type, H5T_VARIABLE);
+    H5Pset_obj_track_times(plan, 0);
+    const hid_t made = H5Dcreate2(root, path, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+    const int is_made = made >= 0 && H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0;
+    if (made >= 0) H5Dclose(made);
+    H5Sclose(space);
+    H5Pclose(plan);
+    H5Tclose(type);
+    return is_made;
+}
+
 /* Cells of a kind that the mesh has not. */
 static int add_no_cells(hid_t root, const char *kind) {
     char name[64];
@@ -202,6 +219,8 @@ static int describe(hdf_file *f, hid_t file) {
     is_made = is_made && add_number(root, "NumberOfPoints", 1, (int64_t)file_vertex_count(f->s)) &&
               add_number(root, "Polygons/NumberOfCells", 1, triangles) &&
               add_number(root, "Polygons/NumberOfConnectivityIds", 1, 3 * triangles);
+    for (int n = 0; shown_notes(f->s, n).name && is_made; n++)
+        is_made = add_note(root, shown_notes(f->s, n).name, shown_notes(f->s, n).value);
     for (size_t n = 0; n < f->array_count && is_made; n++) is_made = place_array(root, &f->arrays[n]);
     if (root >= 0) H5Gclose(root);
     return is_made;

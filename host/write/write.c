@@ -198,7 +198,10 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     output o;
     shown_part *parts = NULL;
     vertex_array *arrays = NULL;
-    shown_mesh shown = {.mesh = mesh, .soup = options && options->soup};
+    shown_mesh shown = {.mesh = mesh,
+                        .soup = options && options->soup,
+                        .world = options && options->world ? options->world : "",
+                        .units = options && options->units ? options->units : ""};
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);

@@ -155,6 +155,9 @@ class Pieces(GridCase):
         self.refuses(4, "info", parts, says=r"p/wide\.vtr and .*_4\.vtr overlap: .*vtkGhostType")
         self.write("a.pvtr", index_text(kind, [(wide, pieces[0][1])] + pieces[1:]))
         self.refuses(4, "info", parts, says=r"has the points -2 to 1 along x, but .*a\.pvtr says that it has -2 to 2")
+        early = [(0, 6), *boxes()[4][1:]]
+        self.write("a.pvtr", index_text(kind, pieces[:4] + [(early, pieces[4][1])] + pieces[5:]))
+        self.refuses(4, "info", parts, says=r"has the points 1 to 6 along x, but .*a\.pvtr says that it has 0 to 6")
         self.write("a.pvtr", index_text(kind, pieces + [([(6, 7), (5, 6), (3, 4)], "p/more.vtr")]))
         self.write("p/more.vtr", piece_text(kind, [(6, 7), (5, 6), (3, 4)]))
         self.refuses(4, "info", parts, says="outside of WholeExtent")

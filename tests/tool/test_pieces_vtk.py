@@ -143,6 +143,19 @@ class WrittenByVtk(GridCase):
             self.assertEqual(*(mesh.GetNumberOfPolys() for mesh in meshes))
             self.assertEqual(meshes[0].GetNumberOfCells(), meshes[0].GetNumberOfPolys())
 
+    def test_notes(self):
+        """The space of the input, where 3D Slicer looks for it: an array of strings among the field data."""
+        self.write("a.nrrd", b"NRRD0005\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nspace: LPS\n"
+                   b'space directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: "mm" "mm" "mm"\n\n' +
+                   bytes(n * 37 % 251 for n in range(64)))
+        for reader, ending in ((vtk.vtkHDFReader(), "vtkhdf"), (vtk.vtkXMLPolyDataReader(), "vtp")):
+            path = self.path("out." + ending)
+            self.expect(0, "extract", self.path("a.nrrd"), "--iso", "127.5", "--engine", "reference", "--quiet", "-o", path)
+            reader.SetFileName(path)
+            reader.Update()
+            fields = reader.GetOutput().GetFieldData()
+            self.assertEqual([fields.GetAbstractArray(name).GetValue(0) for name in ("SPACE", "UNITS")], ["LPS", "mm"])
+
     def test_blocks(self):
         blocks = vtk.vtkMultiBlockDataSet()
         image = source()

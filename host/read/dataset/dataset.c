@@ -62,6 +62,12 @@ static int take_memory(dataset *to, dataset *from) {
     return 0;
 }
 
+void dataset_set_units(dataset *d, const char *text) {
+    int is_plain = *text && strlen(text) < sizeof d->units;
+    for (const char *at = text; *at; at++) is_plain &= *at > ' ' && *at < 127 && !strchr("\"'=<>&\\", *at);
+    if (is_plain) snprintf(d->units, sizeof d->units, "%s", text);
+}
+
 char *dataset_text(dataset *d, const char *text) {
     size_t bytes = strlen(text) + 1;
     char *copy = dataset_allocate(d, bytes);

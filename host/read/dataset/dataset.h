@@ -83,6 +83,8 @@ typedef struct dataset {
     int block_count;
     char format[24]; /* "NRRD", "VTK legacy", "VTK XML", "Plot3D", ... */
     char space[64];  /* the file's name of its world space, or "" */
+    char world[8];   /* where the axes of this space point, in letters as RAS and LPS; "" where the file does not say */
+    char units[16];  /* of coordinates, as "mm"; "" where the file does not say */
 
     char **notices;                /* what the user should know about how the file was read: dataset_notice */
     int notice_count, notice_lost; /* lost: there was no memory for one */
@@ -119,6 +121,10 @@ int dataset_keep(dataset *d, void *memory);
  * notices_of that alone. *from is then empty. 0 or STATUS_FAILED, and both are to be released. */
 int dataset_absorb(dataset *to, dataset *from);
 int dataset_notices_of(dataset *to, const dataset *from);
+
+/* Sets the units, unless the text is none that can stand in a header: printed characters without blanks, quotation
+ * marks and '='. */
+void dataset_set_units(dataset *d, const char *text);
 
 /* A copy of the text that lives as long as the dataset. */
 char *dataset_text(dataset *d, const char *text);

@@ -51,6 +51,7 @@ int hdf5_read(const read_request *request, const mapping *file, dataset *out) {
     if (!status) {
         l.swapped = h.is_swapped;
         snprintf(out->format, sizeof out->format, "HDF5");
+        if (h.is_in_um && !request->has_spacing) dataset_set_units(out, "um");
         status = load(request, &h, &stored, &l, out);
     }
     hdf5_close(&h);

@@ -253,7 +253,7 @@ static int read_place(hdf5_file *h) {
     double sizes[3] = {1, 1, 1};
     char name[NAME_BYTES] = "";
     H5Iget_name(h->dataset, name, sizeof name);
-    hdf5_read_numbers(h->dataset, "element_size_um", sizes, 3);
+    h->is_in_um = hdf5_read_numbers(h->dataset, "element_size_um", sizes, 3);
     for (int axis = 0; axis < 3; axis++) h->matrix[axis][axis] = sizes[2 - axis] > 0 ? sizes[2 - axis] : 1;
     if (strncmp(name, "/VTKHDF/CellData/", 17) == 0)
         return fail(STATUS_INPUT, "%s: '%s' has values of cells; of VTKHDF, those of the points of images are read",

@@ -25,6 +25,7 @@ typedef struct hdf5_file {
     uint64_t start;        /* of samples that lie in the file one behind the other */
     uint64_t stored_bytes; /* of the file, that hold them */
     double matrix[3][4];   /* by the attribute element_size_um, or as an image of VTKHDF; else the identity */
+    int is_in_um;          /* by that attribute */
 } hdf5_file;
 
 /* Opens the dataset of that name, or, where it is NULL, the only one that may be a volume. The

@@ -128,9 +128,11 @@ void surface_files_tell_precision(const options *o, int block_count, const surfa
 
 /* --------------------------------------------------------------------------------------------------------- writing */
 
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group) {
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group) {
     mesh_write_options how = write_options(o, mesh);
+    how.world = d->world;
+    how.units = d->units;
     how.fields = fields->fields;
     how.field_count = fields->count;
     how.group = group;

@@ -25,10 +25,10 @@ int surface_files_count_coarse(const options *o, const surface_source *source, c
  * (precision.h). */
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
 
-/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file waits in
- * the group. */
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group);
+/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file says in
+ * which space and units the input's coordinates are, and waits in the group. */
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group);
 
 /* Names the files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
 char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count);
