@@ -91,7 +91,7 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     char list[LIST_BYTES];
     *chosen = find_format(named ? options->format : ending_of(path));
     if (*chosen && !is_there(*chosen))
-        return fail(STATUS_USAGE, "%s: is VTKHDF, and this program was built without libhdf5: write vtp", path);
+        return fail(STATUS_USAGE, "%s: is VTKHDF, for which libhdf5 was not built in: write vtp", path);
     if (*chosen) return check_fields(path, options, *chosen);
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as %s", options->format,
