@@ -21,8 +21,8 @@
  *         use(data.positions, data.vertex_count, data.triangles, data.triangle_count);
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
- * Sections: version, status, devices, context, grid, extraction, other fields, unstructured grids, meshes that stay on
- * the device, expert and test settings.
+ * Sections: version, status, devices, context, grid, extraction, pieces of a grid, surfaces larger than memory, other
+ * fields, unstructured grids, meshes that stay on the device, expert and test settings.
  *
  * What holds for all of it:
  *
@@ -264,6 +264,8 @@ typedef struct tc_grid_options {
                                             points, and what is blanked, of a rectilinear or curvilinear grid. Of a
                                             uniform grid the matrix is the part's, and the part lies within (else
                                             TC_ERROR_ARGUMENT). Samples may be NULL. NULL: a grid by itself */
+    int64_t owned[2]; /* of a piece of the whole: the grid's planes owned[0] <= z < owned[1] are its own, the others are
+                         halo; see "pieces of a grid". 0, 0: all */
 } tc_grid_options;
 
 /* Samples at points, ready for extraction: of a structured grid, or of tetrahedra. */
@@ -364,6 +366,99 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+/* ------------------------------------------------------------------------------------------------ pieces of a grid */
+
+/* A surface in pieces, by processes or one after the other, whose meshes follow each other to the byte as the mesh of
+ * the whole: for volumes larger than memory, and for codes whose ranks have parts of a grid each.
+ *
+ * The order of vertices and triangles is by bricks, and bricks follow each other by layers of four planes. So a piece
+ * that owns whole layers has consecutive vertices and triangles of the whole mesh. It is a tc_grid with `whole` and
+ * `owned` set: both begin at a multiple of 4 planes from the whole's first, and end at one or with the whole. Beside
+ * the planes that it owns the grid has, but at the ends of the whole, a halo of at least 4 planes before and 2 behind;
+ * for TC_METHOD_SNAP 8 on either side. tc_count, tc_extract and tc_interpolate_field give what the piece owns.
+ *
+ * Cells between two pieces use vertices of the later one. Their numbers follow from its seam: how many of its vertices
+ * lie before each brick of its first layer, tc_seam_size numbers, 4 bytes for 64 x 8 samples of a plane. So:
+ * tc_count_piece of all pieces; each one's seam goes to the piece before; sums of counts are the base of each;
+ * tc_extract_piece. In a piece's triangles, indices below its vertex_count are its own vertices, and vertex_count + n
+ * is vertex n of the next piece. In the whole mesh all of them are larger by the number of vertices of the pieces
+ * before. */
+
+/* The numbers in a seam: bricks in a layer of the grid. */
+TC_API uint64_t tc_seam_size(const tc_grid *grid);
+
+/* As tc_count; fills seam, which has room for seam_size numbers (TC_ERROR_ARGUMENT where that is not tc_seam_size).
+ * Structured grids only. */
+TC_API tc_status tc_count_piece(tc_grid *grid, const tc_extract_options *options, tc_counts *counts, uint32_t *seam,
+                                uint64_t seam_size);
+
+/* As tc_extract. next_seam: of the piece behind, by the same options; NULL with 0 where the whole ends with this one.
+ * TC_ERROR_LIMIT also where vertices of the next piece have no number of 32 bits beside those of this one. */
+TC_API tc_status tc_extract_piece(tc_grid *grid, const tc_extract_options *options, const uint32_t *next_seam,
+                                  uint64_t seam_size, tc_mesh **mesh);
+
+/* ------------------------------------------------------------------------------------- surfaces larger than memory */
+
+/* A stream: samples come window by window of planes, and meshes go piece by piece; together the pieces are, to the
+ * byte, what tc_extract makes of the whole. It takes two passes: all is counted, then emitted, and windows that no
+ * surface passes through are not asked for again. A window that holds the whole grid is asked for once. */
+
+/* Planes of samples of a stream's grid, x fastest. */
+typedef struct tc_planes {
+    size_t struct_size;
+    int64_t first, count;     /* of the whole: planes first to first + count - 1 */
+    void *samples;            /* aligned to the type */
+    uint8_t *blanked_samples; /* one per sample, as in tc_grid_options; NULL where the grid has none */
+    uint8_t *blanked_cells;   /* planes first to first + count - 1 of cells, less where the whole ends; likewise */
+} tc_planes;
+
+/* Fills the arrays, or sets them to memory of its own, which stays as it is until the next call or the end of the
+ * stream. Within a pass no window begins or ends before the one before it, except that parts of the window asked for
+ * last may be asked for again, where a mesh is too large. Nonzero ends the stream. */
+typedef int (*tc_read_planes)(void *user, tc_planes *planes);
+
+/* Told once, between the passes: counts of each surface, in their order. Nonzero ends the stream. */
+typedef int (*tc_take_counts)(void *user, const tc_counts *counts);
+
+/* A piece of a mesh. */
+typedef struct tc_mesh_piece {
+    size_t struct_size;
+    size_t surface;                        /* index of the surface */
+    uint64_t first_vertex, first_triangle; /* in the whole mesh */
+    const tc_mesh_data *mesh; /* valid during the call; add first_vertex to the indices of its triangles, of which those
+                                 from mesh->vertex_count on are vertices of the next piece */
+    tc_grid *grid;            /* of the piece, for tc_interpolate_field and tc_grid_origin */
+    int64_t first_plane, plane_count; /* of the whole: those that the grid has */
+} tc_mesh_piece;
+
+/* Takes the next piece: of each surface in the order of the mesh, those without vertices and triangles left out.
+ * Nonzero ends the stream. */
+typedef int (*tc_take_piece)(void *user, const tc_mesh_piece *piece);
+
+typedef struct tc_stream_options {
+    size_t struct_size;          /* set by tc_stream_options_init */
+    const tc_grid_options *grid; /* the whole, uniform or rectilinear, without samples. Arrays of blanked samples or
+                                    cells are not looked at: not NULL says that planes have them */
+    const tc_extract_options *surfaces; /* one for each surface */
+    size_t surface_count;
+    uint64_t max_memory_bytes; /* host memory for a window of samples and a piece of a mesh; 0: 256 MiB. At least that
+                                  of a few planes, and of the mesh of one layer of bricks, is taken */
+    tc_read_planes read;
+    tc_take_counts counted; /* NULL: none */
+    tc_take_piece take;     /* NULL: the stream ends when all is counted */
+    void *user;             /* handed to these three, which run on the thread of the call */
+    int64_t owned[2];       /* only the pieces of planes owned[0] to before owned[1] of the whole, multiples of 4 or its
+                               ends: numbers then count from 0 there, and the last triangles may use vertices of the
+                               piece behind, as in tc_extract_piece. 0, 0: all */
+} tc_stream_options;
+
+/* Defaults: nothing given. */
+TC_API void tc_stream_options_init(tc_stream_options *options);
+
+/* Runs a stream on a context, with either engine. TC_ERROR_CANCELLED where a callback ends it; errors as of
+ * tc_grid_create and tc_extract, except that a whole mesh may have more than 2^32 - 1 vertices: a piece may not. */
+TC_API tc_status tc_stream(tc_context *context, const tc_stream_options *options);
 
 /* ---------------------------------------------------------------------------------------------------- other fields */
 

@@ -101,6 +101,7 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
     if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
     context->process = getpid();
     context->options = o;
+    context->progress_share = 1;
     context->expert = expert;
     context->is_trial = is_trial;
     context->options.device = NULL;

@@ -34,6 +34,19 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
+/* Whether a sample is snapped depends on samples up to five steps away, and the numbers behind a piece on two planes.
+ */
+enum { SNAP_HALO = 8 };
+
+static tc_status piece_check(const tc_grid *grid, const tc_extract_options *options) {
+    const int64_t before = grid->own[0], behind = grid->dims[2] - grid->own[1];
+    if (grid->complex || !method_has_zeros(options->method)) return TC_OK;
+    if ((!grid->cut[0] || before >= SNAP_HALO) && (!grid->cut[1] || behind >= SNAP_HALO)) return TC_OK;
+    return (tc_status)fail(TC_ERROR_ARGUMENT,
+                           "method snap needs a halo of %d planes on either side of a piece: there are %lld and %lld",
+                           SNAP_HALO, (long long)before, (long long)behind);
+}
+
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other variant of the kernels.
  */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
@@ -67,12 +80,18 @@ tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_counts *
     if (!status && !grid) status = (tc_status)fail(TC_ERROR_ARGUMENT, "tc_count needs a grid");
     if (!status) status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
+    if (!status) status = piece_check(grid, &o);
     if (!status) status = surface_count_vetted(grid, &o, 1, &found);
     if (status) return status;
     if (grid->device) grid->context->counted_grid = grid; /* for tc_emit */
     found.mesh_bytes = channels_mesh_bytes(channels_asked(&o), found.vertex_count, found.triangle_count);
     struct_copy_out(counts, &found);
     return TC_OK;
+}
+
+/* A piece's last triangles use vertices of the next piece. */
+static tc_status seam_refuse(const char *call) {
+    return (tc_status)fail(TC_ERROR_ARGUMENT, "%s takes no piece that others follow: use tc_extract_piece", call);
 }
 
 tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_device_mesh *mesh,
@@ -89,6 +108,7 @@ tc_status tc_emit(tc_grid *grid, const tc_extract_options *options, const tc_dev
     if (grid->complex)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_emit does not take grids of tetrahedra: use tc_extract");
     if (!grid->device) return (tc_status)fail(TC_ERROR_ARGUMENT, "the reference engine has no device to emit on");
+    if (grid_has_seam(grid)) return seam_refuse("tc_emit");
     status = structured_emit(grid, &o, &m, done);
     vetting_restarts(grid->context); /* what was counted is gone: the caller counts again */
     return status;
@@ -112,6 +132,8 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);
     if (!status) status = context_check(grid->context);
+    if (!status) status = piece_check(grid, &o);
+    if (!status && grid_has_seam(grid) && !grid->seams.next) status = seam_refuse("tc_extract");
     if (!status) status = vetted_extract(grid, &o, mesh);
     while (vetting_restarts(grid->context)) { /* kernels were exchanged on the way */
         mesh_clear(mesh);

@@ -8,6 +8,8 @@
  * With --engine auto, the reference engine takes over where the main engine fails, and goes on from there: its meshes
  * are the same.
  *
+ * Surfaces that would not fit into memory are streamed instead (extract/streamed.h).
+ *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
  * written; the others are, and the exit status is 3. Files of a surface appear together, when all are complete.
  */
@@ -18,6 +20,7 @@
 #include "extract/surface_totals.h"
 #include "extract/surface_files.h"
 #include "extract/surface_notices.h"
+#include "extract/streamed.h"
 #include "failure.h"
 #include "input/input.h"
 #include "library_status.h"
@@ -40,6 +43,7 @@ typedef struct job {
     char start_text[1024];
     extract_report report;
     int failed_count; /* surfaces that failed verification or check */
+    int streams;      /* surfaces are made window by window: the blocks are not uploaded */
 } job;
 
 static int check_usage(job *j) {
@@ -75,7 +79,7 @@ static int fall_back(job *j, int status) {
     j->report.engine = TC_ENGINE_REFERENCE;
     j->report.device[0] = '\0';
     status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->main);
-    return status || !j->blocks.count ? status : engine_upload(j->o, &j->blocks, &j->main);
+    return status || !j->blocks.count || j->streams ? status : engine_upload(j->o, &j->blocks, &j->main);
 }
 
 /* Runs on the second thread. Every thread has a failure text of its own, so this one's is copied for the first. */
@@ -121,17 +125,21 @@ static int cut(job *j) {
     return status ? status : progress_status();
 }
 
+static int describe_device(job *j) {
+    tc_device_info info = {.struct_size = sizeof info};
+    if (j->report.engine == TC_ENGINE_REFERENCE) return 0;
+    int status = library_status(tc_context_device(j->main.context, &info));
+    snprintf(j->report.device, sizeof j->report.device, "%s", info.name);
+    return status;
+}
+
 static int upload(job *j) {
     double begin = now_ms();
     int status = fall_back(j, engine_upload(j->o, &j->blocks, &j->main));
     j->report.upload_ms += now_ms() - begin;
     if (!status && j->o->verify) status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->reference);
     if (!status && j->o->verify) status = engine_upload(j->o, &j->blocks, &j->reference);
-    if (status || j->report.engine == TC_ENGINE_REFERENCE) return status;
-    tc_device_info info = {.struct_size = sizeof info};
-    status = library_status(tc_context_device(j->main.context, &info));
-    snprintf(j->report.device, sizeof j->report.device, "%s", info.name);
-    return status;
+    return status ? status : describe_device(j);
 }
 
 /* The first call makes the kernels ready: what it took beyond the kernels' own time belongs to the device's start. */
@@ -241,12 +249,7 @@ static int make_surface(job *j, surface_report *s) {
     surface_job w = {.j = j, .s = s, .is_good = 1};
     const int blocks_each = j->o->separate_blocks ? 1 : j->blocks.count; /* of each mesh */
     int status = 0;
-    tc_extract_options_init(&w.how);
-    w.how.isovalue = s->iso->value;
-    w.how.normals = j->o->normals;
-    w.how.method = (tc_method)j->o->method;
-    if (j->o->snap >= 0) w.how.snap = j->o->snap;
-    w.how.closed = j->o->closed;
+    engine_options(j->o, s->iso, &w.how);
     if (j->o->count) return count_surface(j, &w.how, s);
     carried_fields_begin(&j->carried);
     for (int first = 0; first < j->blocks.count && !status; first += blocks_each)
@@ -270,6 +273,32 @@ static int make_surfaces(job *j) {
     return 0;
 }
 
+/* ----------------------------------------------------------------------------------------------------------- streams
+ */
+
+/* Makes the surfaces window by window, where they would not fit into memory; else j->streams is 0 afterwards. */
+static int make_streamed(job *j) {
+    const stream_input in = {j->o, &j->data, &j->blocks, &j->carried};
+    const size_t count = j->o->isovalue_count;
+    int status = stream_may_be_needed(&in, &j->streams);
+    if (status || !j->streams) return status;
+    surface_report *s = calloc(count, sizeof *s);
+    if (!s) return fail(STATUS_FAILED, "out of memory for the report");
+    status = stream_surfaces(&in, &j->main, s, &j->streams);
+    if (status && !(status = fall_back(j, status))) status = stream_surfaces(&in, &j->main, s, &j->streams);
+    if (!status) status = describe_device(j);
+    if (!status && !j->streams) {
+        free(s);
+        return 0;
+    }
+    j->report.surfaces = s;
+    j->report.surface_count = count;
+    for (size_t n = 0; n < count; n++) j->report.write_ms += s[n].write_ms;
+    for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
+    for (size_t n = 0; n < count && !status; n++) status = surface_tell_empty(&j->data, &j->field, &s[n]);
+    return status;
+}
+
 static int print_report(job *j, double begin_ms) {
     j->report.total_ms = now_ms() - begin_ms;
     progress_clear();
@@ -287,8 +316,9 @@ int extract_run(const options *o) {
     if (status) goto cleanup;
     if ((status = read_and_start(&j))) goto cleanup;
     if ((status = cut(&j))) goto cleanup;
-    if ((status = upload(&j))) goto cleanup;
-    if ((status = make_surfaces(&j))) goto cleanup;
+    if ((status = make_streamed(&j))) goto cleanup;
+    if (!j.streams && (status = upload(&j))) goto cleanup;
+    if (!j.streams && (status = make_surfaces(&j))) goto cleanup;
     if ((status = print_report(&j, begin))) goto cleanup;
     if (j.failed_count)
         status = fail(STATUS_CHECK, "%d of %zu surfaces failed and %s", j.failed_count, o->isovalue_count,

@@ -23,7 +23,9 @@ typedef struct shown_part {
 
 /* A mesh as the file shows it: what encoders make their records of. */
 typedef struct shown_mesh {
-    const tc_mesh_data *mesh;
+    const tc_mesh_data *mesh;              /* or a piece of it, whose indices count from its own first vertex */
+    uint64_t vertex_count, triangle_count; /* of the whole mesh */
+    uint64_t first_vertex, first_triangle; /* of the piece in it */
     int soup; /* every triangle has vertices of its own: vertex v of the file is corner v of the triangles */
     const vertex_array *arrays; /* beside the positions: those that the format takes */
     int array_count;
@@ -49,16 +51,28 @@ static inline int shows_role(const shown_mesh *s, vertex_role role) {
     return n < s->array_count;
 }
 
-/* The vertex of the mesh that vertex v of the file shows. */
-static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) { return s->soup ? s->mesh->triangles[v] : v; }
+/* The vertex of s->mesh that vertex v of the file shows. */
+static inline uint64_t source_vertex(const shown_mesh *s, uint64_t v) {
+    return s->soup ? s->mesh->triangles[v] : v - s->first_vertex;
+}
 
 /* The vertex of the file at corner c (3 per triangle). */
-static inline uint32_t corner_vertex(const shown_mesh *s, uint64_t c) {
-    return s->soup ? (uint32_t)c : s->mesh->triangles[c];
+static inline uint64_t corner_vertex(const shown_mesh *s, uint64_t c) {
+    return s->soup ? c : s->first_vertex + s->mesh->triangles[c - 3 * s->first_triangle];
 }
 
 static inline uint64_t file_vertex_count(const shown_mesh *s) {
-    return s->soup ? 3 * s->mesh->triangle_count : s->mesh->vertex_count;
+    return s->soup ? 3 * s->triangle_count : s->vertex_count;
+}
+
+/* Those vertices and triangles of the file that s->mesh has. */
+static inline record_span vertex_span(const shown_mesh *s) {
+    const uint64_t count = file_vertex_count(s), first = s->first_vertex;
+    return (record_span){count, first, s->soup ? count : first + s->mesh->vertex_count};
+}
+
+static inline record_span triangle_span(const shown_mesh *s) {
+    return (record_span){s->triangle_count, s->first_triangle, s->first_triangle + s->mesh->triangle_count};
 }
 
 static inline const double *shown_offset(const shown_mesh *s, uint64_t vertex) {

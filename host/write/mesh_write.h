@@ -14,24 +14,26 @@
 /*
  * The table of formats that are written (host/README.md says what a new one needs). ROW is applied to each:
  *
- *     ROW(name, label, roles, has_doubles, counts, fits)
+ *     ROW(name, label, roles, has_doubles, counts, fits, pieces)
  *
  *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
  *     roles        of values that vertices have beside their positions
  *     has_doubles  of coordinates
- *     counts       what the format counts in 32 bits, vertices or triangles
+ *     counts       what the format counts in 32 bits: vertices, triangles or nothing
  *     fits         of a format whose files have a limit of size: the function that tells whether a mesh keeps it
+ *     pieces       how a mesh may be written piece by piece: triangles by NUMBERS of their vertices, by their CORNERS,
+ *                  or NOT, as places in the file are not known before
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
-    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
-    ROW(stl, "STL", 0, 0, triangles, NULL)                                                                             \
-    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL)                                                                    \
-    ROW(off, "OFF", 0, 1, vertices, NULL)                                                                              \
-    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits)                                                                \
-    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)                                                         \
-    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA, 1, vertices, NULL)
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NUMBERS)                                                \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)                                                 \
+    ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                    \
+    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                               \
+    ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                         \
+    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                           \
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NOT)                                                    \
+    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
@@ -87,6 +89,28 @@ int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mes
  * appended to a name that is taken already, by values before or by the format (x, nx, Points, ...).
  */
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
+
+/*
+ * A mesh written piece by piece, for meshes larger than memory: the same bytes as mesh_write makes of all of it. The
+ * pieces come in the order of the mesh, and triangles of a piece may use vertices of the next one: vertex_count + n is
+ * vertex n of that.
+ */
+typedef struct mesh_file mesh_file;
+
+/* 0 where the format can be written so: to be called before any work is done. */
+int mesh_file_check(const char *path, const mesh_write_options *options);
+
+/* whole: counts, origin, and which channels there are (pointers that are not NULL); of options->fields only names and
+ * components matter. *file is to be closed or discarded; NULL after a failure. path and options outlive it. */
+int mesh_file_open(const char *path, const mesh_write_options *options, const tc_mesh_data *whole, mesh_file **file);
+
+/* fields: of the piece's vertices, as many as options->fields has. Errors that last are told by mesh_file_close too. */
+int mesh_file_add(mesh_file *file, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,
+                  const vertex_array *fields);
+
+/* Puts the file under its name, or into options->group. Both accept NULL, and free the mesh_file. */
+int mesh_file_close(mesh_file *file);
+void mesh_file_discard(mesh_file *file);
 
 /* A tetrahedral complex as the file of an unstructured grid, VTK XML .vtu, with the fields that are given. */
 typedef struct complex_file {

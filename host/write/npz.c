@@ -42,7 +42,7 @@ static void add_array(zip_file *z, const char *name, const char *type, int colum
     unsigned char header[HEADER_MOST];
     char file_name[ZIP_NAME_MOST];
     snprintf(file_name, sizeof file_name, "%s.npy", name);
-    zip_add(z, file_name, header, make_header(header, type, records->count, columns), records);
+    zip_add(z, file_name, header, make_header(header, type, records->span.count, columns), records);
 }
 
 void npz_write(output *o, const shown_mesh *s) {

@@ -31,7 +31,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
     for (uint64_t t = first; t < end; t++) {
         *at++ = 'f';
         for (uint64_t corner = 3 * t; corner < 3 * t + 3; corner++)
-            at = put_corner(at, corner_vertex(s, corner) + 1, with_normals);
+            at = put_corner(at, (uint32_t)corner_vertex(s, corner) + 1, with_normals);
         *at++ = '\n';
     }
     return (unsigned char *)at;

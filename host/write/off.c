@@ -19,7 +19,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
         *at++ = '3';
         for (uint64_t corner = 3 * t; corner < 3 * t + 3; corner++) {
             *at++ = ' ';
-            at = put_u32_text(at, corner_vertex(source, corner));
+            at = put_u32_text(at, (uint32_t)corner_vertex(source, corner));
         }
         *at++ = '\n';
     }

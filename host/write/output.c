@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { WRITE_MOST = 1 << 26 };
@@ -34,6 +35,8 @@ static const char *advice(int error) {
         return "create the folder first";
     case EISDIR:
         return "name a file in it";
+    case ESPIPE:
+        return "a mesh that does not fit memory is written at many places of a file: name a file";
     default:
         return "name a file that can be written";
     }
@@ -60,6 +63,11 @@ int output_check(const char *path) {
     return error ? fail_write(path, error) : 0;
 }
 
+int output_is_file(const char *path) {
+    struct stat there;
+    return !output_is_dash(path) && (stat(path, &there) != 0 || S_ISREG(there.st_mode));
+}
+
 int output_open(output *o, const char *path) {
     *o = (output){.name = path, .fd = -1, .lock = -1, .path = strdup(path)};
     o->error = o->path ? output_target_open(o) : ENOMEM;
@@ -69,21 +77,30 @@ int output_open(output *o, const char *path) {
     return fail_write(path, error);
 }
 
-/* Errors are ignored: where the file system lacks the call, or room, the writes will show it. */
+/* Errors are ignored where a file is written in one go: where the file system lacks the call, or room, the writes will
+ * show it. One that takes long to make, in passes, is not begun without room. */
 void output_expect(output *o, uint64_t bytes) {
-    if (o->temporary && bytes > 0 && bytes <= INT64_MAX) (void)fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
+    if (!o->temporary || o->error || bytes <= o->expected || bytes > INT64_MAX) return;
+    o->expected = bytes;
+    if (fallocate(o->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes) != 0 && o->in_passes && errno == ENOSPC)
+        o->error = errno;
 }
 
 static int (*stop_asked)(void);
 
 void output_stop_when(int (*asked)(void)) { stop_asked = asked; }
 
+static ssize_t write_some(output *o, const void *from, size_t bytes) {
+    return o->in_passes ? pwrite(o->fd, from, bytes, (off_t)o->position) : write(o->fd, from, bytes);
+}
+
 void output_bytes(output *o, const void *data, uint64_t bytes) {
     const unsigned char *from = data;
     while (bytes > 0 && !o->error) {
-        ssize_t written = write(o->fd, from, bytes < WRITE_MOST ? bytes : WRITE_MOST);
+        ssize_t written = write_some(o, from, bytes < WRITE_MOST ? bytes : WRITE_MOST);
         if (stop_asked && stop_asked()) o->error = ECANCELED;
         if (written > 0) {
+            o->position += (uint64_t)written;
             from += written;
             bytes -= (uint64_t)written;
         } else if (written == 0) {
@@ -141,19 +158,44 @@ static void encode_blocks(void *shared) {
     free(buffer);
 }
 
-void output_records(output *o, uint64_t count, size_t record_bytes, output_encode *encode, const void *source) {
+static void write_records_of(output *o, uint64_t first, uint64_t end, size_t record_bytes, output_encode *encode,
+                             const void *source) {
     records r = {.o = o,
-                 .count = count,
+                 .count = end,
                  .per_block = OUTPUT_BLOCK / record_bytes,
                  .encode = encode,
                  .source = source,
+                 .next = first,
+                 .turn = first,
                  .lock = PTHREAD_MUTEX_INITIALIZER,
                  .turned = PTHREAD_COND_INITIALIZER,
                  .stopped = o->error != 0};
-    if (count == 0) return;
-    parallel_run((count - 1) / r.per_block + 1, encode_blocks, &r);
-    if (r.turn < count && !o->error) o->error = ENOMEM; /* no thread had memory for its buffer */
+    if (first >= end) return;
+    parallel_run((end - first - 1) / r.per_block + 1, encode_blocks, &r);
+    if (r.turn < end && !o->error) o->error = ENOMEM; /* no thread had memory for its buffer */
 }
+
+void output_records(output *o, uint64_t count, size_t record_bytes, output_encode *encode, const void *source) {
+    write_records_of(o, 0, count, record_bytes, encode, source);
+}
+
+void output_span(output *o, record_span span, size_t record_bytes, output_encode *encode, const void *source) {
+    const uint64_t begin = o->position;
+    o->position = begin + span.first * record_bytes;
+    if (encode)
+        write_records_of(o, span.first, span.end, record_bytes, encode, source);
+    else
+        output_bytes(o, source, (span.end - span.first) * record_bytes);
+    o->position = begin + span.count * record_bytes;
+}
+
+void output_rewind(output *o) {
+    if (!o->temporary && !o->error) o->error = ESPIPE;
+    o->in_passes = 1;
+    o->position = 0;
+}
+
+int output_status(const output *o) { return o->error ? fail_write(o->name, o->error) : 0; }
 
 void output_finish(output *o) {
     if (o->fd >= 0 && close(o->fd) != 0 && !o->error) o->error = errno;

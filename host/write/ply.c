@@ -59,7 +59,7 @@ static void make_header(const shown_mesh *s, file_text *header) {
              (unsigned long long)file_vertex_count(s), type, type, type);
     add_properties(header, s);
     text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
-             (unsigned long long)s->mesh->triangle_count);
+             (unsigned long long)s->triangle_count);
 }
 
 static size_t position_bytes(const shown_mesh *s) { return s->is_moved ? 3 * sizeof(double) : VECTOR_BYTES; }
@@ -88,7 +88,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
     const shown_mesh *s = source;
     for (uint64_t t = first; t < end; t++) {
         uint32_t corners[3];
-        for (uint64_t c = 0; c < 3; c++) corners[c] = corner_vertex(s, 3 * t + c);
+        for (uint64_t c = 0; c < 3; c++) corners[c] = (uint32_t)corner_vertex(s, 3 * t + c);
         *to++ = 3;
         to = put_bytes(to, corners, sizeof corners);
     }
@@ -99,17 +99,17 @@ void ply_write(output *o, const shown_mesh *s) {
     file_text header = {0};
     make_header(s, &header);
     size_t vertex_bytes = position_bytes(s) + (size_t)value_count(s) * sizeof(float);
-    uint64_t vertex_count = file_vertex_count(s), face_count = s->mesh->triangle_count;
+    uint64_t vertex_count = file_vertex_count(s), face_count = s->triangle_count;
     if (header.has_failed) {
         o->error = ENOMEM;
     } else {
         output_expect(o, header.length + vertex_count * vertex_bytes + face_count * FACE_BYTES);
         output_bytes(o, header.bytes, header.length);
         if (s->soup || vertex_bytes > VECTOR_BYTES)
-            output_records(o, vertex_count, vertex_bytes, encode_vertices, s);
+            output_span(o, vertex_span(s), vertex_bytes, encode_vertices, s);
         else
-            output_bytes(o, s->mesh->positions, vertex_count * vertex_bytes);
-        output_records(o, face_count, FACE_BYTES, encode_faces, s);
+            output_span(o, vertex_span(s), vertex_bytes, NULL, s->mesh->positions);
+        output_span(o, triangle_span(s), FACE_BYTES, encode_faces, s);
     }
     text_release(&header);
 }

@@ -32,7 +32,7 @@ unsigned char *encode_positions_f32(const void *source, uint64_t first, uint64_t
 unsigned char *encode_triangles(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
     for (uint64_t c = 3 * first; c < 3 * end; c++) {
-        const uint32_t vertex = corner_vertex(s, c);
+        const uint32_t vertex = (uint32_t)corner_vertex(s, c);
         to = put_bytes(to, &vertex, sizeof vertex);
     }
     return to;
@@ -40,7 +40,7 @@ unsigned char *encode_triangles(const void *source, uint64_t first, uint64_t end
 
 record_array records_of_values(const shown_array *s) {
     const int is_plain = !s->shown->soup;
-    return (record_array){.count = file_vertex_count(s->shown),
+    return (record_array){.span = vertex_span(s->shown),
                           .record_bytes = (size_t)s->array.components * sizeof(float),
                           .encode = is_plain ? NULL : encode_values,
                           .source = is_plain ? (const void *)s->array.values : s};
@@ -48,7 +48,7 @@ record_array records_of_values(const shown_array *s) {
 
 record_array records_of_positions(const shown_mesh *s, int as_doubles) {
     const int is_plain = !s->soup && !s->is_moved && !as_doubles;
-    return (record_array){.count = file_vertex_count(s),
+    return (record_array){.span = vertex_span(s),
                           .record_bytes = 3 * (as_doubles ? sizeof(double) : sizeof(float)),
                           .encode = is_plain     ? NULL
                                     : as_doubles ? encode_positions_f64
@@ -57,16 +57,11 @@ record_array records_of_positions(const shown_mesh *s, int as_doubles) {
 }
 
 record_array records_of_triangles(const shown_mesh *s) {
-    const int is_plain = !s->soup;
-    return (record_array){.count = s->mesh->triangle_count,
+    const int is_plain = !s->soup && !s->first_vertex;
+    return (record_array){.span = triangle_span(s),
                           .record_bytes = 3 * sizeof(uint32_t),
                           .encode = is_plain ? NULL : encode_triangles,
                           .source = is_plain ? (const void *)s->mesh->triangles : s};
 }
 
-void write_records(output *o, const record_array *r) {
-    if (r->encode)
-        output_records(o, r->count, r->record_bytes, r->encode, r->source);
-    else
-        output_bytes(o, r->source, record_array_bytes(r));
-}
+void write_records(output *o, const record_array *r) { output_span(o, r->span, r->record_bytes, r->encode, r->source); }

@@ -18,9 +18,9 @@ unsigned char *encode_positions_f64(const void *source, uint64_t first, uint64_t
 unsigned char *encode_positions_f32(const void *source, uint64_t first, uint64_t end, unsigned char *to);
 unsigned char *encode_triangles(const void *source, uint64_t first, uint64_t end, unsigned char *to);
 
-/* Records that lie in memory as they should lie in the file have no encode. */
+/* Records for output_span. Those that lie in memory as they should lie in the file have no encode. */
 typedef struct record_array {
-    uint64_t count;
+    record_span span;
     size_t record_bytes;
     output_encode *encode;
     const void *source;
@@ -30,7 +30,7 @@ record_array records_of_values(const shown_array *s);
 record_array records_of_positions(const shown_mesh *s, int as_doubles);
 record_array records_of_triangles(const shown_mesh *s);
 
-static inline uint64_t record_array_bytes(const record_array *r) { return r->count * r->record_bytes; }
+static inline uint64_t record_array_bytes(const record_array *r) { return r->span.count * r->record_bytes; }
 
 void write_records(output *o, const record_array *r);
 

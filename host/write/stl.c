@@ -29,7 +29,7 @@ static unsigned char *encode_triangles(const void *source, uint64_t first, uint6
     const shown_mesh *s = source;
     const tc_mesh_data *mesh = s->mesh;
     for (uint64_t t = first; t < end; t++) {
-        const uint32_t *vertices = mesh->triangles + 3 * t;
+        const uint32_t *vertices = mesh->triangles + 3 * (t - s->first_triangle);
         const float *corners[3];
         float vectors[4][3];
         for (int c = 0; c < 3; c++) corners[c] = mesh->positions + 3 * (uint64_t)vertices[c];
@@ -49,9 +49,9 @@ void stl_write(output *o, const shown_mesh *s) {
         snprintf(header + used, HEADER_BYTES - used, "%s%s=%s", n ? " " : ". ", shown_notes(s, n).name,
                  shown_notes(s, n).value);
     }
-    uint32_t count = (uint32_t)s->mesh->triangle_count;
+    uint32_t count = (uint32_t)s->triangle_count;
     memcpy(header + HEADER_BYTES, &count, sizeof count);
     output_expect(o, sizeof header + (uint64_t)count * TRIANGLE_BYTES);
     output_bytes(o, header, sizeof header);
-    output_records(o, count, TRIANGLE_BYTES, encode_triangles, s);
+    output_span(o, triangle_span(s), TRIANGLE_BYTES, encode_triangles, s);
 }

@@ -8,7 +8,7 @@
 
 enum { ALIGNMENT = 8, LENGTH_BYTES = 8 };
 
-static uint64_t array_bytes(const vtk_array *a) { return a->record_count * a->record_bytes; }
+static uint64_t array_bytes(const vtk_array *a) { return a->span.count * a->record_bytes; }
 
 static uint64_t padding(uint64_t bytes) { return (ALIGNMENT - bytes % ALIGNMENT) % ALIGNMENT; }
 
@@ -105,10 +105,7 @@ void vtk_field_add(vtk_file *f, const vtk_array *array, const char *const *own) 
 static void write_array(output *o, const vtk_array *a) {
     uint64_t bytes = array_bytes(a);
     output_bytes(o, &bytes, sizeof bytes);
-    if (a->encode)
-        output_records(o, a->record_count, a->record_bytes, a->encode, a->source);
-    else
-        output_bytes(o, a->source, bytes);
+    output_span(o, a->span, a->record_bytes, a->encode, a->source);
     output_bytes(o, (char[ALIGNMENT]){0}, padding(bytes));
 }
 

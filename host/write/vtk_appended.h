@@ -19,7 +19,7 @@ typedef struct vtk_array {
     const char *name;
     int type; /* stored_types.h */
     int components;
-    uint64_t record_count;
+    record_span span;
     size_t record_bytes;
     output_encode *encode; /* NULL: the source lies in memory as it should lie in the file */
     const void *source;

@@ -101,16 +101,17 @@ static void add_values(hdf_file *f) {
 
 static void list_arrays(hdf_file *f) {
     const shown_mesh *s = f->s;
-    const uint64_t triangles = s->mesh->triangle_count;
+    const uint64_t triangles = s->triangle_count;
     const size_t index = f->is_wide ? 8 : 4;
     const hid_t type = f->is_wide ? H5T_STD_I64LE : H5T_STD_I32LE;
+    record_span starts = triangle_span(s);
+    starts.end += starts.end == starts.count++;
     add_array(f, strdup("Points"), s->is_moved ? H5T_IEEE_F64LE : H5T_IEEE_F32LE, file_vertex_count(s), 3,
               records_of_positions(s, s->is_moved));
     add_values(f);
     add_array(f, strdup("Polygons/Connectivity"), type, 3 * triangles, 1,
-              (record_array){triangles, 3 * index, encode_corners, f});
-    add_array(f, strdup("Polygons/Offsets"), type, triangles + 1, 1,
-              (record_array){triangles + 1, index, encode_starts, f});
+              (record_array){triangle_span(s), 3 * index, encode_corners, f});
+    add_array(f, strdup("Polygons/Offsets"), type, triangles + 1, 1, (record_array){starts, index, encode_starts, f});
 }
 
 /* ------------------------------------------------------------------------------------------------------ description */
@@ -211,7 +212,7 @@ static int place_array(hid_t root, hdf_array *a) {
 static int describe(hdf_file *f, hid_t file) {
     static const char *const groups[] = {"PointData", "CellData", "FieldData", "Polygons"};
     static const char *const none[] = {"Vertices", "Lines", "Strips"};
-    const int64_t triangles = (int64_t)f->s->mesh->triangle_count;
+    const int64_t triangles = (int64_t)f->s->triangle_count;
     const hid_t root = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int is_made = root >= 0 && add_version(root) && add_text(root, "Type", "PolyData");
     for (size_t n = 0; n < sizeof groups / sizeof *groups && is_made; n++) is_made = add_group(root, groups[n]);
@@ -287,7 +288,7 @@ static void write_vtkhdf(output *o, const shown_mesh *s) {
                   .shown = malloc(((size_t)s->array_count + 1) * sizeof *f.shown),
                   .arrays = malloc(((size_t)s->array_count + OWN_ARRAYS) * sizeof *f.arrays),
                   .memory = memfd_create("vtkhdf", MFD_CLOEXEC),
-                  .is_wide = vtk_needs_wide(file_vertex_count(s), 3 * s->mesh->triangle_count)};
+                  .is_wide = vtk_needs_wide(file_vertex_count(s), 3 * s->triangle_count)};
     H5E_auto2_t report;
     void *report_data;
     H5Eget_auto2(H5E_DEFAULT, &report, &report_data);

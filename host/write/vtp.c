@@ -14,7 +14,7 @@
 /* The attributes of points that the format knows; other arrays have names of their own. */
 static const char *const attributes[ROLE_COUNT] = {[ROLE_NORMALS] = "Normals"};
 
-static int is_wide(const shown_mesh *s) { return vtk_needs_wide(file_vertex_count(s), 3 * s->mesh->triangle_count); }
+static int is_wide(const shown_mesh *s) { return vtk_needs_wide(file_vertex_count(s), 3 * s->triangle_count); }
 
 static unsigned char *encode_corners(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
     const shown_mesh *s = source;
@@ -35,7 +35,7 @@ static vtk_array file_array(const shown_array *s) {
     return (vtk_array){.name = attribute ? attribute : s->array.name,
                        .type = TC_F32,
                        .components = s->array.components,
-                       .record_count = records.count,
+                       .span = records.span,
                        .record_bytes = records.record_bytes,
                        .encode = records.encode,
                        .source = records.source};
@@ -66,25 +66,25 @@ static void add_positions(vtk_file *f, const shown_mesh *s, const shown_array *p
     vtk_array_add(f, &(vtk_array){.name = "Points",
                                   .type = TC_F64,
                                   .components = 3,
-                                  .record_count = file_vertex_count(s),
+                                  .span = vertex_span(s),
                                   .record_bytes = 3 * sizeof(double),
                                   .encode = encode_positions_f64,
                                   .source = s});
 }
 
 static void add_triangles(vtk_file *f, const shown_mesh *s) {
-    int wide = is_wide(s), is_plain = !s->soup && !wide;
+    int wide = is_wide(s), is_plain = !s->soup && !wide && !s->first_vertex;
     vtk_array_add(f, &(vtk_array){.name = "connectivity",
                                   .type = vtk_index_type(wide),
                                   .components = 1,
-                                  .record_count = s->mesh->triangle_count,
+                                  .span = triangle_span(s),
                                   .record_bytes = wide ? 24 : 12,
                                   .encode = is_plain ? NULL : encode_corners,
                                   .source = is_plain ? (const void *)s->mesh->triangles : s});
     vtk_array_add(f, &(vtk_array){.name = "offsets",
                                   .type = vtk_index_type(wide),
                                   .components = 1,
-                                  .record_count = s->mesh->triangle_count,
+                                  .span = triangle_span(s),
                                   .record_bytes = wide ? 8 : 4,
                                   .encode = encode_ends,
                                   .source = s});
@@ -102,7 +102,7 @@ void vtp_write(output *o, const shown_mesh *s) {
     text_add(&f.text,
              "    <Piece NumberOfPoints=\"%llu\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
              "NumberOfPolys=\"%llu\">\n",
-             (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count);
+             (unsigned long long)file_vertex_count(s), (unsigned long long)s->triangle_count);
     add_arrays(&f, s, arrays);
     text_add(&f.text, "      <Points>\n");
     add_positions(&f, s, &points);

@@ -42,7 +42,7 @@ static void add_field(vtk_file *f, const complex_file *c, const dataset_field *f
     const vtk_array array = {.name = field->name,
                              .type = (int)field->type,
                              .components = field->components,
-                             .record_count = c->point_count,
+                             .span = {c->point_count, 0, c->point_count},
                              .record_bytes = (size_t)field->components * sample_bytes(field->type),
                              .source = field->values};
     vtk_field_add(f, &array, own);
@@ -53,21 +53,21 @@ static void add_cells(vtk_file *f, const complex_file *c) {
     vtk_array_add(f, &(vtk_array){.name = "connectivity",
                                   .type = vtk_index_type(wide),
                                   .components = 1,
-                                  .record_count = c->tetrahedron_count,
+                                  .span = {c->tetrahedron_count, 0, c->tetrahedron_count},
                                   .record_bytes = wide ? 32 : 16,
                                   .encode = wide ? encode_corners : NULL,
                                   .source = wide ? (const void *)c : c->tetrahedra});
     vtk_array_add(f, &(vtk_array){.name = "offsets",
                                   .type = vtk_index_type(wide),
                                   .components = 1,
-                                  .record_count = c->tetrahedron_count,
+                                  .span = {c->tetrahedron_count, 0, c->tetrahedron_count},
                                   .record_bytes = wide ? 8 : 4,
                                   .encode = encode_ends,
                                   .source = c});
     vtk_array_add(f, &(vtk_array){.name = "types",
                                   .type = TC_U8,
                                   .components = 1,
-                                  .record_count = c->tetrahedron_count,
+                                  .span = {c->tetrahedron_count, 0, c->tetrahedron_count},
                                   .record_bytes = 1,
                                   .encode = encode_types,
                                   .source = c});
@@ -93,7 +93,7 @@ int complex_write(const char *path, const complex_file *c) {
     vtk_array_add(&f, &(vtk_array){.name = "Points",
                                    .type = c->points_f64 ? TC_F64 : TC_F32,
                                    .components = 3,
-                                   .record_count = c->point_count,
+                                   .span = {c->point_count, 0, c->point_count},
                                    .record_bytes = c->points_f64 ? 24 : 12,
                                    .source = c->points_f64 ? (const void *)c->points_f64 : c->points});
     text_add(&f.text, "      </Points>\n      <Cells>\n");

@@ -6,6 +6,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "formats.h"
+#include "held_triangles.h"
 #include "output_group.h"
 #include "vtkhdf.h"
 
@@ -18,7 +19,8 @@ void (*vtkhdf_writer)(output *o, const shown_mesh *s);
 
 void vtkhdf_write(output *o, const shown_mesh *s) { vtkhdf_writer(o, s); }
 
-enum counted { COUNTS_vertices, COUNTS_triangles };
+enum counted { COUNTS_vertices, COUNTS_triangles, COUNTS_nothing };
+enum pieces { PIECES_NOT, PIECES_NUMBERS, PIECES_CORNERS };
 
 typedef struct format {
     const char *name;
@@ -27,10 +29,11 @@ typedef struct format {
     int has_doubles; /* for coordinates */
     enum counted counted;
     int (*fits)(const shown_mesh *s); /* NULL: whatever the counts allow */
+    enum pieces pieces;
 } format;
 
-#define FORMAT(name, label, roles, has_doubles, counts, fits)                                                          \
-    {#name, name##_write, roles, has_doubles, COUNTS_##counts, fits},
+#define FORMAT(name, label, roles, has_doubles, counts, fits, pieces)                                                  \
+    {#name, name##_write, roles, has_doubles, COUNTS_##counts, fits, PIECES_##pieces},
 static const format formats[] = {MESH_FORMATS(FORMAT)};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
@@ -50,7 +53,9 @@ static int has_role(const format *f, vertex_role role) { return f->roles >> role
 
 static int has_data(const format *f) { return has_role(f, ROLE_DATA); }
 
-static int is_of_any_size(const format *f) { return !f->fits && f->counted == COUNTS_vertices; }
+static int is_of_any_size(const format *f) { return !f->fits && f->counted != COUNTS_triangles; }
+
+static int goes_in_pieces(const format *f) { return f->pieces != PIECES_NOT; }
 
 /* Makes "ply, vtp, stl or obj" of the formats that are meant, with `before` in front of each name. */
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
@@ -104,6 +109,7 @@ static int choose_format(const char *path, const mesh_write_options *options, co
 static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {
     int by_triangles = f->counted == COUNTS_triangles;
     uint64_t count = by_triangles ? mesh->triangle_count : mesh->vertex_count;
+    if (f->counted == COUNTS_nothing) return 0;
     if (!by_triangles && soup && mesh->triangle_count > FORMAT_LIMIT / 3)
         return fail(STATUS_FAILED,
                     "%s: %llu triangles with vertices of their own are more than the 2^32 - 1 vertices that %s holds; "
@@ -112,7 +118,7 @@ static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, co
     if (count > FORMAT_LIMIT)
         return fail(STATUS_FAILED, "%s: %llu %s are more than the 2^32 - 1 that %s holds%s", path,
                     (unsigned long long)count, by_triangles ? "triangles" : "vertices", f->name,
-                    by_triangles ? "; write ply or obj instead" : "; extract a part of the volume");
+                    by_triangles ? "; write ply or obj instead" : "; write vtp, or extract a part of the volume");
     return 0;
 }
 
@@ -157,7 +163,7 @@ int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mes
 /* Fills s->parts: what is added to the positions of each part. *parts, from malloc, is the caller's to free, also after
  * a failure. */
 static int set_offsets(shown_mesh *s, const mesh_write_options *options, const format *f, shown_part **parts) {
-    const mesh_part whole = {.vertex_count = s->mesh->vertex_count,
+    const mesh_part whole = {.vertex_count = s->vertex_count,
                              .origin = {s->mesh->origin[0], s->mesh->origin[1], s->mesh->origin[2]}};
     const int count = options ? options->part_count : 0;
     const mesh_part *from = count ? options->parts : &whole;
@@ -193,15 +199,21 @@ static int set_arrays(shown_mesh *s, const mesh_write_options *options, const fo
     return 0;
 }
 
+static void set_notes(shown_mesh *s, const mesh_write_options *options) {
+    s->world = options && options->world ? options->world : "";
+    s->units = options && options->units ? options->units : "";
+}
+
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
     shown_part *parts = NULL;
     vertex_array *arrays = NULL;
     shown_mesh shown = {.mesh = mesh,
-                        .soup = options && options->soup,
-                        .world = options && options->world ? options->world : "",
-                        .units = options && options->units ? options->units : ""};
+                        .vertex_count = mesh->vertex_count,
+                        .triangle_count = mesh->triangle_count,
+                        .soup = options && options->soup};
+    set_notes(&shown, options);
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);
@@ -215,4 +227,115 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     free(parts);
     free(arrays);
     return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- pieces */
+
+struct mesh_file {
+    const format *format;
+    const mesh_write_options *options;
+    tc_mesh_data whole;
+    output o;
+    shown_mesh shown;
+    shown_part *parts;
+    vertex_array *arrays;
+    held_triangles held; /* of a format that has triangles by their corners: those that wait for the next piece */
+};
+
+int mesh_file_check(const char *path, const mesh_write_options *options) {
+    const format *f;
+    char list[LIST_BYTES];
+    int status = choose_format(path, options, &f);
+    if (status) return status;
+    if (!goes_in_pieces(f))
+        return fail(STATUS_USAGE,
+                    "%s: %s is not written piece by piece, as a mesh has to be that does not fit memory; "
+                    "write %s",
+                    path, f->name, list_formats(goes_in_pieces, "", list));
+    if (options && options->soup)
+        return fail(STATUS_USAGE,
+                    "%s: vertices of their own for every triangle (--soup) are not written piece by piece", path);
+    return output_is_file(path) ? 0
+                                : fail(STATUS_USAGE,
+                                       "%s: a mesh that does not fit memory is written at many places "
+                                       "of a file: name a file",
+                                       path);
+}
+
+int mesh_file_open(const char *path, const mesh_write_options *options, const tc_mesh_data *whole, mesh_file **file) {
+    mesh_file *m = calloc(1, sizeof *m);
+    *file = NULL;
+    if (!m) return fail(STATUS_FAILED, "out of memory for a file");
+    m->options = options;
+    m->whole = *whole;
+    m->shown =
+        (shown_mesh){.mesh = &m->whole, .vertex_count = whole->vertex_count, .triangle_count = whole->triangle_count};
+    set_notes(&m->shown, options);
+    int status = choose_format(path, options, &m->format);
+    if (!status) status = check_counts(path, whole, 0, m->format);
+    if (!status) status = set_offsets(&m->shown, options, m->format, &m->parts);
+    if (!status) status = set_arrays(&m->shown, options, m->format, &m->arrays);
+    if (!status) status = output_open(&m->o, path);
+    if (!status) {
+        *file = m;
+        return 0;
+    }
+    free(m->parts);
+    free(m->arrays);
+    free(m);
+    return status;
+}
+
+static int write_piece(mesh_file *m, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece) {
+    m->shown.mesh = piece;
+    m->shown.first_vertex = first_vertex;
+    m->shown.first_triangle = first_triangle;
+    output_rewind(&m->o);
+    m->format->write(&m->o, &m->shown);
+    return m->o.error ? output_status(&m->o) : 0;
+}
+
+/* The values of this piece's vertices. */
+static void set_values(mesh_file *m, const tc_mesh_data *piece, const vertex_array *fields) {
+    vertex_array *to = m->arrays;
+    for (int n = 0; n < CHANNEL_COUNT; n++)
+        if (mesh_values(&m->whole, n) && has_role(m->format, mesh_channels[n].role))
+            (to++)->values = mesh_values(piece, n);
+    for (int n = 0; n < m->options->field_count; n++) (to++)->values = fields[n].values;
+}
+
+int mesh_file_add(mesh_file *m, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,
+                  const vertex_array *fields) {
+    tc_mesh_data ready;
+    uint64_t first_ready;
+    int status = 0;
+    set_values(m, piece, fields);
+    if (m->format->pieces == PIECES_NUMBERS) return write_piece(m, first_vertex, first_triangle, piece);
+    if (held_complete(&m->held, piece, &ready, &first_ready)) status = write_piece(m, 0, first_ready, &ready);
+    ready = *piece;
+    if (!status) status = held_take(&m->held, first_triangle, &ready);
+    return status ? status : write_piece(m, 0, first_triangle, &ready);
+}
+
+static void free_mesh_file(mesh_file *m) {
+    held_release(&m->held);
+    free(m->parts);
+    free(m->arrays);
+    free(m);
+}
+
+int mesh_file_close(mesh_file *m) {
+    if (!m) return 0;
+    const tc_mesh_data none = {.struct_size = sizeof none};
+    const mesh_write_options *options = m->options;
+    if (!m->o.position) write_piece(m, 0, 0, &none); /* there was no piece */
+    const int status = options && options->group ? output_wait(&m->o, options->group) : output_close(&m->o);
+    free_mesh_file(m);
+    return status;
+}
+
+void mesh_file_discard(mesh_file *m) {
+    if (!m) return;
+    output_discard(&m->o);
+    free_mesh_file(m);
 }

@@ -45,8 +45,8 @@ static uint32_t sum_records(zip_file *z, uint32_t before, const record_array *r)
     const uint64_t block = OUTPUT_BLOCK / r->record_bytes;
     unsigned char *encoded = malloc(OUTPUT_BLOCK);
     if (!encoded) z->o->error = ENOMEM;
-    for (uint64_t first = 0; first < r->count && encoded && !z->o->error; first += block) {
-        const uint64_t end = r->count - first < block ? r->count : first + block;
+    for (uint64_t first = 0; first < r->span.count && encoded && !z->o->error; first += block) {
+        const uint64_t end = r->span.count - first < block ? r->span.count : first + block;
         before = zip_check_sum(before, encoded, (size_t)(r->encode(r->source, first, end, encoded) - encoded));
     }
     free(encoded);

@@ -35,6 +35,9 @@ typedef struct arguments {
     uint64_t value_count;
     int *count_at, index, count;
     double *origin_at, origin[3];
+    uint32_t *seam, *next_seam; /* a grid that is no piece has none behind it */
+    uint64_t seam_size, next_seam_size;
+    tc_stream_options stream_options, *stream_options_at;
     const char *job;
 } arguments;
 
@@ -47,6 +50,7 @@ typedef struct world {
 } world;
 
 static float points[3 * POINTS], field_values[SAMPLES], values[CARRIED_MOST], axis[SIZE], lattice[3 * SAMPLES];
+static uint32_t seam[SIZE];
 static const double complex_samples[POINTS] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
 static const uint8_t types[CELLS] = {12, 10, 42}; /* a hexahedron, a tetrahedron, the same as a polyhedron */
 static const int64_t offsets[CELLS + 1] = {0, 8, CORNERS, CORNERS};
@@ -69,6 +73,12 @@ static void arrays_fill(void) {
         lattice[3 * n + 2] = (float)(n / SIZE / SIZE);
     }
     for (int n = 0; n < SIZE; n++) axis[n] = (float)n;
+}
+
+static int planes_give(void *user, tc_planes *planes) {
+    (void)user;
+    planes->samples = samples + planes->first * SIZE * SIZE;
+    return 0;
 }
 
 static void arguments_fill(const world *w, arguments *a) {
@@ -111,6 +121,13 @@ static void arguments_fill(const world *w, arguments *a) {
     a->counts_at = &a->counts, a->mesh_data_at = &a->mesh_data, a->info_at = &a->info;
     a->tuning_at = &a->tuning, a->tetrahedra_at = &a->tetrahedra, a->count_at = &a->count;
     a->origin_at = a->origin;
+    a->seam = seam, a->seam_size = tc_seam_size(w->grid);
+    a->next_seam = NULL, a->next_seam_size = 0;
+    tc_stream_options_init(a->stream_options_at = &a->stream_options);
+    a->stream_options.grid = &a->grid_options;
+    a->stream_options.surfaces = &a->extract_options;
+    a->stream_options.surface_count = 1;
+    a->stream_options.read = planes_give;
     a->values = values;
     a->value_count = w->expected.vertex_count;
 }
@@ -122,6 +139,7 @@ static void defaults_fill(arguments *a) {
     tc_grid_options_init(&a->grid_options);
     tc_extract_options_init(&a->extract_options);
     tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
+    tc_stream_options_init(&a->stream_options);
     a->cells = (tc_cells){0};
     a->field = (tc_field){0};
     a->device_mesh = (tc_device_mesh){0};
@@ -233,6 +251,26 @@ static tc_status call_tc_extract(arguments *a, bool *zero) {
     *zero = !mesh;
     tc_mesh_destroy(mesh);
     return status;
+}
+
+static tc_status call_tc_count_piece(arguments *a, bool *zero) {
+    tc_status status = tc_count_piece(a->grid, a->extract_options_at, a->counts_at, a->seam, a->seam_size);
+    *zero = RESULT_ZERO(a->counts, a->counts_at);
+    return status;
+}
+
+static tc_status call_tc_extract_piece(arguments *a, bool *zero) {
+    tc_mesh *mesh = NULL;
+    tc_status status =
+        tc_extract_piece(a->grid, a->extract_options_at, a->next_seam, a->next_seam_size, a->mesh_place ? &mesh : NULL);
+    *zero = !mesh;
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
+static tc_status call_tc_stream(arguments *a, bool *zero) {
+    *zero = true;
+    return tc_stream(a->context, a->stream_options_at);
 }
 
 static tc_status call_tc_mesh_get(arguments *a, bool *zero) {

@@ -97,7 +97,8 @@ typedef struct place {
         AT(call, grid_options.points, absent), AT(call, grid_options.blanked_samples, absent),                         \
         AT(call, grid_options.blanked_cells, absent), AT(call, grid_options.axes_f64[1], LISTED({8, ARGUMENT})),       \
         AT(call, grid_options.points_f64, absent), AT(call, grid_options.has_origin, LISTED({1, OK | ARGUMENT})),      \
-        AT(call, grid_options.origin[0], any_f64), AT(call, grid_options.whole, absent)
+        AT(call, grid_options.origin[0], any_f64), AT(call, grid_options.whole, absent),                               \
+        AT(call, grid_options.owned[1], LISTED({4, ARGUMENT}, {I64(-1), ARGUMENT}))
 
 #define OPTIONS_OF_EXTRACTION(call)                                                                                    \
     AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \
@@ -163,11 +164,32 @@ static const place places[] = {
     AT(tc_count, counts_at, null),
     OPTIONS_OF_EXTRACTION(tc_extract),
     AT(tc_extract, mesh_place, null),
+    OPTIONS_OF_EXTRACTION(tc_count_piece),
+    AT(tc_count_piece, counts_at, null),
+    AT(tc_count_piece, seam, null),
+    AT(tc_count_piece, seam, NULL),
+    AT(tc_count_piece, seam_size, LISTED({0, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
+    OPTIONS_OF_EXTRACTION(tc_extract_piece),
+    AT(tc_extract_piece, mesh_place, null),
+    AT(tc_extract_piece, next_seam, LISTED({8, ARGUMENT})),
+    AT(tc_extract_piece, next_seam_size, LISTED({1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
     OPTIONS_OF_EXTRACTION(tc_emit),
     AT(tc_emit, device_mesh_at, null),
     AT(tc_emit, device_mesh.positions, null),
     AT(tc_emit, device_mesh.normals, null),
     AT(tc_emit, device_mesh.triangles, null),
+    AT(tc_stream, context, null),
+    AT(tc_stream, stream_options_at, null),
+    AT(tc_stream, stream_options.grid, null),
+    AT(tc_stream, stream_options.surfaces, null),
+    AT(tc_stream, stream_options.surface_count, LISTED({0, ARGUMENT})),
+    AT(tc_stream, stream_options.max_memory_bytes, LISTED({1, OK}, {UINT64_MAX, OK})),
+    AT(tc_stream, stream_options.read, null),
+    AT(tc_stream, stream_options.counted, absent),
+    AT(tc_stream, stream_options.take, absent),
+    AT(tc_stream, stream_options.user, LISTED({8, OK})),
+    AT(tc_stream, stream_options.owned[0], LISTED({1, ARGUMENT}, {I64(-4), ARGUMENT}, {INT64_MAX, ARGUMENT})),
+    AT(tc_stream, stream_options.owned[1], LISTED({1, ARGUMENT}, {I64(-4), ARGUMENT}, {INT64_MAX, ARGUMENT})),
     AT(tc_mesh_get, mesh, null),
     AT(tc_mesh_get, mesh_data_at, null),
     OPTIONS_OF_EXTRACTION(tc_interpolate_field),

@@ -86,6 +86,7 @@ static const sized sizes[] = {
     SIZED(tc_count, counts, true),
     SIZED(tc_extract, extract_options, false),
     SIZED(tc_emit, device_mesh, false),
+    SIZED(tc_stream, stream_options, false),
     SIZED(tc_mesh_get, mesh_data, true),
     SIZED(tc_interpolate_field, field, false),
     SIZED(tc_tetrahedralize, cells, false),
@@ -257,6 +258,7 @@ static void test_others(const world *w) {
     tc_grid_options_init(NULL);
     tc_extract_options_init(NULL);
     tc_tetrahedra_grid_options_init(NULL);
+    tc_stream_options_init(NULL);
     tc_context_destroy(NULL);
     tc_grid_destroy(NULL);
     tc_mesh_destroy(NULL);
@@ -277,6 +279,7 @@ static void test_others(const world *w) {
     tc_tetrahedra_release(&made);
     tc_tetrahedra_release(&made);
     EXPECT(made.tetrahedron_count == 0 && !made.tetrahedra && !made.cells, "a complex after its release");
+    EXPECT(tc_seam_size(NULL) == 0, "a seam of no grid");
     EXPECT(!tc_context_cl_context(NULL) && !tc_context_cl_queue(NULL), "OpenCL objects of no context");
     EXPECT(tc_context_device_bytes(NULL, NULL) == 0 && tc_context_device_bytes(NULL, &peak) == 0 && peak == 0,
            "device bytes of no context");

@@ -3,7 +3,9 @@
 #include "base/structs.h"
 #include "opencl/context.h"
 #include "grid/coordinates.h"
+#include "grid/tables.h"
 #include "failure.h"
+#include "slab.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,6 +14,10 @@
 /* Indices up to here are exact in float32, in which vertices are placed. Where a grid begins farther from 0, indices
  * count from a number near its first; so only the number of samples along an axis is limited by this. */
 static const int64_t index_limit = 1 << 24;
+
+/* Planes of a piece beside those that it owns: for gradients and missing cells one before, in bricks of their own; for
+ * the vertices that its last triangles use two behind. */
+enum { PIECE_BEFORE = BRICK_PLANES, PIECE_BEHIND = 2 };
 
 size_t tc_type_bytes(tc_type type) { return sample_bytes(type); }
 
@@ -44,9 +50,25 @@ uint64_t grid_array_plane_bytes(const tc_grid *grid, int array) {
     return plane * (array == ARRAY_POINTS ? 3 : 1) * grid_array_item_bytes(grid, array);
 }
 
+uint64_t grid_layer_bricks(const tc_grid *grid) {
+    return (uint64_t)((grid->dims[0] + 63) / 64) * (uint64_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS);
+}
+
+tc_status seam_numbers_check(const tc_grid *grid, uint64_t vertex_count) {
+    const uint64_t brick_vertices = 64 * BRICK_WORDS * (VERTEX_BORDER + 1), bricks = grid_layer_bricks(grid);
+    const uint64_t behind = grid->seams.next ? grid->seams.next[bricks - 1] + brick_vertices : 0;
+    if (vertex_count + behind <= UINT32_MAX) return TC_OK;
+    return (tc_status)fail(
+        TC_ERROR_LIMIT,
+        "the piece's surface has %llu vertices, and as many as %llu behind it: indices of 32 bits reach "
+        "%lu; make smaller pieces",
+        (unsigned long long)vertex_count, (unsigned long long)behind, (unsigned long)UINT32_MAX);
+}
+
 unsigned grid_parity(const tc_grid *grid) { return (unsigned)(grid->first[0] + grid->first[1] + grid->first[2]) & 1; }
 
-static tc_status sizes_check(const tc_grid_options *o) {
+tc_status grid_sizes_check(const tc_grid_options *o) {
+    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
     for (int axis = 0; axis < 3; axis++) {
         if (o->dims[axis] == 1)
             return (tc_status)fail(TC_ERROR_DATA, "the grid has one sample along %c: a surface needs two or more",
@@ -245,7 +267,7 @@ static tc_status whole_take(const tc_grid_options *given, const tc_grid *grid, t
     }
     if (!given) return TC_OK;
     tc_status status = struct_copy_in(&o, sizeof o, given, "whole grid");
-    if (!status) status = sizes_check(&o);
+    if (!status) status = grid_sizes_check(&o);
     if (!status) status = place_take(&o, whole);
     if (status) return status;
     int is_within = 1;
@@ -257,10 +279,39 @@ static tc_status whole_take(const tc_grid_options *given, const tc_grid *grid, t
                            is_within ? "their coordinates are of different kinds" : "indices lie outside");
 }
 
+/* The planes that a piece owns. Bricks are counted from the first plane of the grid, so that has to begin a layer of
+ * the whole. */
+static tc_status own_take(const tc_grid_options *o, const tc_grid *whole, tc_grid *grid) {
+    const int64_t first = o->owned[0], end = o->owned[1], dims = o->dims[2];
+    grid->own[0] = 0;
+    grid->own[1] = dims;
+    if (first == 0 && end == 0) return TC_OK;
+    if (!o->whole)
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "a grid that owns some of its planes is a piece: name its whole");
+    const int64_t before = grid->first[2] - whole->first[2], behind = whole->dims[2] - before - dims;
+    if (first < 0 || first >= end || end > dims || first % BRICK_PLANES || before % BRICK_PLANES || behind < 0 ||
+        (end < dims && end % BRICK_PLANES))
+        return (tc_status)fail(
+            TC_ERROR_ARGUMENT,
+            "a piece of planes %lld to %lld of its whole owns planes %lld to %lld of its own: pieces, "
+            "and what they own, begin at multiples of %d and end there or with the whole",
+            (long long)before, (long long)(before + dims - 1), (long long)first, (long long)end - 1, BRICK_PLANES);
+    if ((before > 0 && first < PIECE_BEFORE) || (behind > 0 && dims - end < PIECE_BEHIND))
+        return (tc_status)fail(
+            TC_ERROR_ARGUMENT,
+            "a piece needs at least %d planes before those that it owns, and %d behind, but where the "
+            "whole begins and ends",
+            PIECE_BEFORE, PIECE_BEHIND);
+    grid->own[0] = first;
+    grid->own[1] = end;
+    grid->cut[0] = before > 0;
+    grid->cut[1] = behind > 0;
+    return TC_OK;
+}
+
 tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     tc_grid whole;
-    if (tc_type_bytes(o->type) == 0) return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no sample type", (int)o->type);
-    tc_status status = sizes_check(o);
+    tc_status status = grid_sizes_check(o);
     if (status) return status;
     if (!o->samples && !o->cl_samples) return (tc_status)fail(TC_ERROR_ARGUMENT, "the grid has no samples");
     if (o->samples && o->cl_samples)
@@ -277,6 +328,7 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata;
     status = place_take(o, grid);
     if (!status) status = whole_take(o->whole, grid, &whole);
+    if (!status) status = own_take(o, &whole, grid);
     if (status) return status;
     const double *origin = o->has_origin ? o->origin : NULL;
     if (grid->kind == GRID_UNIFORM) return matrix_take(o->matrix, origin, &whole, grid);

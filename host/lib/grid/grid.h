@@ -19,11 +19,20 @@ struct complex_grid;
 /* Where positions come from; the kernels know it as GRID. */
 typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEAR = 2 } grid_kind;
 
+/* The seams of a piece, during tc_count_piece and tc_extract_piece; else NULL. */
+typedef struct piece_seams {
+    uint32_t *own;        /* to be filled: vertices before each brick of its first layer */
+    const uint32_t *next; /* the same of the piece behind */
+} piece_seams;
+
 struct tc_grid {
     tc_context *context;
     scan_parameters scan; /* the context's, except in a trial */
     int64_t dims[3];
     int64_t first[3];
+    int64_t own[2]; /* the planes own[0] <= z < own[1] of the grid's own vertices and cells: all but of a piece */
+    bool cut[2];    /* a piece: the whole goes on before it, and behind */
+    piece_seams seams;
     tc_type type;
     const void *samples;        /* NULL where they are in cl_samples */
     struct _cl_mem *cl_samples; /* the caller's, retained by the device path */
@@ -44,6 +53,9 @@ struct tc_grid {
     struct complex_grid *complex;                   /* unstructured: its points are dims[0]; NULL: structured */
 };
 
+/* Whether sizes, indices and type are those of a grid. */
+tc_status grid_sizes_check(const tc_grid_options *options);
+
 /* Checks the options and fills *grid, which is zeroed, except for context, scan and device. Release it in any case. */
 tc_status grid_describe(const tc_grid_options *options, tc_grid *grid);
 void grid_release(tc_grid *grid);
@@ -57,6 +69,15 @@ static inline int64_t grid_sample_count(const tc_grid *grid) { return grid->dims
 const void *grid_array_data(const tc_grid *grid, int array);
 size_t grid_array_item_bytes(const tc_grid *grid, int array);
 uint64_t grid_array_plane_bytes(const tc_grid *grid, int array);
+
+/* Whether the grid is a piece that others follow: their first vertices are used by its last triangles. */
+static inline bool grid_has_seam(const tc_grid *grid) { return !grid->complex && grid->own[1] < grid->dims[2]; }
+
+/* TC_ERROR_LIMIT where the piece's own vertices and those behind its seam have no numbers of 32 bits together. */
+tc_status seam_numbers_check(const tc_grid *grid, uint64_t vertex_count);
+
+/* Bricks in a layer. */
+uint64_t grid_layer_bricks(const tc_grid *grid);
 
 /* 0 where the first sample's cube is even. */
 unsigned grid_parity(const tc_grid *grid);

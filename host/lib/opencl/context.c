@@ -24,7 +24,8 @@ tc_status context_fail(const tc_context *context, const char *what, cl_int error
 tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
     if (!context->options.progress || context->tries) return TC_OK;
     float_environment *lent = float_environment_lend();
-    int stop = context->options.progress(context->options.progress_user, stage, fraction);
+    int stop = context->options.progress(context->options.progress_user, stage,
+                                         context->progress_begin + context->progress_share * fraction);
     float_environment_resume(lent);
     return stop ? (tc_status)fail(TC_ERROR_CANCELLED, "cancelled") : TC_OK;
 }

@@ -80,6 +80,7 @@ struct tc_context {
     program *programs;
     workspace work;
     bool is_trial;                         /* kernels are built without vetting */
+    double progress_begin, progress_share; /* of a stream: the part of it that the call under way is */
     bool tries;                            /* a trial is running: progress is not reported (trial.c) */
     bool variant_changed;                  /* the other variant was taken within a call, which starts again */
     bool vetted[KERNEL_KINDS + 1];         /* kernels that may be built, and the device itself (vetting.c) */

@@ -203,10 +203,10 @@ static void row_vertices_of(reference *r, int type, int64_t x0, int64_t x1, int6
     for (int64_t x = x0; x < x1; x++) {
         int64_t owner[3] = {x, y, z}, a[3], b[3];
         if (!vertex_find(r, owner, type, a, b)) continue;
-        if (r->mesh && r->vertex_count < r->mesh->vertex_count) {
+        const bool is_own = z / BRICK_Z != r->halo_layer;
+        if (r->mesh && (!is_own || r->vertex_count < r->mesh->vertex_count))
             *vertex_id(r, owner, type) = (uint32_t)r->vertex_count;
-            vertex_emit(r, a, b);
-        }
+        if (r->mesh && is_own && r->vertex_count < r->mesh->vertex_count) vertex_emit(r, a, b);
         if (r->carried)
             carry_vertex(r->carried, r->vertex_count, sample_index(r, a), sample_index(r, b), edge_crossing(r, a, b));
         r->vertex_count++;
@@ -348,25 +348,47 @@ static void row_triangles(reference *r, int64_t x0, int64_t x1, int64_t y, int64
 
 typedef void row_stage(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z);
 
-static void layer_run(reference *r, int64_t layer, row_stage *stage) {
-    int64_t z0 = layer * BRICK_Z, z1 = z0 + BRICK_Z < r->dims[2] ? z0 + BRICK_Z : r->dims[2];
-    for (int64_t y0 = 0; y0 < r->dims[1]; y0 += BRICK_Y)
-        for (int64_t x0 = 0; x0 < r->dims[0]; x0 += BRICK_X)
-            for (int64_t z = z0; z < z1; z++)
-                for (int64_t y = y0; y < y0 + BRICK_Y && y < r->dims[1]; y++)
-                    stage(r, x0, x0 + BRICK_X < r->dims[0] ? x0 + BRICK_X : r->dims[0], y, z);
+static void brick_run(reference *r, const int64_t at[3], row_stage *stage) {
+    const int64_t x1 = at[0] + BRICK_X < r->dims[0] ? at[0] + BRICK_X : r->dims[0];
+    for (int64_t z = at[2]; z < at[2] + BRICK_Z && z < r->dims[2]; z++)
+        for (int64_t y = at[1]; y < at[1] + BRICK_Y && y < r->dims[1]; y++) stage(r, at[0], x1, y, z);
 }
+
+static void layer_run(reference *r, int64_t layer, row_stage *stage) {
+    for (int64_t y = 0; y < r->dims[1]; y += BRICK_Y)
+        for (int64_t x = 0; x < r->dims[0]; x += BRICK_X) brick_run(r, (int64_t[3]){x, y, layer * BRICK_Z}, stage);
+}
+
+/* Vertices of a layer. Of a piece's first one the seam is told; those of the layer behind are numbered by the next
+ * piece's seam, and are not the piece's own. */
+static void layer_vertices(reference *r, int64_t layer) {
+    const piece_seams *seams = &r->grid->seams;
+    const uint64_t own_end = r->vertex_count;
+    const bool is_first = layer * BRICK_Z == r->grid->own[0];
+    size_t brick = 0;
+    if (layer == r->halo_layer && !seams->next) return;
+    for (int64_t y = 0; y < r->dims[1]; y += BRICK_Y)
+        for (int64_t x = 0; x < r->dims[0]; x += BRICK_X, brick++) {
+            if (layer == r->halo_layer) r->vertex_count = own_end + seams->next[brick];
+            if (is_first && seams->own) seams->own[brick] = (uint32_t)r->vertex_count;
+            brick_run(r, (int64_t[3]){x, y, layer * BRICK_Z}, row_vertices);
+        }
+    if (layer == r->halo_layer) r->vertex_count = own_end;
+}
+
+/* The first layer of the grid's own, and the one behind them. */
+static int64_t own_layer(const reference *r, int end) { return (r->grid->own[end] + BRICK_Z - 1) / BRICK_Z; }
 
 /* before, share: where this stage begins in the whole call and its share of it, for progress. */
 static tc_status layers_run(reference *r, const char *stage, double before, double share) {
-    int64_t layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
+    const int64_t first = own_layer(r, 0), end = own_layer(r, 1), layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    layer_run(r, 0, row_vertices);
-    for (int64_t layer = 0; layer < layer_count; layer++) {
-        if (layer + 1 < layer_count) layer_run(r, layer + 1, row_vertices);
+    layer_vertices(r, first);
+    for (int64_t layer = first; layer < end; layer++) {
+        if (layer + 1 < layer_count) layer_vertices(r, layer + 1);
         layer_run(r, layer, row_triangles);
-        tc_status status =
-            context_progress(r->grid->context, stage, before + share * (double)(layer + 1) / (double)layer_count);
+        tc_status status = context_progress(r->grid->context, stage,
+                                            before + share * (double)(layer + 1 - first) / (double)(end - first));
         if (status) return status;
     }
     return TC_OK;
@@ -378,6 +400,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     r->method = options->method;
     r->threshold = (float)options->snap;
     r->closed = options->closed;
+    r->halo_layer = grid_has_seam(grid) ? own_layer(r, 1) : -1;
     r->id_types = r->closed ? VERTEX_BORDER + 1 : methods[r->method].vertex_types;
     if (r->method == TC_METHOD_HYBRID) methods[r->method].derive(r->cases[0], grid->mirrored);
     if (r->closed) methods[r->method].derive_caps(r->caps[0][0], grid->mirrored);
@@ -430,7 +453,8 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
     if (!status) status = layers_run(&r, "classify", 0, 0.5);
     if (status) goto cleanup;
     const double classified = clock_ms();
-    status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
+    status = seam_numbers_check(grid, r.vertex_count);
+    if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
     if (!status) status = ids_allocate(&r);
     if (status) goto cleanup;
     r.mesh = mesh;
@@ -451,7 +475,7 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
     if (!status) status = ids_allocate(&r);
     if (!status) {
         r.mesh = mesh;
-        for (int64_t layer = 0; layer * BRICK_Z < r.dims[2]; layer++) layer_run(&r, layer, row_vertices);
+        for (int64_t layer = own_layer(&r, 0); layer < own_layer(&r, 1); layer++) layer_run(&r, layer, row_vertices);
         status = mesh_complete(&r, false);
     }
     reference_end(&r);
@@ -461,12 +485,12 @@ tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *opti
 tc_status reference_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                           uint64_t *vertex_count) {
     reference r;
-    const int64_t layer_count = (grid->dims[2] + BRICK_Z - 1) / BRICK_Z;
     tc_status status = reference_begin(&r, grid, options);
+    const int64_t first = own_layer(&r, 0), end = own_layer(&r, 1);
     r.carried = c;
-    for (int64_t layer = 0; layer * BRICK_Z < r.dims[2] && !status; layer++) {
+    for (int64_t layer = first; layer < end && !status; layer++) {
         layer_run(&r, layer, row_vertices);
-        status = context_progress(grid->context, "carry", (double)(layer + 1) / (double)layer_count);
+        status = context_progress(grid->context, "carry", (double)(layer + 1 - first) / (double)(end - first));
     }
     *vertex_count = r.vertex_count;
     reference_end(&r);

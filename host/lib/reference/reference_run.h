@@ -30,6 +30,7 @@ typedef struct reference {
     bool closed;
     cap_case caps[2][CUBE_FACES][CAP_CASES]; /* of closed surfaces */
     uint64_t vertex_count, triangle_count, active_cell_count;
+    int64_t halo_layer; /* of a piece: the layer behind it, whose vertices its triangles use; else no layer */
 } reference;
 
 static inline int64_t sample_index(const reference *r, const int64_t p[3]) {

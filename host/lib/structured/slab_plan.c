@@ -9,12 +9,23 @@ static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
 
 static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
+uint32_t slab_first_layer(const slab_plan *plan, uint32_t slab_index) {
+    return slab_index < plan->own_slabs ? plan->own_first + slab_index * plan->slab_layers : plan->own_end;
+}
+
+uint32_t slab_layer_count(const slab_plan *plan, uint32_t slab_index) {
+    const uint32_t left = plan->own_end - slab_first_layer(plan, slab_index);
+    if (slab_index >= plan->own_slabs) return 1;
+    return left < plan->slab_layers ? left : plan->slab_layers;
+}
+
 uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index) {
-    return slab_index * plan->slab_layers * BRICK_PLANES;
+    return slab_first_layer(plan, slab_index) * BRICK_PLANES;
 }
 
 uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
-    return (uint32_t)min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES, (uint64_t)grid->dims[2]);
+    const uint64_t end = slab_first_layer(plan, slab_index) + (uint64_t)slab_layer_count(plan, slab_index);
+    return (uint32_t)min_u64(end * BRICK_PLANES, (uint64_t)grid->dims[2]);
 }
 
 /* Layers of bricks before a slab and after it in its window of words. */
@@ -128,7 +139,8 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     uint64_t largest;
     plan->slab_layers = slab_layers;
     plan->work_items = context->launch.work_items;
-    plan->slab_count = (plan->layer_count + slab_layers - 1) / slab_layers;
+    plan->own_slabs = (plan->own_end - plan->own_first + slab_layers - 1) / slab_layers;
+    plan->slab_count = plan->own_slabs + (plan->own_end < plan->layer_count);
     tiles_shape(context, grid, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
     uint64_t words = (plan->zeros ? 2ull : 1) * BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
@@ -168,14 +180,18 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
 
 static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
     const uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES;
-    return (uint32_t)min_u64(scan_samples / layer_samples, plan->layer_count);
+    return (uint32_t)min_u64(scan_samples / layer_samples, plan->own_end - plan->own_first);
 }
+
+static uint32_t layers_of(int64_t planes) { return (uint32_t)((planes + BRICK_PLANES - 1) / BRICK_PLANES); }
 
 static slab_plan plan_begin(const tc_grid *grid, bool zeros) {
     return (slab_plan){.zeros = zeros,
                        .words_x = (uint32_t)((grid->dims[0] + 63) / 64),
                        .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
-                       .layer_count = (uint32_t)((grid->dims[2] + BRICK_PLANES - 1) / BRICK_PLANES)};
+                       .layer_count = layers_of(grid->dims[2]),
+                       .own_first = layers_of(grid->own[0]),
+                       .own_end = layers_of(grid->own[1])};
 }
 
 /* The least bytes of everything but the mesh, and the bytes with all arrays whole; false where a buffer is too large.

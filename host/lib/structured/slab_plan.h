@@ -7,6 +7,9 @@
  * (gradients and missing cells reach that far), sign words with one layer after. Devices with memory of their own hold
  * two such windows, where that fits: one is copied while kernels run over the other.
  *
+ * Of a piece of a grid, slabs have its own layers, and a last one has the layer behind them: kernel 1 classifies it, so
+ * that kernel 2 finds the vertices there, but it counts for nothing and is not emitted.
+ *
  * Method snap has a plan of its own. Whether a sample is snapped depends on samples up to five steps away, one for each
  * colour. So windows have two layers of bricks more on either side, of which those steps use up the outer part; and
  * where buffers hold the whole grid, all of it is snapped at once.
@@ -19,7 +22,9 @@
 
 typedef struct slab_plan {
     uint32_t words_x, bricks_y, layer_count;
-    uint32_t slab_layers, slab_count;
+    uint32_t own_first, own_end;     /* layers of the grid's own vertices and cells: all, unless it is a piece */
+    uint32_t slab_layers;            /* of most slabs */
+    uint32_t slab_count, own_slabs;  /* of a piece with a seam one more than it owns: the layer behind */
     bool samples_whole, words_whole; /* samples: with all other arrays of the grid */
     bool zeros;                      /* of method snap: words of zeros beside sign words, and windows reach further */
     bool overlaps;                   /* copies and kernels run at once: windows are double */
@@ -44,7 +49,9 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool ze
 /* Shapes the tiles again where the context has changed to the other variant of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 
-/* Planes z0 <= z < z1 of a slab. */
+/* A slab's first layer, the number of its layers, and its planes z0 <= z < z1. */
+uint32_t slab_first_layer(const slab_plan *plan, uint32_t slab_index);
+uint32_t slab_layer_count(const slab_plan *plan, uint32_t slab_index);
 uint32_t slab_begin(const slab_plan *plan, uint32_t slab_index);
 uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index);
 

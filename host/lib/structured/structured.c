@@ -225,7 +225,7 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
 
 void totals_add(run *r) {
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    for (uint32_t n = 0; n < r->plan->slab_count; n++) {
+    for (uint32_t n = 0; n < r->plan->own_slabs; n++) {
         const uint32_t *head = r->heads + n * STATE_WORDS;
         r->vertex_count += head[STATE_VERTICES];
         r->triangle_count += head[STATE_TRIANGLES];
@@ -276,6 +276,50 @@ static tc_status classify(run *r, tc_grid *grid, const tc_extract_options *optio
     return status ? status : slabs_classify(r);
 }
 
+/* ----------------------------------------------------------------------------------------------------------- seams */
+
+/* States of the bricks in a layer of the grid, after classification, from the device or to it. */
+static tc_status layer_move(run *r, uint32_t layer, brick_state *states, bool read) {
+    const uint64_t bytes = plan_bricks_per_layer(r->plan) * sizeof *states, at = layer * bytes;
+    const cl_mem memory = r->context->work.words[0].bricks.memory;
+    if (!r->plan->words_whole) {
+        memcpy(read ? (void *)states : r->store.bricks + at, read ? r->store.bricks + at : (void *)states, bytes);
+        return TC_OK;
+    }
+    cl_command_queue queue = r->context->queue;
+    const cl_int error = read ? cl->EnqueueReadBuffer(queue, memory, CL_TRUE, at, bytes, states, 0, NULL, NULL)
+                              : cl->EnqueueWriteBuffer(queue, memory, CL_TRUE, at, bytes, states, 0, NULL, NULL);
+    return error ? context_fail(r->context, "moving sums of a layer", error) : TC_OK;
+}
+
+static tc_status layer_states(run *r, uint32_t layer, brick_state **states) {
+    *states = malloc(plan_bricks_per_layer(r->plan) * sizeof **states);
+    return *states ? layer_move(r, layer, *states, true)
+                   : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of a layer");
+}
+
+/* Tells the seam of the grid's first layer, where it is asked for. */
+static tc_status seam_tell(run *r) {
+    uint32_t *seam = r->grid->seams.own;
+    brick_state *states = NULL;
+    tc_status status = seam ? layer_states(r, r->plan->own_first, &states) : TC_OK;
+    for (uint64_t n = 0; n < plan_bricks_per_layer(r->plan) && seam && !status; n++) seam[n] = states[n].vertices;
+    free(states);
+    return status;
+}
+
+/* Numbers the vertices of the layer behind as the next piece does: of that layer only planes are there which decide
+ * where the vertices of its first plane lie in their bricks. */
+static tc_status seam_take(run *r) {
+    const uint32_t *seam = r->grid->seams.next;
+    brick_state *states = NULL;
+    tc_status status = seam ? layer_states(r, r->plan->own_end, &states) : TC_OK;
+    for (uint64_t n = 0; n < plan_bricks_per_layer(r->plan) && seam && !status; n++) states[n].vertices = seam[n];
+    if (seam && !status) status = layer_move(r, r->plan->own_end, states, false);
+    free(states);
+    return status;
+}
+
 /* ------------------------------------------------------------------------------------------------------ extraction */
 
 /* Keeps results for tc_emit and tc_interpolate_field. r NULL: there is no surface. */
@@ -304,6 +348,7 @@ tc_status structured_count(tc_grid *grid, const tc_extract_options *options, dou
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_cell_count;
     counts->classify_ms = clock_ms() - r.start_ms;
+    if (!status) status = seam_tell(&r);
     if (!status) results_keep(grid, options, &r);
     run_end(&r, status);
     return status;
@@ -316,11 +361,13 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     if (inside.uniform) return TC_OK;
     tc_status status = classify(&r, grid, options, inside, true, 0.5);
     classified = clock_ms();
+    if (!status) status = seam_numbers_check(grid, r.vertex_count);
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
+    if (!status) status = seam_take(&r);
     if (!status && r.vertex_count) status = slabs_emit(&r, mesh);
     if (!status && !device_makes_vertices(r.context, grid->type)) status = reference_vertices(grid, options, mesh);
     mesh->active_cell_count = r.active_cell_count;
-    mesh->slab_count = r.plan->slab_count;
+    mesh->slab_count = r.plan->own_slabs;
     mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;

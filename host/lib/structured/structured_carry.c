@@ -302,7 +302,7 @@ static tc_status slab_carry(carry_job *j, uint32_t slab_index, uint32_t brick_co
 static tc_status slabs_carry(carry_job *j) {
     const uint32_t *heads = j->grid->device->heads;
     tc_status status = TC_OK;
-    for (uint32_t n = 0; n < j->plan->slab_count && !status; n++, heads += STATE_WORDS) {
+    for (uint32_t n = 0; n < j->plan->own_slabs && !status; n++, heads += STATE_WORDS) {
         status = slab_carry(j, n, heads[STATE_ACTIVE_BRICKS]);
         j->slab_vertex += heads[STATE_VERTICES];
     }
@@ -370,7 +370,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     if (method_has_zeros(options->method)) return reference_carry(grid, options, c, vertex_count);
     *vertex_count = 0;
     if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
-    for (uint32_t n = 0; n < j.plan->slab_count; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
+    for (uint32_t n = 0; n < j.plan->own_slabs; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
     j.vertex_types = methods[options->method].vertex_types;
     ends_fill(&j);

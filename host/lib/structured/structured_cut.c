@@ -59,18 +59,13 @@ static tc_status bricks_read(const run *r, strip_sums *sums, uint32_t n) {
     return error ? context_fail(r->context, "reading sums of strips", error) : TC_OK;
 }
 
-static uint32_t slab_layer_count(const run *r, uint32_t slab_index) {
-    uint32_t layers = r->plan->layer_count - slab_index * r->plan->slab_layers;
-    return layers < r->plan->slab_layers ? layers : r->plan->slab_layers;
-}
-
 /* Vertices and triangles before a strip of the slab, or before the next slab. */
 static void strip_begin(const run *r, const strip_sums *sums, uint32_t slab_index, uint32_t strip, uint64_t at[2]) {
     const uint32_t *head = r->heads + slab_index * STATE_WORDS;
     const uint32_t layer = strip / r->plan->bricks_y, in_layer = strip % r->plan->bricks_y;
     const brick_state *brick = in_layer ? &sums->bricks[in_layer * r->plan->words_x]
-                                        : &sums->layers[slab_index * r->plan->slab_layers + layer];
-    bool end = layer == slab_layer_count(r, slab_index);
+                                        : &sums->layers[slab_first_layer(r->plan, slab_index) + layer];
+    bool end = layer == slab_layer_count(r->plan, slab_index);
     at[0] = strip == 0 ? 0 : end ? head[STATE_VERTICES] : brick->vertices;
     at[1] = strip == 0 ? 0 : end ? head[STATE_TRIANGLES] : brick->triangles;
 }
@@ -145,14 +140,14 @@ static bool step_stretch(const run *r, const emit_plan *e, const strip_sums *sum
 /* Cuts a slab into few steps: whole layers, or strips in a layer that is too large. *fits is false where a strip is too
  * large; the last step is then that strip. */
 static tc_status slab_cut(const run *r, emit_plan *e, strip_sums *sums, emit_step first, bool *fits) {
-    const uint32_t strips = r->plan->bricks_y, slab_strips = slab_layer_count(r, first.ref.slab_index) * strips;
+    const uint32_t strips = r->plan->bricks_y, slab_strips = slab_layer_count(r->plan, first.ref.slab_index) * strips;
     tc_status status = TC_OK;
     for (emit_step step = first; step.strip0 < slab_strips && *fits && !status; step.strip0 = step.strip1) {
         const uint32_t layer = step.strip0 / strips;
         step.opens_slab = step.strip0 == 0;
         bool whole = step.strip0 % strips == 0 && step_stretch(r, e, sums, &step, strips, slab_strips);
         if (!whole && step.strip0 % strips == 0)
-            status = bricks_read(r, sums, first.ref.slab_index * r->plan->slab_layers + layer);
+            status = bricks_read(r, sums, slab_first_layer(r->plan, first.ref.slab_index) + layer);
         if (!whole && !status) *fits = step_stretch(r, e, sums, &step, 1, (layer + 1) * strips);
         if (!status) status = step_add(e, &step);
     }
@@ -165,7 +160,7 @@ static tc_status slabs_cut(const run *r, emit_plan *e, strip_sums *sums, bool *f
     tc_status status = TC_OK;
     *fits = true;
     e->step_count = 0;
-    for (uint32_t n = 0; n < r->plan->slab_count && *fits && !status; n++) {
+    for (uint32_t n = 0; n < r->plan->own_slabs && *fits && !status; n++) {
         const uint32_t *head = r->heads + n * STATE_WORDS;
         first.ref = (slab_ref){n, active % plan_window_count(r->plan)};
         if (head[STATE_ACTIVE_BRICKS]) {

@@ -110,7 +110,7 @@ tc_grid_options._fields_ = [
     ("samples", c_void_p), ("matrix", c_double * 4 * 3), ("has_nodata", c_int), ("nodata", c_double),
     ("cl_samples", c_void_p), ("cl_samples_offset", c_uint64), ("axes", c_void_p * 3), ("points", c_void_p),
     ("blanked_samples", c_void_p), ("blanked_cells", c_void_p), ("axes_f64", c_void_p * 3), ("points_f64", c_void_p),
-    ("has_origin", c_int), ("origin", c_double * 3), ("whole", POINTER(tc_grid_options))]
+    ("has_origin", c_int), ("origin", c_double * 3), ("whole", POINTER(tc_grid_options)), ("owned", c_int64 * 2)]
 
 
 class tc_extract_options(_Sized):

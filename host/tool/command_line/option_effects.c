@@ -94,6 +94,7 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--blocks, or --count"},
     {COMMAND_EXTRACT, "--carry", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--carry, or --count"},
     {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--origin-at, or --count"},
+    {COMMAND_EXTRACT, "--stream", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--stream, or --count"},
     {COMMAND_EXTRACT, "--drop-degenerate", BEFORE_READING, has_no_mesh, REFUSED,
      NO_MESH "--drop-degenerate, or --count"},
 

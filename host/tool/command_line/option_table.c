@@ -92,8 +92,13 @@ const option option_table[] = {
      "an index, platform:device, cpu, gpu or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
     {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_BOUND, IN(max_memory), NULL,
-     "bound on device buffers, in bytes or with K, M, G, T (powers of 1024):\n"
-     "less memory means smaller slabs, never another result"},
+     "bound on device buffers, in bytes or with K, M, G, T (powers of 1024), and\n"
+     "of streams on the host's memory too: less means smaller slabs and windows,\n"
+     "never another result"},
+    {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
+     "read and write window by window, also where all would fit into memory: else\n"
+     "it is done where it would not (uniform and rectilinear grids; to PLY, VTP\n"
+     "and STL; not with --check, --verify, --soup, --drop-degenerate)"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

@@ -69,7 +69,7 @@ typedef struct options {
     uint64_t timeout;  /* seconds; 0 where not given */
     const char *junit; /* NULL where not given */
     int quick, vectors;
-    int verify, check, json, count, soup, closed, normals, drop_degenerate, quiet, help;
+    int verify, check, json, count, soup, closed, stream, normals, drop_degenerate, quiet, help;
 } options;
 
 #endif

@@ -3,6 +3,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "input/input.h"
+#include "library_status.h"
 #include "sample_types.h"
 #include "shortest.h"
 #include "terminal/notice.h"
@@ -150,20 +151,44 @@ static void extend_range(carried_range *range, const float *values, uint64_t cou
     }
 }
 
+static int make_room(carried_fields *c, int n, uint64_t count) {
+    free(c->values[n]);
+    c->values[n] = malloc(count ? (size_t)count * sizeof **c->values : 1);
+    c->fields[n].values = c->values[n];
+    return c->values[n] ? 0 : fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
+}
+
+static void note_range(carried_fields *c, int n, uint64_t count) {
+    if (notice_wanted() && may_be_rounded(c->from[n].blocks->type)) extend_range(&c->ranges[n], c->values[n], count);
+}
+
 int carried_fields_interpolate(carried_fields *c, engine *e, block_range blocks, const tc_extract_options *how,
                                const tc_mesh_data *mesh) {
-    for (int n = 0; n < c->count; n++) {
+    int status = 0;
+    for (int n = 0; n < c->count && !status; n++) {
         const uint64_t count = mesh->vertex_count * (uint64_t)c->from[n].components;
-        free(c->values[n]);
-        c->values[n] = malloc(count ? (size_t)count * sizeof **c->values : 1);
-        if (!c->values[n]) return fail(STATUS_FAILED, "out of memory for field '%s' on the surface", c->from[n].name);
-        int status = engine_carry(e, blocks, how, &c->from[n], c->values[n]);
-        if (status) return status;
-        if (notice_wanted() && may_be_rounded(c->from[n].blocks->type))
-            extend_range(&c->ranges[n], c->values[n], count);
-        c->fields[n].values = c->values[n];
+        status = make_room(c, n, count);
+        if (!status) status = engine_carry(e, blocks, how, &c->from[n], c->values[n]);
+        if (!status) note_range(c, n, count);
     }
-    return 0;
+    return status;
+}
+
+int carried_fields_of_piece(carried_fields *c, const tc_mesh_piece *piece, uint64_t plane_points,
+                            const tc_extract_options *how) {
+    int status = 0;
+    for (int n = 0; n < c->count && !status; n++) {
+        const dataset_field *from = c->from[n].blocks;
+        const uint64_t count = piece->mesh->vertex_count * (uint64_t)from->components;
+        const size_t plane = (size_t)plane_points * (size_t)from->components * tc_type_bytes(from->type);
+        const tc_field field = {sizeof field, from->type, from->components,
+                                (const char *)from->values + (size_t)piece->first_plane * plane};
+        status = make_room(c, n, count);
+        if (!status && count)
+            status = library_status(tc_interpolate_field(piece->grid, how, &field, c->values[n], count));
+        if (!status) note_range(c, n, count);
+    }
+    return status;
 }
 
 /* Float32 shows as more than 1/4096 of the range of the values, or as infinity. The first is not told again where it

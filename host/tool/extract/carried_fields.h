@@ -30,6 +30,10 @@ void carried_fields_begin(carried_fields *c);
 int carried_fields_interpolate(carried_fields *c, engine *e, block_range blocks, const tc_extract_options *how,
                                const tc_mesh_data *mesh);
 
+/* The same for a piece of a stream, of one block, whose planes have so many points. */
+int carried_fields_of_piece(carried_fields *c, const tc_mesh_piece *piece, uint64_t plane_points,
+                            const tc_extract_options *how);
+
 /* Values are carried as float32: notices where that is too coarse for them, in all meshes of the surface. */
 void carried_fields_tell(const carried_fields *c);
 

@@ -34,6 +34,15 @@ int engine_open(const options *o, tc_engine kind, engine *e) {
     return engine_status(tc_context_create(&device, &e->context));
 }
 
+void engine_options(const options *o, const typed_isovalue *iso, tc_extract_options *how) {
+    tc_extract_options_init(how);
+    how->isovalue = iso->value;
+    how->normals = o->normals;
+    how->method = (tc_method)o->method;
+    if (o->snap >= 0) how->snap = o->snap;
+    how->closed = o->closed;
+}
+
 void engine_close(engine *e) {
     tc_mesh_destroy(e->mesh);
     for (int n = 0; n < e->block_count; n++) tc_grid_destroy(e->grids[n]);

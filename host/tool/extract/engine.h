@@ -36,6 +36,9 @@ typedef struct engine {
 int engine_open(const options *o, tc_engine kind, engine *e);
 void engine_close(engine *e);
 
+/* How the surface of an isovalue is to be made. */
+void engine_options(const options *o, const typed_isovalue *iso, tc_extract_options *how);
+
 /* Makes a grid of every block for the device. Blocks that lie near each other share an origin, so that vertices are the
  * same where their surfaces meet. */
 int engine_upload(const options *o, const block_list *blocks, engine *e);

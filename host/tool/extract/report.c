@@ -52,13 +52,15 @@ static int has_bounds(const surface_report *s) { return s->vertex_count > s->sum
 static void add_mesh(json_t *object, const surface_report *s) {
     char hash[24];
     snprintf(hash, sizeof hash, "%016" PRIx64, s->hash);
-    json_object_set_new(object, "degenerate_triangles", count_json(s->summary.degenerate_triangles));
+    json_object_set_new(object, "degenerate_triangles",
+                        s->is_streamed ? json_null() : count_json(s->summary.degenerate_triangles));
     json_object_set_new(
         object, "bounds",
         has_bounds(s) ? json_pack("[o, o]", reals_json(s->summary.bounds[0], 3), reals_json(s->summary.bounds[1], 3))
                       : json_null());
     json_object_set_new(object, "origin", s->has_origin ? reals_json(s->origin, 3) : json_null());
-    json_object_set_new(object, "hash", json_string(hash));
+    json_object_set_new(object, "hash", s->is_streamed ? json_null() : json_string(hash));
+    if (s->is_streamed) json_object_set_new(object, "pieces", count_json(s->piece_count));
 }
 
 static json_t *surface_json(const surface_report *s) {
@@ -142,7 +144,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     printf("isovalue %s\n", s->iso->text);
     printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles",
            s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count, s->triangle_count);
-    if (s->has_mesh) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
+    if (s->has_mesh && !s->is_streamed) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
     printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
     if (s->soup_vertex_count)
         printf("  soup        three vertices of its own for every triangle; hash and check are of %" PRIu64
@@ -155,7 +157,10 @@ static void surface_text(const surface_report *s, const char *cells) {
         if (s->has_origin && (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0))
             printf("  origin      %s %s %s\n", shortest_number(s->origin[0]).text, shortest_number(s->origin[1]).text,
                    shortest_number(s->origin[2]).text);
-        printf("  hash        %016" PRIx64 "\n", s->hash);
+        if (s->is_streamed)
+            printf("  streamed    in %" PRIu64 " pieces: no hash\n", s->piece_count);
+        else
+            printf("  hash        %016" PRIx64 "\n", s->hash);
         printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
                s->readback_ms);
     } else {

@@ -26,6 +26,9 @@ typedef struct surface_report {
     double classify_ms, emit_ms, readback_ms;
     uint32_t slab_count;
     int has_mesh;               /* 0: counted only; then the rest is not filled */
+    int is_streamed;            /* no hash and no triangles of zero area are known */
+    uint64_t piece_count;       /* then: pieces that it was written in */
+    double write_ms;            /* then: of all of them */
     mesh_summary summary;       /* bounds in world space. This and the hash: not where no report is printed */
     uint64_t hash;              /* of several meshes: mesh_hash_add of each in turn */
     int has_origin;             /* 0: blocks that lie far from each other have origins of their own */

@@ -142,6 +142,40 @@ int surface_files_write(const options *o, const dataset *d, const typed_isovalue
     return status;
 }
 
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
+                              const carried_fields *fields, output_group *group, piece_file **file) {
+    piece_file *p = calloc(1, sizeof *p);
+    *file = NULL;
+    if (!p) return fail(STATUS_FAILED, "out of memory for the file of a surface");
+    p->how = (mesh_write_options){.format = o->format,
+                                  .fields = fields->fields,
+                                  .field_count = fields->count,
+                                  .world = d->world,
+                                  .units = d->units,
+                                  .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
+                                  .group = group};
+    p->path = file_name(o, iso, ALL_BLOCKS);
+    const int status = p->path ? mesh_file_open(p->path, &p->how, whole, &p->file) : STATUS_FAILED;
+    if (!status) {
+        *file = p;
+        return 0;
+    }
+    surface_files_close_pieces(p, status);
+    return status;
+}
+
+int surface_files_close_pieces(piece_file *p, int status) {
+    if (!p) return 0;
+    int closed = 0;
+    if (status)
+        mesh_file_discard(p->file);
+    else
+        closed = mesh_file_close(p->file);
+    free(p->path);
+    free(p);
+    return closed;
+}
+
 /* "out_b0.ply to out_b2.ply" */
 char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count) {
     if (!o->separate_blocks) return file_name(o, iso, ALL_BLOCKS);

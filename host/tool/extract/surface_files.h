@@ -30,6 +30,20 @@ void surface_files_tell_precision(const options *o, int block_count, const surfa
 int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
                         const result_mesh *mesh, const carried_fields *fields, output_group *group);
 
+/* The file of a surface whose pieces come one after the other (mesh_file). It waits in the group when it is closed. */
+typedef struct piece_file {
+    mesh_file *file;
+    mesh_write_options how;
+    char *path;
+} piece_file;
+
+/* whole: as for mesh_file_open. *file is to be closed. Returns 0 or a status. */
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
+                              const carried_fields *fields, output_group *group, piece_file **file);
+
+/* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
+int surface_files_close_pieces(piece_file *file, int status);
+
 /* Names the files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
 char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count);
 

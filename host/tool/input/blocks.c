@@ -65,6 +65,10 @@ static void describe_grid(const prepared_block *b, tc_grid_options *grid, tc_gri
     grid->blanked_cells = b->scalar->blanked_cells;
 }
 
+void block_describe(const block_list *list, int n, tc_grid_options *grid, tc_grid_options *whole) {
+    describe_grid(&list->blocks[n], grid, whole);
+}
+
 static int cut_structured(const options *o, prepared_block *b) {
     tc_grid_options grid, whole;
     describe_grid(b, &grid, &whole);

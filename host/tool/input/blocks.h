@@ -29,6 +29,9 @@ typedef struct block_list {
 int blocks_cut(const options *o, const dataset *d, const scalar *s, int all, block_list *out);
 void blocks_release(block_list *list);
 
+/* Describes block n, structured and not cut; whole is room for what *grid points to. */
+void block_describe(const block_list *list, int n, tc_grid_options *grid, tc_grid_options *whole);
+
 /* A grid of block n, its positions relative to the origin (NULL: one of its own); *grid NULL where there is nothing to
  * contour. */
 int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
