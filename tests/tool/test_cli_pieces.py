@@ -3,6 +3,8 @@
 grid, with and without ghost cells; pieces that do not fit are refused"""
 import itertools
 import os
+import re
+import struct
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
@@ -78,6 +80,26 @@ def index_text(kind, pieces, levels=0, more=""):
     place_text = SPACING if kind == "ImageData" else ""
     return vtk_file("P" + kind, f' WholeExtent="{extent_text(whole_extent())}" GhostLevel="{levels}"{place_text}{more}>' +
                     "".join(f'<Piece Extent="{extent_text(e)}" Source="{name}"/>' for e, name in pieces))
+
+
+def appended(text, order):
+    """The file with its arrays as raw appended data in this order of bytes."""
+    codes = {"UInt8": "B", "Int32": "i", "Float32": "f", "Float64": "d"}
+    data = bytearray()
+
+    def move(match):
+        values = list(map(float if match[1].startswith("Float") else int, match[3].split()))
+        code = f"{order}{len(values)}{codes[match[1]]}"
+        data.extend(bytes((4 - len(data)) % 8))  # values are aligned
+        place = len(data)
+        data.extend(struct.pack(order + "I", struct.calcsize(code)) + struct.pack(code, *values))
+        return f'<DataArray type="{match[1]}"{match[2]}format="appended" offset="{place}"/>'
+
+    text = re.sub(r'<DataArray type="(\w+)"([^>]*)format="ascii">([^<]*)</DataArray>', move, text)
+    if order == ">":
+        text = text.replace("LittleEndian", "BigEndian")
+    head = text.replace("</VTKFile>", '<AppendedData encoding="raw">').rstrip("\n")
+    return (head + " " * (-len(head) % 8 + 7) + "_").encode() + bytes(data) + b"</AppendedData></VTKFile>"
 
 
 class Pieces(GridCase):
@@ -189,6 +211,27 @@ class Pieces(GridCase):
                       " ".join(self.notices([parts, "--field", "bump"], 0.5)))
         self.write(name, text.replace(numbers(place((-2, 3, 3))), "-1.5 2.5 3.75", 1))
         self.assertIn("pieces differ in coordinates", " ".join(self.notices([parts, "--field", "bump"], 0.5)))
+
+        parts = self.divided("RectilinearGrid")
+        name = self.path("p/RectilinearGrid_4.vtr")  # behind the first along x
+        text = text_of(name)
+        first = repr(1.25 + 1 / 64)
+        self.assertIn(f">{first} ", text)
+        self.write("p/RectilinearGrid_4.vtr", text.replace(f">{first} ", ">1.3 "))
+        self.assertIn("pieces differ in coordinates", " ".join(self.notices([parts, "--field", "bump"], 0.5)))
+
+    def test_appended(self):
+        """Values that are used in the mapped file, or swapped: regions take them from the whole."""
+        for kind, ending in ENDINGS.items():
+            whole = self.write("whole." + ending, piece_text(kind, whole_extent()))
+            for order in "<", ">":
+                parts = self.divided(kind, 1)
+                for n in range(8):
+                    name = f"p/{kind}_{n}.{ending}"
+                    self.write(name, appended(text_of(self.path(name)), order))
+                for more in ([], ["--roi", "-1:5,4:10,:"], ["--step", "2,1,1"]):
+                    self.same(whole, parts, "--field", "bump", "--iso", "0.5", *more)
+                    self.same(whole, parts, "--field", "number", "--iso", "200", *more)
 
     def test_files(self):
         """Only in the index file's folder or below, each once, and there."""
@@ -343,6 +386,15 @@ class Cells(GridCase):
         pair("p0.vtu", [[0.0, 1.0, 2.0, 3.0, 4.0]] * 2)
         told = self.notices([index], 1.5)
         self.assertTrue(any("at 3 places a piece has several points" in text for text in told), told)
+
+    def test_zeros(self):
+        """0 and -0 are one place."""
+        for n, (last, zero) in enumerate((((0, 0, 1), 0.0), ((0, 0, -1), -0.0))):
+            points = [(zero, zero, 0), (1, zero, 0), (zero, 1, 0), last]
+            self.write(f"p{n}.vtu", vtu_text([tuple(map(float, p)) for p in points], [[0, 1, 2, 3]], [TETRAHEDRON],
+                                             [("a", "f32", [0.0, 1.0, 1.0, 0.25])]))
+        index = self.write("a.pvtu", vtk_file("PUnstructuredGrid", '><Piece Source="p0.vtu"/><Piece Source="p1.vtu"/>'))
+        self.assertEqual(self.surface(index, "--iso", "0.5")[1]["components"], 1)
 
     def test_differences(self):
         _, parts = self.write_divided(TETRAHEDRON, self.halves)
