@@ -4,7 +4,7 @@
     packages.py SOURCE FOLDER
 
 Builds the wheel, has auditwheel tell which systems it is for and take in what it links, installs that, runs all tests of
-tests/python on it, and measures what a call costs beside the same calls of the C library. 77 without PyPI.
+tests/python on it and those of files that VTK writes and reads, and measures what a call costs beside the same calls of the C library. 77 without PyPI.
 """
 import json
 import os
@@ -61,6 +61,8 @@ def main():
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     here = Path(__file__).resolve().parent
     run(python / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", here, env={**clean, "TEST_PACKAGES": "1"})
+    tool = next((folder / "packages").glob("lib/*/site-packages/tetracubes/tetracubes"))
+    run(python / "python", here.parent / "tool" / "test_pieces_vtk.py", tool, "reference", env=clean)  # VTK: of pyvista
     told = run(python / "python", here / "round_trip.py", env=clean, stdout=subprocess.PIPE, text=True).stdout
     ratios = json.loads(told)
     print(f"{made.name}: {size} bytes; time by that of the C calls: {ratios}")
