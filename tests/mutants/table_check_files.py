@@ -355,7 +355,7 @@ MUTANTS = [
             {"tests": ("test_cli_written",)}),
            ("if (!h->request->has_spacing) dataset_set_units(out, h->units);", "dataset_set_units(out, h->units);",
             "units of a spacing that was typed", {"tests": ("test_cli_written",)}),
-           ("(strncmp(first, at, length) != 0 || first[length])) return;", "0) return;", "NRRD: axes of different units",
+           ("(strncmp(first, at, length) != 0 || first[length])", "0", "NRRD: axes of different units",
             {"tests": ("test_cli_written",)})),
     *group("host/read/dataset/dataset.c",
            ("is_plain &= *at > ' '", "is_plain |= *at > ' '", "units: any text goes into headers",
