@@ -4,6 +4,8 @@ from mutant import group
 SLABS_MISSING = {"tests": ("test_device, slabs with missing",)}
 SCATTERED = {"tests": ("test_complex, scattered",)}
 SNAP = {"tests": ("test_snap",)}
+PIECES = {"tests": ("test_grid_pieces, reference",)}
+DEVICE_PIECES = {"tests": ("test_grid_pieces, u8",)}
 WHOLE = {"tests": ("test_cells, reference",)}
 SNAP_SLABS = {"tests": ("test_device, snap in slabs", "test_device, snap in slabs with missing")}
 
@@ -124,7 +126,11 @@ MUTANTS = [
             "active cells: those that emit nothing count too", SNAP),
            ("const uint8_t *ends = tetrahedron_edges[c->triangles[n][r->grid->mirrored",
             "const uint8_t *ends = tetrahedron_edges[5 - c->triangles[n][r->grid->mirrored",
-            "edges of a tetrahedron counted from behind")),
+            "edges of a tetrahedron counted from behind"),
+           ("r->vertex_count = own_end + seams->next[brick];", "r->vertex_count = own_end;", "pieces: the seam is not taken", PIECES),
+           ("seams->own[brick] = (uint32_t)r->vertex_count;", "seams->own[brick] = 0;", "pieces: the seam is not told", PIECES),
+           ("const bool is_own = z / BRICK_Z != r->halo_layer;", "const bool is_own = true;",
+            "pieces: vertices of the layer behind are emitted", PIECES)),
     *group("host/lib/reference/reference_run.h",
            ("(unsigned)(p[0] + p[1] + p[2])) & 1", "(unsigned)(p[0] + p[1] + p[2]) ^ 1) & 1", "parity: exchanged"),
            ("(grid_parity(r->grid) ^ (unsigned)(p[0]", "((unsigned)(p[0]", "parity: not by the grid's own indices"),
@@ -422,6 +428,18 @@ MUTANTS = [
             "carried fields: t = 1 is not the end itself"),
            ("(float)(t == 0 ? from : value)", "(float)value", "carried fields: t = 0 is not the end itself"),
            ("vertex * (uint64_t)components + (uint64_t)n", "vertex * (uint64_t)components", "carried fields: components")),
+    *group("host/lib/stream.c",
+           ("if (s->grid && s->own_first == u->first && s->own_end == u->end) return TC_OK;",
+            "if (s->grid && s->grid_first == first && s->grid_end == end) return TC_OK;",
+            "streams: a grid is taken for that of another unit", PIECES),
+           ("s->halo[0] == HALO_SNAP || s->surfaces[n].method == TC_METHOD_SNAP ? HALO_SNAP : HALO_BEFORE;",
+            "HALO_BEFORE;", "streams: snap without its halo", PIECES),
+           ("next[n].first_vertex += counted->vertex_count;", "", "streams: pieces begin at the first vertex", PIECES),
+           ("if (!seam && !is_last) seam = s->no_vertices;", "", "streams: a piece before one without vertices has no seam",
+            PIECES),
+           ("totals_take_back(s, before);", "", "streams: what is counted twice is told twice", PIECES),
+           ("const int64_t first = s->o.owned[1], nz", "const int64_t first = s->whole.dims[2], nz",
+            "streams: the layer behind a part is not counted", PIECES)),
     *group("host/lib/structured/slab_plan.c",
            ("min_u64(slab_end(plan, grid, slab_index) + 2ull, nz)", "min_u64(slab_end(plan, grid, slab_index) + 1ull, nz)",
             "slabs: samples end a plane early", SLABS_MISSING),
@@ -435,8 +453,10 @@ MUTANTS = [
                                    "becomes of a sample depends on four planes"}),
            ("return plan->zeros ? 2 : 1; }", "return 1; }", "snap: windows end one layer after the slab",
             {"tests": ("test_budget",)}),
-           ("min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES",
-            "min_u64((uint64_t)(slab_index + 1) * plan->slab_layers * BRICK_PLANES - 1", "slabs end a plane early"),
+           ("min_u64(end * BRICK_PLANES, (uint64_t)grid->dims[2]);", "min_u64(end * BRICK_PLANES - 1, (uint64_t)grid->dims[2]);",
+            "slabs end a plane early"),
+           ("plan->slab_count = plan->own_slabs + (plan->own_end < plan->layer_count);", "plan->slab_count = plan->own_slabs;",
+            "pieces: the layer behind is not classified", DEVICE_PIECES),
            ("return *bytes <= budget && largest", "return *bytes / 4 <= budget && largest",
             "--max-memory: a quarter of what is needed is counted"),
            ("plan->mesh_bytes = budget - bytes;", "plan->mesh_bytes = budget;", "--max-memory: the mesh comes on top"),
@@ -444,6 +464,9 @@ MUTANTS = [
             "slabs: planes of present cells",
             {"tests": ("test_memory, missing in slabs",)})),
     *group("host/lib/structured/structured.c",
+           ("status = seam ? layer_states(r, r->plan->own_first, &states)", "status = seam ? layer_states(r, 0, &states)",
+            "pieces: the seam is of the halo", DEVICE_PIECES),
+           ("states[n].vertices = seam[n];", "states[n].vertices += 0 * seam[n];", "pieces: the seam is not taken", DEVICE_PIECES),
            (".parity = grid_parity(grid),", ".parity = 0,", "parity: not by the grid's own indices"),
            ("r->vertex_count += head[STATE_VERTICES];", "r->vertex_count = head[STATE_VERTICES];",
             "totals: of the last slab only"),

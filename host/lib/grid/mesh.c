@@ -11,7 +11,7 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
     if (vertex_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
                                "the surface has %llu vertices, and indices of 32 bits reach %lu: extract parts of the "
-                               "volume, or reduce it",
+                               "volume, or stream it (tc_stream)",
                                (unsigned long long)vertex_count, (unsigned long)UINT32_MAX);
     tc_status status = TC_OK;
     for (int channel = 0; channel < CHANNEL_COUNT && !status; channel++)

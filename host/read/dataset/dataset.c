@@ -36,7 +36,7 @@ int dataset_map(dataset *d, const char *path, mapping *m) {
 int dataset_keep(dataset *d, void *memory) {
     dataset_memory *entry = malloc(sizeof *entry);
     if (!entry) {
-        free(memory);
+        samples_free(memory);
         return fail(STATUS_FAILED, "no memory for the list of the input's arrays");
     }
     *entry = (dataset_memory){d->memory, memory, 0};
@@ -185,7 +185,7 @@ void dataset_release(dataset *d) {
         if (entry->mapped)
             mapping_close(&(mapping){.bytes = entry->memory, .size = entry->mapped});
         else
-            free(entry->memory);
+            samples_free(entry->memory);
         free(entry);
     }
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);

@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "file/unpack.h"
+#include "temporary_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -38,12 +39,19 @@ static int unpack_into(int file, const char *path, const mapping *packed, uint64
     return status;
 }
 
-/* As the file's end says. Returns 0 where that is wrong, and leaves the file in memory empty. */
-static int unpack_as_told(int file, const char *path, const mapping *packed) {
+/* The unpacked size as the file's end says, 0 where it says nothing. */
+static uint64_t size_told(const mapping *packed) {
     uint64_t bytes = 0;
+    for (size_t n = 1; n <= SIZE_BYTES && packed->size >= PACKED_LEAST; n++)
+        bytes = bytes << 8 | packed->bytes[packed->size - n];
+    return bytes;
+}
+
+/* Returns 0 where what is told is wrong, and leaves the file empty. */
+static int unpack_as_told(int file, const char *path, const mapping *packed) {
+    const uint64_t bytes = size_told(packed);
     int more = 1;
     if (packed->size < PACKED_LEAST) return 0;
-    for (size_t n = 1; n <= SIZE_BYTES; n++) bytes = bytes << 8 | packed->bytes[packed->size - n];
     if (unpack_check(path, ENCODING_DEFLATE, packed->size, bytes) == 0 &&
         unpack_into(file, path, packed, bytes, &more) == 0 && !more)
         return 1;
@@ -58,11 +66,21 @@ static int unpack_counted(int file, const char *path, const mapping *packed) {
     return status ? status : unpack_into(file, path, packed, bytes, &more);
 }
 
+/* A file in memory, or on the disk where it will be too large for that: volumes are packed to a third, more or less. -1
+ * with its message. */
+static int open_unpacked(const char *path, const mapping *packed) {
+    const uint64_t told = size_told(packed), usual = 3 * (uint64_t)packed->size, bytes = told > usual ? told : usual;
+    if (temporary_file_is_better(bytes)) return temporary_file(0);
+    const int file = memfd_create("unpacked", MFD_CLOEXEC);
+    if (file < 0) no_memory(path, bytes, errno);
+    return file;
+}
+
 int gunzip(const char *path, const mapping *packed) {
     int status = unpack_check(path, ENCODING_DEFLATE, packed->size, 0);
     if (status) return status;
-    const int file = memfd_create("unpacked", MFD_CLOEXEC);
-    if (file < 0) return no_memory(path, 0, errno);
+    const int file = open_unpacked(path, packed);
+    if (file < 0) return STATUS_FAILED;
     if (!unpack_as_told(file, path, packed)) status = unpack_counted(file, path, packed);
     if (!status) return mapping_replace(path, file);
     close(file);

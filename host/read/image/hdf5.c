@@ -31,7 +31,7 @@ static int load(const read_request *request, const hdf5_file *h, const axes *sto
     if (!samples)
         return fail(STATUS_FAILED, "%s: needs %" PRIu64 " bytes of memory, which are not to be had", h->path, l->bytes);
     if (!(status = hdf5_load(h, samples))) return source_take(request, &from, l, samples, out);
-    free(samples);
+    samples_free(samples);
     return status;
 }
 

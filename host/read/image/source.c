@@ -240,7 +240,9 @@ cleanup:
 }
 
 static int no_memory(const char *path, uint64_t bytes) {
-    return fail(STATUS_FAILED, "%s: needs %" PRIu64 " bytes of memory, which are not to be had; use a larger machine",
+    return fail(STATUS_FAILED,
+                "%s: needs %" PRIu64 " bytes, which neither memory nor the folder of temporary files has (TMPDIR, else "
+                "/var/tmp): name one with room by TMPDIR",
                 path, bytes);
 }
 
@@ -253,7 +255,7 @@ static int gather(const source *from, const layout *l, const unsigned char *stor
     if (!samples) return no_memory(from->header_path, bytes);
     int status = layout_gather(from->header_path, l, stored, samples);
     if (status) {
-        free(samples);
+        samples_free(samples);
         return status;
     }
     out->blocks->fields->values = samples;
@@ -326,7 +328,7 @@ static int take(const source *from, const layout *l, unsigned char *stored, data
         return dataset_keep(out, stored);
     }
     int status = gather(from, l, stored, out);
-    free(stored);
+    samples_free(stored);
     return status;
 }
 
@@ -348,7 +350,7 @@ static int load(const source *from, const layout *l, dataset *out) {
     }
     return take(from, l, stored, out);
 cleanup:
-    free(stored);
+    samples_free(stored);
     return status;
 }
 
@@ -366,6 +368,6 @@ int source_take(const read_request *request, const source *from, const layout *s
     describe(from, stored, out);
     int status = part_cut_image(request, out, &cut);
     if (!status) return take(from, &cut, array, out);
-    free(array);
+    samples_free(array);
     return status;
 }

@@ -104,7 +104,7 @@ static int read_stack(stack *s, dataset *out) {
         return fail(STATUS_FAILED, "%s: needs %" PRIu64 " bytes of memory, which are not to be had", request->path,
                     l.bytes);
     if ((status = load(s, out, samples))) {
-        free(samples);
+        samples_free(samples);
         return status;
     }
     const source from = {.header_path = request->path, .axes = &stored};

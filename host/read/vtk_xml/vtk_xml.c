@@ -7,6 +7,7 @@
  */
 #include "vtk_xml/vtk_xml.h"
 
+#include "dataset/array_memory.h"
 #include "dataset/layout.h"
 #include "dataset/part.h"
 #include "dataset/world.h"
@@ -83,7 +84,7 @@ static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, d
         blanked[i] = is_level ? (flags & bits) != 0 : (uint8_t)(flags & bits); /* any level: a duplicate */
         any |= blanked[i];
     }
-    free(owned);
+    samples_free(owned);
     if (status || !any) return status;
     *(on_cells ? &block->blanked_cells : &block->blanked_points) = blanked;
     return 0;
@@ -100,7 +101,7 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     for (uint64_t n = 0; n < count && !status; n++)
         bits[n] = is_text ? stored[n] != 0 : stored[n / 8] >> (7 - n % 8) & 1;
     *values = bits;
-    free(owned);
+    samples_free(owned);
     return status;
 }
 

@@ -110,7 +110,7 @@ int vtk_xml_load_coordinates(xml_reader *r, const xml_array *array, uint64_t cou
         convert_to_doubles(memory, stored, count, array->element);
         values->f64 = memory;
     }
-    free(owned);
+    samples_free(owned);
     return status;
 }
 
@@ -122,7 +122,7 @@ int vtk_xml_load_integers(xml_reader *r, const xml_array *array, uint64_t count,
                     r->doc.names + array->name);
     int status = vtk_xml_load_briefly(r, array, count, &stored, &owned);
     if (!status) vtk_xml_to_integers(to, stored, count, array->element);
-    free(owned);
+    samples_free(owned);
     return status;
 }
 

@@ -1,5 +1,6 @@
 #include "streamed.h"
 
+#include "dataset/array_memory.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "host_memory.h"
@@ -62,13 +63,16 @@ static uint64_t memory_of_stream(const options *o) {
 
 /* ----------------------------------------------------------------------------------------------------------- source */
 
-/* Says which pages of the mapped file come next, and which have been used. */
-static void advise(const dataset *d, const char *from, uint64_t bytes, int advice) {
+/* Of an address in a mapped file, or in an array that lies in one: the bytes from there to its end; else 0. */
+static uint64_t bytes_in_file(const dataset *d, const char *from) {
     const char *begin = d->mapping, *end = begin + d->mapping_bytes;
-    if (!begin || from < begin || from >= end) return;
-    if (bytes > (uint64_t)(end - from)) bytes = (uint64_t)(end - from);
-    const uint64_t before = (uintptr_t)from % page;
-    (void)madvise((void *)(uintptr_t)(from - before), bytes + before, advice);
+    return begin && from >= begin && from < end ? (uint64_t)(end - from) : samples_in_file(from);
+}
+
+/* Says which pages of the file come next, and which have been used. */
+static void advise(const dataset *d, const char *from, uint64_t bytes, int advice) {
+    const uint64_t most = bytes_in_file(d, from), before = (uintptr_t)from % page;
+    if (most) (void)madvise((void *)(uintptr_t)(from - before), (bytes < most ? bytes : most) + before, advice);
 }
 
 static int give_planes(void *user, tc_planes *planes) {
@@ -108,6 +112,7 @@ static int fits_memory(const stream_job *j) {
     for (size_t n = 0; n < j->count; n++) {
         const tc_counts *c = &j->surfaces[n].counts;
         const uint64_t bytes = c->mesh_bytes + vertex_bytes * c->vertex_count;
+        if (c->vertex_count > UINT32_MAX) return 0;
         if (bytes > mesh) mesh = bytes;
     }
     return mesh <= most && keeps <= most - mesh;
