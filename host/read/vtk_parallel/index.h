@@ -6,6 +6,7 @@
  *     index.c           the XML, through expat
  *     vtk_parallel.c    the files that it names, opened and read; blocks
  *     grid_pieces.c     pieces of a structured grid, put where they belong in one
+ *     piece_boxes.c     which cells are whose there
  *     cell_pieces.c     pieces of an unstructured grid, joined to one
  *     shared_points.c   the points that these have in common
  *
