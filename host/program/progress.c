@@ -33,6 +33,8 @@ static struct {
     int shown; /* print at all */
     int drawn; /* a line stands on the terminal */
     double begin_ms, last_ms;
+    double job_ms; /* when the job began; 0: there is none */
+    uint64_t job_bytes;
 } state;
 
 static void cancel(int number) {
@@ -108,6 +110,21 @@ void progress_begin(int quiet) {
     state.begin_ms = state.last_ms = now_ms();
 }
 
+void progress_job_begin(void) {
+    state.job_ms = now_ms();
+    state.job_bytes = 0;
+}
+
+void progress_bytes(uint64_t bytes) { state.job_bytes += bytes; }
+
+/* ", 1.9 GB/s, 0:12 left" */
+static void print_job(double now, double fraction) {
+    const double seconds = (now - state.job_ms) / 1e3;
+    if (state.job_ms == 0 || seconds < 1 || fraction < 0.01) return;
+    const unsigned left = (unsigned)(seconds * (1 - fraction) / fraction + 0.5);
+    fprintf(stderr, ", %.3g GB/s, %u:%02u left", (double)state.job_bytes / seconds * 1e-9, left / 60, left % 60);
+}
+
 int progress_update(void *user, const char *stage, double fraction) {
     (void)user;
     truncation_watch(); /* compilers of kernels may have installed a handler of their own, which serves one fault only
@@ -115,6 +132,7 @@ int progress_update(void *user, const char *stage, double fraction) {
     double now = now_ms();
     if (state.shown && now - state.begin_ms >= PATIENCE_MS && now - state.last_ms >= REDRAW_MS) {
         fprintf(stderr, "\r\033[K%s %3.0f%%", stage, 100.0 * fraction);
+        print_job(now, fraction);
         fflush(stderr);
         state.drawn = 1;
         state.last_ms = now;

@@ -7,6 +7,8 @@
 #ifndef PROGRESS_H
 #define PROGRESS_H
 
+#include <stdint.h>
+
 /* Milliseconds of a clock that never goes back. */
 double now_ms(void);
 
@@ -14,7 +16,14 @@ double now_ms(void);
  * sizes makes writes fail, and progress_update prints where standard error is a terminal and not quiet. */
 void progress_begin(int quiet);
 
-/* A tc_progress: prints stage and percentage once a second has passed. Nonzero: stop. */
+/* From now on a long job counts: its percentage runs from 0 to 100 once, so that the time left can be told. */
+void progress_job_begin(void);
+
+/* So many bytes more are being read or written: their rate is told of a job. */
+void progress_bytes(uint64_t bytes);
+
+/* A tc_progress: prints stage and percentage once a second has passed, of a job also bytes per second and the time that
+ * is left. Nonzero: stop. */
 int progress_update(void *user, const char *stage, double fraction);
 
 /* Clears the line, where one was printed, so that other text may follow. */

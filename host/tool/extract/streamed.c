@@ -82,6 +82,7 @@ static int give_planes(void *user, tc_planes *planes) {
     const uint64_t bytes = plane * tc_type_bytes(g->type),
                    cells = (uint64_t)(g->dims[0] - 1) * (uint64_t)(g->dims[1] - 1);
     const uint64_t window = (uint64_t)planes->count * bytes;
+    progress_bytes(window);
     const char *at = j->samples + first * bytes;
     advise(j->in->data, at > j->samples + window ? at - window : j->samples,
            at > j->samples + window ? window : (uint64_t)(at - j->samples), MADV_DONTNEED);
@@ -171,6 +172,7 @@ static int take_piece(void *user, const tc_mesh_piece *piece) {
     s->readback_ms += m->timings.readback_ms;
     if (!j->in->o->quiet || j->in->o->json) add_bounds(s, m);
     if (!status) status = carried_fields_of_piece(j->in->carried, piece, plane, &j->how[piece->surface]);
+    progress_bytes(12 * (m->vertex_count + m->triangle_count));
     if (!status && to->file)
         status = mesh_file_add(to->file->file, piece->first_vertex, piece->first_triangle, m, j->in->carried->fields);
     s->write_ms += now_ms() - begin;
@@ -214,6 +216,7 @@ static int run(stream_job *j, engine *e) {
     o.counted = take_counts;
     o.take = take_piece;
     o.user = j;
+    progress_job_begin();
     const tc_status status = tc_stream(e->context, &o);
     e->fails_alike = status == TC_ERROR_LIMIT;
     if (j->fits) return 0;
