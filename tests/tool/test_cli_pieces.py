@@ -224,11 +224,11 @@ class Pieces(GridCase):
         """Values that are used in the mapped file, or swapped: regions take them from the whole."""
         for kind, ending in ENDINGS.items():
             whole = self.write("whole." + ending, piece_text(kind, whole_extent()))
-            for order in "<", ">":
+            for order in "<", ">", "<>":  # of all pieces, or one after the other
                 parts = self.divided(kind, 1)
                 for n in range(8):
                     name = f"p/{kind}_{n}.{ending}"
-                    self.write(name, appended(text_of(self.path(name)), order))
+                    self.write(name, appended(text_of(self.path(name)), order[n % len(order)]))
                 for more in ([], ["--roi", "-1:5,4:10,:"], ["--step", "2,1,1"]):
                     self.same(whole, parts, "--field", "bump", "--iso", "0.5", *more)
                     self.same(whole, parts, "--field", "number", "--iso", "200", *more)
