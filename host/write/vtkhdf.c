@@ -70,14 +70,18 @@ static int is_taken(const hdf_file *f, const char *name) {
  * NULL without memory. */
 static char *make_name(const hdf_file *f, const char *name, int is_normals) {
     static const char folder[] = "PointData/";
-    char *path = malloc(strlen(name) + sizeof folder + (size_t)f->s->array_count + 2);
+    const size_t room = strlen(name) + sizeof folder + (size_t)f->s->array_count + 2;
+    char *path = malloc(room);
     if (!path) return NULL;
-    char *own = stpcpy(path, folder);
-    strcpy(own, *name ? name : "_");
+    size_t length = (size_t)snprintf(path, room, "%s%s", folder, *name ? name : "_");
+    char *own = path + sizeof folder - 1;
     for (char *at = own; *at; at++)
         if (*at == '/') *at = '_';
     if (strcmp(own, ".") == 0) *own = '_';
-    while (!is_normals && (strcmp(own, "Normals") == 0 || is_taken(f, path))) strcat(path, "_");
+    while (!is_normals && (strcmp(own, "Normals") == 0 || is_taken(f, path))) {
+        path[length++] = '_';
+        path[length] = '\0';
+    }
     return path;
 }
 

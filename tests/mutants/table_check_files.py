@@ -316,7 +316,7 @@ MUTANTS = [
            ("if (!status) status = check_overlap(j, entries, spare);", "", "cells in two pieces are not told"),
            ("numbers ? number_key(numbers, c) : 0", "0", "cells are in the order of the pieces"),
            ("sum_up(j->offsets, b->cell_count);", "sum_up(j->offsets, b->cell_count - 1);", "cells: the last one's end"),
-           ("*points++ = j->points.numbers[j->point_starts[p] + b->face_points[n]];", "*points++ = b->face_points[n];",
+           ("*points++ = j->points->numbers[j->point_starts[p] + b->face_points[n]];", "*points++ = b->face_points[n];",
             "faces have the numbers of their pieces")),
     *group("host/read/vtk_parallel/vtk_parallel.c",
            ("if (was_read(&out->files, m->identity))", "if (0)", "a file counts as often as it is named"),

@@ -156,7 +156,7 @@ static int check_cells(const hdf_grid *g, int64_t part) {
 }
 
 static int load_cells(hdf_grid *g) {
-    const int64_t *ends, *corners;
+    const int64_t *ends = NULL, *corners = NULL;
     int64_t count, at = 0, corner = 0;
     hdf_values types;
     int status = hdf_load(g->r, ROOT "Types", (hdf_rows){g->step.cells, g->cell_count}, &types);

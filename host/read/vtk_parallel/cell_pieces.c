@@ -23,7 +23,7 @@ typedef struct cell_join {
     int64_t *point_starts, *cell_starts; /* of each piece, among all points and cells; then their sums */
     uint8_t *is_left_out;                /* of each point */
     int64_t *cell_numbers;               /* of each cell: in the whole; -1: a ghost */
-    shared_points points;
+    shared_points *points;
     unsigned char **values, *coordinates;
     uint8_t *types, *blanked_points, *blanked_cells;
     int64_t *offsets, *corners, *cell_faces, *face_offsets, *face_points;
@@ -103,8 +103,8 @@ static uint64_t corner_key(const cell_join *j, size_t piece, int64_t cell) {
     if (b->cell_offsets[cell] == b->cell_offsets[cell + 1] || cell_type_dimension(b->cell_types[cell]) < 3) return 0;
     for (int64_t n = b->cell_offsets[cell]; n < b->cell_offsets[cell + 1]; n++) {
         const int64_t point = j->point_starts[piece] + b->cell_points[n];
-        if (!j->points.is_shared[point]) return 0;
-        key += mixed((uint64_t)j->points.numbers[point] + UINT64_C(0x9e3779b97f4a7c15));
+        if (!j->points->is_shared[point]) return 0;
+        key += mixed((uint64_t)j->points->numbers[point] + UINT64_C(0x9e3779b97f4a7c15));
     }
     return key ? key : 1;
 }
@@ -122,7 +122,7 @@ static int64_t *sorted_corners(const cell_join *j, int64_t cell, size_t *count) 
     *count = (size_t)(b->cell_offsets[own + 1] - b->cell_offsets[own]);
     int64_t *numbers = malloc((*count + 1) * sizeof *numbers);
     for (size_t n = 0; n < *count && numbers; n++)
-        numbers[n] = j->points.numbers[j->point_starts[piece] + b->cell_points[b->cell_offsets[own] + (int64_t)n]];
+        numbers[n] = j->points->numbers[j->point_starts[piece] + b->cell_points[b->cell_offsets[own] + (int64_t)n]];
     if (numbers) qsort(numbers, *count, sizeof *numbers, compare_numbers);
     return numbers;
 }
@@ -265,14 +265,14 @@ static int make_whole(cell_join *j, int64_t cells) {
     const coordinates first = j->list->pieces->block->points;
     if (dataset_block_add(j->out, &j->whole)) return STATUS_FAILED;
     j->whole->kind = BLOCK_UNSTRUCTURED;
-    j->whole->point_count = j->points.count;
+    j->whole->point_count = j->points->count;
     j->whole->cell_count = cells;
     for (size_t p = 0; p < j->list->count; p++) {
         int status = piece_coordinates_fit(j->list, &j->list->pieces[p], j->list->pieces[p].block->points, first);
         if (status) return status;
     }
     int status =
-        pieces_add_coordinates(j->out, first, 3 * (uint64_t)j->points.count, &j->whole->points, &j->coordinates);
+        pieces_add_coordinates(j->out, first, 3 * (uint64_t)j->points->count, &j->whole->points, &j->coordinates);
     if (!status) status = pieces_add_fields(j->list, j->out, j->whole, &j->values);
     if (!status) status = make_cells(j);
     if (!status) status = make_faces(j);
@@ -285,8 +285,8 @@ static void copy_points(cell_join *j, size_t p) {
     const dataset_block *b = j->list->pieces[p].block;
     const size_t bytes = 3 * coordinate_bytes(b->points);
     for (int64_t n = 0; n < b->point_count; n++) {
-        const int64_t point = j->point_starts[p] + n, to = j->points.numbers[point];
-        if (j->points.sources[point] != point) continue;
+        const int64_t point = j->point_starts[p] + n, to = j->points->numbers[point];
+        if (j->points->sources[point] != point) continue;
         memcpy(j->coordinates + bytes * (size_t)to, coordinate_values(b->points) + bytes * (size_t)n, bytes);
         if (j->blanked_points) j->blanked_points[to] = b->blanked_points ? b->blanked_points[n] : 0;
     }
@@ -296,7 +296,7 @@ static void copy_faces(cell_join *j, size_t p, int64_t cell, int64_t to) {
     const dataset_block *b = j->list->pieces[p].block;
     const int64_t begin = b->face_offsets[b->cell_faces[cell]], end = b->face_offsets[b->cell_faces[cell + 1]];
     int64_t *points = j->face_points + j->face_offsets[j->cell_faces[to]];
-    for (int64_t n = begin; n < end; n++) *points++ = j->points.numbers[j->point_starts[p] + b->face_points[n]];
+    for (int64_t n = begin; n < end; n++) *points++ = j->points->numbers[j->point_starts[p] + b->face_points[n]];
 }
 
 static void copy_cells(cell_join *j, size_t p) {
@@ -307,7 +307,7 @@ static void copy_cells(cell_join *j, size_t p) {
         int64_t *corners = j->corners + j->offsets[to];
         j->types[to] = b->cell_types[c];
         for (int64_t n = b->cell_offsets[c]; n < b->cell_offsets[c + 1]; n++)
-            *corners++ = j->points.numbers[j->point_starts[p] + b->cell_points[n]];
+            *corners++ = j->points->numbers[j->point_starts[p] + b->cell_points[n]];
         if (b->cell_faces && b->cell_faces[c] < b->cell_faces[c + 1]) copy_faces(j, p, c, to);
         if (j->blanked_cells) j->blanked_cells[to] = b->blanked_cells ? b->blanked_cells[c] : 0;
     }
@@ -322,9 +322,9 @@ static void copy_fields(cell_join *j, size_t p) {
         const int64_t count = f->on_cells ? b->cell_count : b->point_count;
         for (int64_t i = 0; i < count; i++) {
             const int64_t point = j->point_starts[p] + i;
-            const int64_t to = f->on_cells                         ? j->cell_numbers[j->cell_starts[p] + i]
-                               : j->points.sources[point] == point ? j->points.numbers[point]
-                                                                   : -1;
+            const int64_t to = f->on_cells                          ? j->cell_numbers[j->cell_starts[p] + i]
+                               : j->points->sources[point] == point ? j->points->numbers[point]
+                                                                    : -1;
             if (to >= 0) memcpy(j->values[n] + bytes * (size_t)to, from + bytes * (size_t)i, bytes);
         }
     }
@@ -342,23 +342,24 @@ static void copy_pieces(cell_join *j) {
 }
 
 static void tell(const cell_join *j) {
-    if (j->points.differing)
+    if (j->points->differing)
         dataset_notice(j->out, "pieces differ at %" PRId64 " of the points that they share; the first one's is taken",
-                       j->points.differing);
-    if (j->points.unclear)
+                       j->points->differing);
+    if (j->points->unclear)
         dataset_notice(j->out,
                        "at %" PRId64 " places a piece has several points of the same values: they are not joined with "
                        "those of other pieces, and surfaces may not meet there; global numbers would tell",
-                       j->points.unclear);
+                       j->points->unclear);
 }
 
 int cell_pieces_join(const piece_list *list, dataset *out) {
-    cell_join j = {.list = list, .out = out};
+    shared_points points = {0};
+    cell_join j = {.list = list, .out = out, .points = &points};
     int64_t cells = 0;
     int status = make_lists(&j);
     if (!status) {
         leave_out_points(&j);
-        status = shared_points_find(list, j.point_starts, j.is_left_out, &j.points);
+        status = shared_points_find(list, j.point_starts, j.is_left_out, &points);
     }
     if (!status) status = find_cells(&j, &cells);
     if (!status) status = make_whole(&j, cells);
@@ -366,7 +367,7 @@ int cell_pieces_join(const piece_list *list, dataset *out) {
         copy_pieces(&j);
         tell(&j);
     }
-    shared_points_release(&j.points);
+    shared_points_release(&points);
     free(j.point_starts);
     free(j.cell_starts);
     free(j.is_left_out);

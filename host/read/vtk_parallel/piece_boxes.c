@@ -111,7 +111,7 @@ static int compare_low(const void *first, const void *second) {
 
 /* Whether two boxes have a cell in common: *first and *second are then their pieces. Returns -1 without memory. */
 static int find_overlap(const cell_box *boxes, size_t count, size_t *first, size_t *second) {
-    const cell_box **order = malloc(count * sizeof *order);
+    const cell_box **order = malloc((count + 1) * sizeof *order);
     int found = 0;
     if (!order) return -1;
     for (size_t n = 0; n < count; n++) order[n] = &boxes[n];

@@ -48,8 +48,8 @@ int pieces_add_fields(const piece_list *list, dataset *out, dataset_block *whole
 
 int pieces_add_coordinates(dataset *out, coordinates like, uint64_t count, coordinates *to, unsigned char **memory) {
     *memory = dataset_allocate(out, count * coordinate_bytes(like));
-    *to = (coordinates){.f32 = like.f64 ? NULL : (const float *)*memory,
-                        .f64 = like.f64 ? (const double *)*memory : NULL};
+    *to = (coordinates){.f32 = like.f64 ? NULL : (const float *)(const void *)*memory,
+                        .f64 = like.f64 ? (const double *)(const void *)*memory : NULL};
     return *memory ? 0 : STATUS_FAILED;
 }
 
