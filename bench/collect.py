@@ -65,12 +65,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", required=True, metavar="DIR", help="the build folder")
     parser.add_argument("--parts", required=True, metavar="DIR",
-                        help="bench.json and, where they were measured, carry.json, peers.json, process.json, table1.json")
+                        help="bench.json and, where they were measured, carry.json, peers.json, process.json, stream.json, "
+                             "table1.json")
     parser.add_argument("--results", required=True, metavar="DIR", help="where the file goes")
     arguments = parser.parse_args()
     bench = read(os.path.join(arguments.parts, "bench.json"))
     peers, process = optional(arguments.parts, "peers"), optional(arguments.parts, "process")
     carry, table1 = optional(arguments.parts, "carry"), optional(arguments.parts, "table1")
+    stream = optional(arguments.parts, "stream")
     cpu = cpu_model()
     name = file_name(cpu, bench["device"])
     result = {
@@ -92,6 +94,8 @@ def main():
         result.update(peers=peers["cases"], vtk=peers["vtk"])
     if carry:
         result["carry"] = carry["cases"]
+    if stream:
+        result["stream"] = stream
     if table1:
         result["table1"] = table1["rows"]
     path = os.path.join(arguments.results, name + ".json")

@@ -192,6 +192,38 @@ def carry_text(result):
             "take turns:", table(head, [carry_row(case) for case in result["carry"]])]
 
 
+# -------------------------------------------------------------------------------------------------------------- stream
+
+def stream_row(case):
+    memory, stream, small = case["memory"], case["stream"], case["stream_128m"]
+    ratio = stream["ms"]["median"] / memory["ms"]["median"]
+    return [f"{case['field']} {size(case['dims'])} {case['type']}", f"{case['mesh_mb']:,.0f}", ms(memory["ms"]),
+            ms(stream["ms"]), f"{ratio:.2f}", ms(small["ms"]), *(f"{way['peak_mb']:,.0f}" for way in (memory, stream, small))]
+
+
+def large_text(large):
+    text = (f"A raw volume of {size(large['dims'])} {large['type']}, 16 GiB and most of it a hole, under a limit of 1 GiB "
+            f"on the memory that the process may take: {large['vertices']:,} vertices, with {large['peak_mb']:.0f} MB at most.")
+    for kind, words in (("warm", "From the system's cache of files"), ("cold", "From the disk")):
+        if kind in large:
+            case = large[kind]
+            text += (f" {words} it takes {case['extract_s']:.1f} s, and `dd` {case['dd_s']:.1f} s to read it: "
+                     f"{case['dd_s'] / case['extract_s']:.2f} of its speed.")
+    return text
+
+
+def stream_text(result):
+    """The cases of bench/stream.py."""
+    if "stream" not in result:
+        return []
+    head = ["samples", "mesh, MB", "in memory, ms", "`--stream`, ms", "ratio", "`--max-memory 128M`, ms",
+            "peak in memory, MB", "of the stream", "of 128M"]
+    stream = result["stream"]
+    return ["The whole tool, raw file to PLY, in memory and as a stream, in turns; the files are the same, byte for byte:",
+            table(head, [stream_row(case) for case in stream["files"]]),
+            *([large_text(stream["large"])] if "large" in stream else [])]
+
+
 # -------------------------------------------------------------------------------------------------------------- table 1
 
 def table1_row(row):
@@ -263,7 +295,7 @@ def brief(result):
 def everything(result):
     return [f"## {result['name']}", machine_text(result), picture(result, "../pictures"),
             *peers_text(result, result.get("peers", [])), *cases_text(result, result["cases"]), *left_out_text(result),
-            *carry_text(result), *table1_text(result)]
+            *carry_text(result), *stream_text(result), *table1_text(result)]
 
 
 def paragraphs(parts):

@@ -60,6 +60,11 @@ def test_partial(folder):
     result["carry"] = [{"field": "sphere", "dims": [256, 256, 256], "type": "f32", "vertices": 328907, "repeats": 3,
                         "emit_ms": {"median": 2.0, "min": 1.0, "max": 3.0},
                         "carry_ms": {"median": 5.0, "min": 4.0, "max": 6.0}, "reference_ms": 200.0}]
+    way = {"ms": {"median": 200.0, "min": 100.0, "max": 300.0}, "peak_mb": 50.0}
+    result["stream"] = {"files": [{"field": "sphere", "dims": [512] * 3, "type": "u8", "mesh_mb": 40.0, "memory": way,
+                                   "stream": way, "stream_128m": way}],
+                        "large": {"dims": [2048, 2048, 4096], "type": "u8", "vertices": 7, "peak_mb": 300.0,
+                                  "warm": {"dd_s": 6.0, "extract_s": 8.0}}}
     result["left_out"] = [{"field": "sphere", "dims": [1024, 1024, 1024], "type": "f32", "reason": "too large"}]
     partial = folder / "partial"
     partial.mkdir()
@@ -72,6 +77,9 @@ def test_partial(folder):
     text = (partial / "README.md").read_text()
     expect("Left out: sphere 1024³ f32; too large." in text, "the case left out is not told of")
     expect("| sphere 256³ f32 | 328,907 | 2.00 (1.00-3.00) | 5.00 (4.00-6.00) | 2.50 | 200 |" in text, "no row of carry")
+    expect("| sphere 512³ u8 | 40 | 200.0 (100.0-300.0) | 200.0 (100.0-300.0) | 1.00 | 200.0 (100.0-300.0) | 50 | 50 | 50 |" in text,
+           "no row of streams")
+    expect("it takes 8.0 s, and `dd` 6.0 s to read it: 0.75 of its speed" in text, "nothing of the large volume")
     expect("Beside other filters" not in text, "a table of peers without peers")
 
 

@@ -29,8 +29,8 @@
  * Errors. Calls that can fail return a tc_status; tc_message() then says, for the calling thread, what was wrong and
  * what to do. Any of them may return TC_ERROR_ARGUMENT or TC_ERROR_MEMORY; those that use a context with OpenCL also
  * TC_ERROR_DEVICE; those that call a progress callback also TC_ERROR_CANCELLED. Further errors are named at the call.
- * On failure outputs are zero, except the arrays that tc_interpolate_field and tc_emit fill, whose content is then
- * undefined. The library never prints, exits or aborts on data.
+ * On failure outputs are zero, except the arrays that tc_interpolate_field, tc_emit and tc_count_piece fill, whose
+ * content is then undefined. The library never prints, exits or aborts on data.
  *
  * Mistakes of the caller end in TC_ERROR_ARGUMENT, not in a crash, where they can be seen: NULL, and numbers, sizes,
  * enumerators and alignments that cannot be. The caller sees to the rest: arrays have as many elements as the sizes
@@ -103,7 +103,7 @@ typedef enum tc_status {
     TC_ERROR_DEVICE,       /* no OpenCL, no such device, or the device failed */
     TC_ERROR_MEMORY,       /* host or device memory ran out */
     TC_ERROR_LIMIT,        /* more than 2^32 - 1 vertices, points or tetrahedra, or a plane of samples too large */
-    TC_ERROR_CANCELLED,    /* the progress callback asked to stop */
+    TC_ERROR_CANCELLED,    /* a callback asked to stop */
     TC_ERROR_FILE,         /* a file of the cache that the caller asked for cannot be written */
     TC_ERROR_WRONG_RESULT, /* the device computes wrongly: found by check_device, or by a trial in a child process */
 } tc_status;
@@ -438,8 +438,9 @@ typedef int (*tc_take_piece)(void *user, const tc_mesh_piece *piece);
 
 typedef struct tc_stream_options {
     size_t struct_size;          /* set by tc_stream_options_init */
-    const tc_grid_options *grid; /* the whole, uniform or rectilinear, without samples. Arrays of blanked samples or
-                                    cells are not looked at: not NULL says that planes have them */
+    const tc_grid_options *grid; /* the whole. Its samples are not looked at, nor arrays of blanked samples or cells:
+                                    not NULL says that planes have them. But of a curvilinear grid all of these, and
+                                    points, have to be in memory, or mapped: which way round it is follows from them */
     const tc_extract_options *surfaces; /* one for each surface */
     size_t surface_count;
     uint64_t max_memory_bytes; /* host memory for a window of samples and a piece of a mesh; 0: 256 MiB. At least that

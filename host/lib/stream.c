@@ -48,6 +48,7 @@ typedef struct stream {
     host_block room[ARRAY_COUNT]; /* for what the source does not have in memory */
     uint64_t mesh_bytes;          /* of a piece, at most, where that can be had */
     tc_grid *grid;                /* of the unit in memory */
+    bool mirrored;                /* of a curvilinear grid: the whole */
     int64_t own_first, own_end;   /* the planes that it owns, of the whole */
     int64_t grid_first, grid_end; /* those that it has */
 } stream;
@@ -114,11 +115,15 @@ static tc_status grid_open(stream *s, const unit *u) {
     o.blanked_cells = planes.blanked_cells;
     if (o.axes[2]) o.axes[2] += first;
     if (o.axes_f64[2]) o.axes_f64[2] += first;
+    if (o.points) o.points += 3 * first * o.dims[0] * o.dims[1];
+    if (o.points_f64) o.points_f64 += 3 * first * o.dims[0] * o.dims[1];
     s->grid_first = first;
     s->grid_end = end;
     s->own_first = u->first;
     s->own_end = u->end;
-    return tc_grid_create(s->context, &o, &s->grid);
+    status = tc_grid_create(s->context, &o, &s->grid);
+    if (!status && s->grid->kind == GRID_CURVILINEAR) s->grid->mirrored = s->mirrored;
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- units
@@ -309,12 +314,28 @@ void tc_stream_options_init(tc_stream_options *options) {
     *options = (tc_stream_options){.struct_size = sizeof *options};
 }
 
+static bool is_curvilinear(const stream *s) { return s->whole.points || s->whole.points_f64; }
+
+/* Origin and winding of a curvilinear grid follow from all of its points that are not missing. */
+static tc_status curvilinear_place(stream *s) {
+    tc_grid whole = {.context = s->context};
+    if (!is_curvilinear(s)) return TC_OK;
+    const tc_status status = grid_describe(&s->whole, &whole);
+    s->whole.has_origin = 1;
+    memcpy(s->whole.origin, whole.origin, sizeof whole.origin);
+    s->mirrored = whole.mirrored;
+    grid_release(&whole);
+    return status;
+}
+
 static tc_status options_check(const stream *s) {
     if (!s->o.grid || !s->o.surfaces || !s->o.surface_count || !s->o.read)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "a stream needs a grid, surfaces, and a source of planes");
-    if (s->whole.points || s->whole.points_f64 || s->whole.cl_samples || s->whole.whole)
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "streams are of uniform and rectilinear grids whose samples come from the source");
+    if (s->whole.cl_samples || s->whole.whole || (is_curvilinear(s) && !s->whole.samples))
+        return (tc_status)fail(
+            TC_ERROR_ARGUMENT,
+            "a stream is of a whole grid whose samples come from the source; of a curvilinear one they, "
+            "too, have to be in memory, or mapped");
     return grid_sizes_check(&s->whole);
 }
 
@@ -339,6 +360,7 @@ static tc_status options_take(stream *s, const tc_stream_options *options) {
     if (!status && s->o.grid) status = struct_copy_in(&s->whole, sizeof s->whole, s->o.grid, "grid options");
     if (!status) status = options_check(s);
     if (!status) status = owned_take(s);
+    if (!status) status = curvilinear_place(s);
     if (status) return status;
     s->surfaces = calloc(s->o.surface_count, sizeof *s->surfaces);
     s->totals = calloc(s->o.surface_count, sizeof *s->totals);

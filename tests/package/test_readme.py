@@ -151,7 +151,7 @@ def test_keys(text, tool):
             test_keys_of(text, command, keys_of(json.loads(run(tool, command, "a.nrrd", *more, "--json",
                                                                cwd=folder).stdout)))
         known = set()
-        for more in ["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"]:
+        for more in ["--check", "--soup", "-o", "a.ply"], ["--drop-degenerate"], ["--count"], ["--stream"]:
             done = run(*extract, *more, cwd=folder)
             expect(done.returncode == 0, f"{more}: {done.stderr}")
             known |= keys_of(json.loads(done.stdout))

@@ -92,6 +92,18 @@ class Stream(GridCase):
         volume = self.write("v.vti", grid_files.vti_text(dims, fields))
         self.expect_same([volume, "--field", "bump"], "0.3", "--carry", "x", endings=("ply", "vtp"))
 
+    def test_curvilinear(self):
+        """Mirrored, and far from zero."""
+        self.needs_xml()
+        dims = (9, 8, 40)
+        lattice = grid_files.lattice(dims)
+        fields = [("bump", "f64", list(map(grid_files.bump, lattice)))]
+        for shift in (0, 1e7):
+            points = [(shift - x, y + 0.1 * z, z + 0.2 * x) for x, y, z in lattice]
+            volume = self.write("c.vts", grid_files.vts_text(dims, points, fields))
+            self.expect_same([volume], "0.3", "--normals", endings=("ply",))
+            self.expect_same([volume], "0.3", endings=("stl",))
+
     def test_empty(self):
         volume = self.generate("sphere", "s.nrrd", "20,20,20")
         self.expect_same([volume], "300", "--normals", endings=("ply", "vtp"))
@@ -147,10 +159,10 @@ class Stream(GridCase):
                            (["-o", "-", "--format", "ply"], "name a file"),
                            (["--count"], "--count makes no mesh")):
             self.refuses(2, *words, *more, says=says)
-        points = [(x, y, z + 0.1 * x) for x, y, z in grid_files.lattice((5, 4, 3))]
         self.needs_xml()
-        curved = self.write("c.vts", grid_files.vts_text((5, 4, 3), points, [("f", "f32", [p[0] for p in points])]))
-        self.refuses(2, "extract", curved, "--iso", "2.5", "--engine", "reference", "--stream", says="not uniform")
+        cells = self.write_hexahedra("h.vtu")
+        self.refuses(2, "extract", cells, "--iso", "2.5", "--field", "x", "--engine", "reference", "--stream",
+                     says="unstructured")
 
 
 if __name__ == "__main__":

@@ -170,7 +170,7 @@ static void test_refused(void) {
 static void test_ended(void) {
     tc_mesh_data mesh;
     vertex_array fields[2];
-    const struct rlimit small = {20000, RLIM_INFINITY}, all = {RLIM_INFINITY, RLIM_INFINITY};
+    struct rlimit limit;
     const cut c = mesh_make(&mesh, 1, 0);
     const mesh_write_options options = {.fields = fields, .field_count = 0};
     const char *path = path_of("ended.ply");
@@ -179,9 +179,10 @@ static void test_ended(void) {
         EXPECT(count_files() == 0, "a file of %d pieces is left", end);
     }
     signal(SIGXFSZ, SIG_IGN);
-    setrlimit(RLIMIT_FSIZE, &small);
+    getrlimit(RLIMIT_FSIZE, &limit);
+    setrlimit(RLIMIT_FSIZE, &(struct rlimit){20000, limit.rlim_max});
     const int status = pieces_write(path, &options, &mesh, &c, PIECES);
-    setrlimit(RLIMIT_FSIZE, &all);
+    setrlimit(RLIMIT_FSIZE, &limit);
     EXPECT(status == STATUS_FAILED && strstr(failure_text(), "ended.ply"), "a file that is too large: %s",
            failure_text());
     EXPECT(count_files() == 0, "a file that is too large is left");

@@ -97,8 +97,8 @@ const option option_table[] = {
      "never another result"},
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
-     "it is done where it would not (uniform and rectilinear grids; to PLY, VTP,\n"
-     "STL and VTKHDF; not with --check, --verify, --soup, --drop-degenerate)"},
+     "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
+     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate)"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

@@ -47,7 +47,7 @@ static const char *obstacle(const stream_input *in) {
     const options *o = in->o;
     const dataset_block *b = in->data->blocks;
     if (in->blocks->count != 1) return "its blocks are extracted together";
-    if (b->kind != BLOCK_UNIFORM && b->kind != BLOCK_RECTILINEAR) return "its grid is not uniform or rectilinear";
+    if (b->kind == BLOCK_UNSTRUCTURED) return "it is unstructured";
     if (b->whole) return "--roi and --step take a part of it";
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
@@ -87,6 +87,7 @@ static int give_planes(void *user, tc_planes *planes) {
     advise(j->in->data, at > j->samples + window ? at - window : j->samples,
            at > j->samples + window ? window : (uint64_t)(at - j->samples), MADV_DONTNEED);
     advise(j->in->data, at, 2 * window, MADV_WILLNEED);
+    if (g->points) advise(j->in->data, (const char *)g->points, 12 * plane * first, MADV_DONTNEED);
     planes->samples = (void *)(uintptr_t)at;
     if (j->blanked_samples) planes->blanked_samples = (uint8_t *)(uintptr_t)(j->blanked_samples + first * plane);
     if (j->blanked_cells) planes->blanked_cells = (uint8_t *)(uintptr_t)(j->blanked_cells + first * cells);
@@ -193,7 +194,6 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->samples = from->samples;
     j->blanked_samples = from->blanked_points;
     j->blanked_cells = from->blanked_cells;
-    j->grid.samples = NULL;
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);

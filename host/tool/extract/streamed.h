@@ -1,7 +1,7 @@
 /*
  * streamed.h - surfaces that do not fit into memory: made window by window (tc_stream), written piece by piece
  *
- * Their files are those that one process with enough memory writes, byte for byte. Of one uniform or rectilinear block;
+ * Their files are those that one process with enough memory writes, byte for byte. Of one structured block;
  * what needs the whole mesh at once (--check, --verify, --soup, --drop-degenerate, formats that are written in one go)
  * is made in memory, or not at all.
  */
