@@ -299,7 +299,8 @@ static void write_vtkhdf(output *o, const shown_mesh *s) {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     if (!f.shown || !f.arrays || f.memory < 0) o->error = ENOMEM;
     if (!o->error) list_arrays(&f);
-    if (!o->error && !make_file(&f)) o->error = ENOMEM; /* nothing else can be wrong with a description */
+    errno = 0;
+    if (!o->error && !make_file(&f)) o->error = errno == EFBIG ? EFBIG : ENOMEM; /* it has the size of the whole file */
     if (!o->error) write_file(&f);
     H5Eclear2(H5E_DEFAULT);
     H5Eset_auto2(H5E_DEFAULT, report, report_data);
