@@ -7,6 +7,7 @@
 
 #include "hdf5_memory.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -20,7 +21,7 @@ enum { DRIVER_VALUE = 511 }; /* of those that are free for experiments */
 typedef struct memory_info {
     const unsigned char *bytes;
     size_t size;
-    int descriptor;
+    int descriptor, *error;
 } memory_info;
 
 typedef struct memory_file {
@@ -82,10 +83,23 @@ static herr_t driver_read(H5FD_t *file, H5FD_mem_t type, hid_t how, haddr_t addr
     return pread(f->info.descriptor, to, there, (off_t)address) == (ssize_t)there ? 0 : -1;
 }
 
+/* Returns 0 or errno. */
+static int write_all(int descriptor, const unsigned char *from, size_t size, off_t at) {
+    while (size) {
+        const ssize_t written = pwrite(descriptor, from, size, at);
+        if (written <= 0) return written < 0 ? errno : ENOSPC;
+        from += written;
+        at += written;
+        size -= (size_t)written;
+    }
+    return 0;
+}
+
 static herr_t driver_write(H5FD_t *file, H5FD_mem_t type, hid_t how, haddr_t address, size_t size, const void *from) {
     memory_file *f = (memory_file *)file;
     (void)type, (void)how;
-    if (f->info.bytes || pwrite(f->info.descriptor, from, size, (off_t)address) != (ssize_t)size) return -1;
+    if (f->info.bytes) return -1;
+    if (!*f->info.error) *f->info.error = write_all(f->info.descriptor, from, size, (off_t)address);
     if (address + size > f->eof) f->eof = address + size;
     return 0;
 }
@@ -94,7 +108,7 @@ static herr_t driver_truncate(H5FD_t *file, hid_t how, hbool_t is_closing) {
     memory_file *f = (memory_file *)file;
     (void)how, (void)is_closing;
     if (f->info.bytes || f->eoa == f->eof) return 0;
-    if (ftruncate(f->info.descriptor, (off_t)f->eoa) != 0) return -1;
+    if (ftruncate(f->info.descriptor, (off_t)f->eoa) != 0 && !*f->info.error) *f->info.error = errno;
     f->eof = f->eoa;
     return 0;
 }
@@ -120,8 +134,8 @@ static const H5FD_class_t driver = {
     .fl_map = H5FD_FLMAP_DICHOTOMY,
 };
 
-hid_t hdf5_memory_access(const void *bytes, size_t size, int descriptor) {
-    const memory_info info = {bytes, size, descriptor};
+hid_t hdf5_memory_access(const void *bytes, size_t size, int descriptor, int *error) {
+    const memory_info info = {bytes, size, descriptor, error};
     const hid_t registered = H5FDregister(&driver), access = H5Pcreate(H5P_FILE_ACCESS);
     const int is_set = registered >= 0 && access >= 0 && H5Pset_driver(access, registered, &info) >= 0 &&
                        H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) >= 0;

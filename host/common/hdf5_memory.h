@@ -11,8 +11,9 @@
 #include <stddef.h>
 
 /* A file access property list for a file of these bytes, which have to outlive it, or, where bytes is NULL, of what the
- * descriptor stands for. To be closed by H5Pclose; below 0 where libhdf5 fails. The name of the file is of no matter.
- */
-hid_t hdf5_memory_access(const void *bytes, size_t size, int descriptor);
+ * descriptor stands for. *error is set to the errno of writing that failed, of which libhdf5 hears nothing: it crashes
+ * at the program's end where a file cannot be closed. To be closed by H5Pclose; below 0 where libhdf5 fails. The name
+ * of the file is of no matter. */
+hid_t hdf5_memory_access(const void *bytes, size_t size, int descriptor, int *error);
 
 #endif

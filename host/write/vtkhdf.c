@@ -233,7 +233,7 @@ static int describe(hdf_file *f, hid_t file) {
 
 /* Makes the file in memory. */
 static int make_file(hdf_file *f) {
-    const hid_t access = hdf5_memory_access(NULL, 0, f->memory), create = H5Pcreate(H5P_FILE_CREATE);
+    const hid_t access = hdf5_memory_access(NULL, 0, f->memory, &f->o->error), create = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_alignment(access, ALIGNED_FROM, ALIGNMENT); /* arrays can be used where they lie */
     H5Pset_obj_track_times(create, 0);
     const hid_t file = H5Fcreate("memory", H5F_ACC_TRUNC, create, access);
@@ -299,8 +299,7 @@ static void write_vtkhdf(output *o, const shown_mesh *s) {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     if (!f.shown || !f.arrays || f.memory < 0) o->error = ENOMEM;
     if (!o->error) list_arrays(&f);
-    errno = 0;
-    if (!o->error && !make_file(&f)) o->error = errno == EFBIG ? EFBIG : ENOMEM; /* it has the size of the whole file */
+    if (!o->error && !make_file(&f) && !o->error) o->error = ENOMEM; /* nothing else can be wrong with a description */
     if (!o->error) write_file(&f);
     H5Eclear2(H5E_DEFAULT);
     H5Eset_auto2(H5E_DEFAULT, report, report_data);

@@ -9,6 +9,8 @@
 #include "mesh_write.h"
 
 #include <hdf5.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #ifndef VTK_WIDE_FROM
@@ -132,6 +134,22 @@ static void test_moved(void) {
     free_mesh(&mesh);
 }
 
+/* What does not fit leaves nothing, whether the description or the arrays are too large. */
+static void test_limits(void) {
+    tc_mesh_data mesh = make_mesh(100003, 200009, 0);
+    struct rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    signal(SIGXFSZ, SIG_IGN);
+    for (rlim_t most = 1000; most < 4000000; most *= 7) {
+        setrlimit(RLIMIT_FSIZE, &(struct rlimit){most, limit.rlim_max});
+        const int status = mesh_write(path_of("large.vtkhdf"), &mesh, NULL);
+        setrlimit(RLIMIT_FSIZE, &limit);
+        EXPECT(status == STATUS_FAILED && strstr(failure_text(), "ulimit"), "%llu bytes: status %d, %s",
+               (unsigned long long)most, status, failure_text());
+    }
+    free_mesh(&mesh);
+}
+
 int main(void) {
     static const uint64_t sizes[][2] = {{4, 4}, {0, 0}, {7, 0}, {1, 1}, {100003, 200009}};
     folder_make("vtkhdf");
@@ -147,6 +165,7 @@ int main(void) {
             free_mesh(&mesh);
         }
     test_moved();
+    test_limits();
     EXPECT(mesh_write(path_of("none/a.vtkhdf"), &(tc_mesh_data){0}, NULL) == STATUS_FAILED, "written to no folder");
     folder_remove();
     return EXPECT_DONE();

@@ -266,7 +266,7 @@ int hdf5_open_file(hdf5_file *h, const char *path, const mapping *file) {
     *h = (hdf5_file){.path = path, .file = -1, .dataset = -1};
     H5Eget_auto2(H5E_DEFAULT, &h->report, &h->report_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t access = hdf5_memory_access(file->bytes, file->size, -1);
+    const hid_t access = hdf5_memory_access(file->bytes, file->size, -1, NULL);
     if (access >= 0) h->file = H5Fopen(path, H5F_ACC_RDONLY, access);
     if (access >= 0) H5Pclose(access);
     return h->file < 0 ? hdf5_fail(h, "cannot be opened as HDF5; it is damaged or cut") : 0;
