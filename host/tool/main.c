@@ -46,6 +46,7 @@ static const command commands[] = {
      "What gzip has packed is unpacked into memory.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
+     "  tetracubes extract head.nii.gz --iso 500 --preview skin.png\n"
      "  tetracubes extract slices/%04d.tif --spacing 0.2,0.2,1 --iso 90 -o cells.glb\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
@@ -62,6 +63,7 @@ static const command commands[] = {
      "input.\n"
      "\n"
      "  tetracubes info head.nii.gz\n"
+     "  tetracubes info head.nii.gz --iso 500 --preview slices.png\n"
      "  tetracubes info engine.vtu --field temperature\n"
      "  tetracubes info ct.raw --dims 512,512,300 --type i16 --json"},
     {"tetrahedralize", COMMAND_TETRAHEDRALIZE, tetrahedralize_run, NULL, "a grid cut into tetrahedra that fit together",
@@ -162,6 +164,7 @@ static void print_version(FILE *out) {
     const size_t left_out = has_hdf5 ? 0 : sizeof ", VTKHDF" - 1; /* the last */
     fprintf(out, "writes: %.*s; %s (tetrahedra)\n", (int)(strlen(labels) - left_out), labels,
             &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
+    fprintf(out, "pictures: %s\n", HAVE_PNG ? "PNG" : "none, as it was built without libpng");
 }
 
 static const command *find_command(const char *name) {
@@ -184,7 +187,7 @@ static int run_command(const command *c, int argc, char **argv) {
     if (!status && o.help) {
         print_command_help(c, stdout);
     } else if (!status) {
-        streams_choose(o.output);
+        streams_choose(o.output, o.preview);
         progress_begin(o.quiet);
         json_report_begin();
         notice_begin(o.quiet, o.json);

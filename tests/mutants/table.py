@@ -119,6 +119,8 @@ TESTS = {
     "test_nodata": test("surface/test_nodata"),
     "test_cli_images": test("tool/test_cli_images.py"),
     "test_cli_written": test("tool/test_cli_written.py", "", ("reference",)),
+    "test_cli_preview": test("tool/test_cli_preview.py", "", ("reference",)),
+    "test_picture": test("write/test_picture"),
 }
 
 TABLES = ["test_tables", "test_hybrid_tables", "test_patterns, reference"]
@@ -172,6 +174,10 @@ FILES = {
     "host/write/vtkhdf": ["test_write_vtkhdf", "test_write_vtkhdf_wide"],
     "host/write/held_triangles.c": ["test_mesh_pieces"],
     "host/write/": ["test_write_vtk", "test_write"],
+    "host/picture/picture": ["test_cli_preview"],
+    "host/picture/": ["test_picture"],
+    "host/tool/extract/surface_preview.c": ["test_cli_preview"],
+    "host/tool/info/slice_preview.c": ["test_cli_preview"],
     "host/read/file/number_text.c": ["test_vtk_xml_hostile", *LEGACY],
     "host/read/dataset/cell_faces.c": ["test_vtk_xml_hostile", *LEGACY],
     "host/read/file/unpack_block.c": ["test_vtk_xml_hostile", "test_vtk_xml"],

@@ -20,7 +20,11 @@ typedef struct situation {
 
 static int has_no_output(const situation *s) { return !s->o->output; }
 
-static int has_no_output_nor_reference(const situation *s) { return !s->o->output && !s->o->verify; }
+static int has_no_file(const situation *s) { return !s->o->output && !s->o->preview; }
+
+static int has_no_preview(const situation *s) { return !s->o->preview; }
+
+static int has_no_file_nor_reference(const situation *s) { return has_no_file(s) && !s->o->verify; }
 
 static int has_no_mesh(const situation *s) { return s->o->count; }
 
@@ -49,6 +53,12 @@ static int has_cells(const situation *s) {
     for (int n = 0; n < s->d->block_count; n++)
         if (s->d->blocks[n].kind == BLOCK_UNSTRUCTURED) return 1;
     return 0;
+}
+
+static int has_only_cells(const situation *s) {
+    for (int n = 0; n < s->d->block_count; n++)
+        if (s->d->blocks[n].kind != BLOCK_UNSTRUCTURED) return 0;
+    return s->d->block_count > 0;
 }
 
 static int has_world_range(const situation *s) { return options_given(s->o, "--roi-world"); }
@@ -86,6 +96,7 @@ typedef struct effect {
 
 static const effect table[] = {
     {COMMAND_EXTRACT, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--output, or --count"},
+    {COMMAND_EXTRACT, "--preview", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--preview, or --count"},
     {COMMAND_EXTRACT, "--verify", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--verify, or --count"},
     {COMMAND_EXTRACT, "--check", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--check, or --count"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--normals, or --count"},
@@ -100,13 +111,19 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--carry", BEFORE_READING, has_no_output, REFUSED,
      "--carry puts fields into the mesh's file: give -o FILE"},
-    {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_output, REFUSED, "--blocks names files: give -o FILE"},
+    {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_file, REFUSED,
+     "--blocks names files: give -o FILE or --preview FILE"},
+    {COMMAND_EXTRACT, "--view", BEFORE_READING, has_no_preview, REFUSED, "--view is of a picture: give --preview FILE"},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--preview-size", BEFORE_READING, has_no_preview, REFUSED,
+     "--preview-size is of a picture: give --preview FILE"},
+    {COMMAND_INFO, "--iso", BEFORE_READING, has_no_preview, REFUSED,
+     "--iso is for the isolines of a picture: give --preview FILE"},
     {COMMAND_EXTRACT, "--format", BEFORE_READING, has_no_output, REFUSED,
      "--format is that of the mesh's file: give -o FILE, or -o - for standard output"},
     {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, has_no_output, REFUSED,
      "--origin-at is for the coordinates in the mesh's file: give -o FILE"},
-    {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_output_nor_reference, TOLD,
-     "--normals has no effect without -o FILE, nor --verify"},
+    {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_file_nor_reference, TOLD,
+     "--normals has no effect without -o FILE, nor --preview FILE, nor --verify"},
     {COMMAND_EXTRACT, "--soup", BEFORE_READING, has_no_output, TOLD,
      "--soup has no effect without -o FILE: the report is of shared vertices"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
@@ -152,6 +169,9 @@ static const effect table[] = {
      "is structured: it has no cells that --skip-unsupported could leave out"},
     {COMMAND_TETRAHEDRALIZE, "--nodata", AFTER_READING, has_no_field, REFUSED, "--nodata" NO_FIELD},
     {COMMAND_TETRAHEDRALIZE, "--component", AFTER_READING, has_no_field, REFUSED, "--component" NO_FIELD},
+    {COMMAND_INFO, "--preview", AFTER_READING, has_only_cells, REFUSED,
+     "is unstructured: --preview of info shows slices of structured grids only; extract --preview shows surfaces"},
+    {COMMAND_INFO, "--preview", AFTER_READING, has_no_field, REFUSED, "--preview" NO_FIELD},
     {COMMAND_INFO, "--nodata", AFTER_READING, has_no_field, TOLD, "--nodata" NO_FIELD},
     {COMMAND_INFO, "--mask", AFTER_READING, has_no_field, TOLD, "--mask" NO_FIELD},
     {COMMAND_INFO, "--component", AFTER_READING, has_no_field, TOLD, "--component" NO_FIELD},

@@ -22,6 +22,8 @@ static const char *format_choices(int n) {
     return names[n];
 }
 
+static const char *view_choices(int n) { return view_name(n); }
+
 static const char *method_choices(int n) { return tc_method_name((tc_method)n); }
 
 static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
@@ -34,6 +36,8 @@ static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
 const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
      "isovalue, or several with commas between: samples >= V are inside"},
+    {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
+     "of --preview: isolines to draw, of one value or of several"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
      "out: only the report); with several isovalues, % in FILE stands for the\n"
@@ -46,6 +50,19 @@ const option option_table[] = {
      "unstructured grid to write: .vtu; - is standard output"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
+    {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
+     "picture of the surface to write, as PNG; also without -o; with several\n"
+     "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
+     "outer side, which the lower values are on; ochre the inner one"},
+    {"--preview", NULL, "FILE", COMMAND_INFO, VALUE_TEXT, IN(preview), NULL,
+     "picture to write, as PNG: three slices through the middle of a structured\n"
+     "grid, with the isolines of --iso"},
+    {"--view", NULL, "VIEW", COMMAND_EXTRACT, VALUE_VIEW, IN(view), view_choices,
+     "of --preview: iso, front, back, left, right, top or bottom, or azimuth and\n"
+     "elevation in degrees (default: 30,25): seen from the front, along +y, x runs\n"
+     "to the right and z up; the azimuth turns the viewer to the right"},
+    {"--preview-size", NULL, "W,H", COMMAND_EXTRACT | COMMAND_INFO, VALUE_PIXELS, IN(preview_size), NULL,
+     "of --preview: pixels, 16 to 8192 each (default: 1024,768)"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
      "field to contour, of data with several, see 'tetracubes info' (default:\n"
      "the file's active scalars, if it has such); values of cells are averaged\n"
@@ -98,7 +115,7 @@ const option option_table[] = {
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
      "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
-     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate)"},
+     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --preview)"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

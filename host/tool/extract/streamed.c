@@ -52,6 +52,7 @@ static const char *obstacle(const stream_input *in) {
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
+    if (o->preview) return "--preview draws the whole mesh";
     return NULL;
 }
 
@@ -234,7 +235,8 @@ static int publish(stream_job *j, int status) {
         if (!status && !to->report->piece_count) status = open_file(j, to, zero);
         const int closed = surface_files_close_pieces(to->file, status);
         if (!status) status = closed;
-        if (!status && j->in->o->output) to->report->path = surface_files_describe(j->in->o, to->report->iso, 1);
+        if (!status && j->in->o->output)
+            to->report->path = surface_files_describe(j->in->o, j->in->o->output, to->report->iso, 1);
         to->report->write_ms += now_ms() - begin_ms;
     }
     if (!status) return output_group_publish(&j->files);

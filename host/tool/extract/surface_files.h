@@ -16,6 +16,13 @@
  * where a file cannot be written. d is NULL before the input is read: then less is known of it. */
 int surface_files_check(const options *o, const dataset *d);
 
+/* The same of the names alone that a pattern makes: that of -o, or of another option that writes files beside. */
+int surface_names_check(const options *o, const dataset *d, const char *option, const char *pattern);
+
+/* The pattern's file of an isovalue and, with --blocks separate, of a block; from malloc, NULL with its failure's text
+ * without memory. */
+char *surface_file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block);
+
 /* Adds to s where the numbers in the mesh's file will be coarse. Returns STATUS_USAGE where coordinates are beyond
  * float32 and the file has nothing larger. */
 int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
@@ -44,7 +51,7 @@ int surface_files_open_pieces(const options *o, const dataset *d, const typed_is
 /* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
 int surface_files_close_pieces(piece_file *file, int status);
 
-/* Names the files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
-char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count);
+/* Names the pattern's files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
+char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count);
 
 #endif
