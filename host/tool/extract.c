@@ -205,7 +205,7 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
     int status = carried_fields_interpolate(&j->carried, &j->main, blocks, &w->how, made);
     if (!status) status = result_mesh_carry(mesh, &j->carried);
     if (!status && is_last) carried_fields_tell(&j->carried);
-    if (!status) status = surface_files_write(j->o, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
+    if (!status) status = surface_files_write(j->o, &j->data, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
     j->report.write_ms += now_ms() - begin;
     return status;
 }

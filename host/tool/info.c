@@ -92,6 +92,7 @@ static int print_json(const facts *f) {
     json_object_set_new(object, "format", json_string(f->d->format));
     add_grid(object, only_block(f->d));
     json_object_set_new(object, "space", string_json(f->d->space));
+    json_object_set_new(object, "units", string_json(f->d->units));
     json_object_set_new(object, "notice", string_json(f->d->notice));
     add_field(object, f);
     json_object_set_new(object, "blocks", describe_blocks_json(f->d));

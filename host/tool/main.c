@@ -147,12 +147,23 @@ static void print_command_help(const command *c, FILE *out) {
     if (c->help) c->help(out);
 }
 
+#ifdef HAVE_MESH_WRITE_HDF5
+enum { has_hdf5 = 1 };
+static void add_writers(void) { mesh_write_add_hdf5(); }
+#else
+enum { has_hdf5 = 0 };
+static void add_writers(void) {}
+#endif
+
 static void print_version(FILE *out) {
     fprintf(out, "tetracubes %s\n", tc_version());
     print_formats("reads:", out);
 #define MESH_LABEL(name, label, ...) ", " label
 #define COMPLEX_LABEL(name, label)   ", " label
-    fprintf(out, "writes: %s; %s (tetrahedra)\n", &MESH_FORMATS(MESH_LABEL)[2], &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
+    const char *labels = &MESH_FORMATS(MESH_LABEL)[2];
+    const size_t left_out = has_hdf5 ? 0 : sizeof ", VTKHDF" - 1; /* the last */
+    fprintf(out, "writes: %.*s; %s (tetrahedra)\n", (int)(strlen(labels) - left_out), labels,
+            &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
     fprintf(out, "pictures: %s\n", HAVE_PNG ? "PNG" : "none, as it was built without libpng");
 }
 
@@ -227,6 +238,7 @@ static int dispatch(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     truncation_watch(); /* before drivers start threads and put handlers of their own in front */
+    add_writers();
     int status = dispatch(argc, argv);
     int is_written = fflush(stdout) == 0 && !ferror(stdout), error = errno;
     streams_restore();

@@ -264,6 +264,8 @@ int tetrahedralize_run(const options *o) {
     if (!status) status = read_input(&c);
     if (!status) status = cut(&c);
     if (!status) status = join(&c);
+    c.file.world = c.data.world;
+    c.file.units = c.data.units;
     if (!status) status = complex_write(o->output, &c.file);
     c.total_ms = now_ms() - begin;
     if (!status) status = print_report(&c);

@@ -4,9 +4,9 @@
     packages.py SOURCE FOLDER
 
 Builds the wheel, has auditwheel tell which systems it is for and take in what it links, installs that, runs all tests of
-tests/python on it, and measures what a call costs beside the same calls of the C library. Then, where root can make one,
-a fresh chroot of the release after this wheel's: there it makes the same mesh and picture, without OpenCL and with PoCL.
-77 without PyPI.
+tests/python on it and those of files that VTK writes and reads, and measures what a call costs beside the same calls of
+the C library. Then, where root can make one, a fresh chroot of the release after this wheel's: there it makes the same
+mesh and picture, without OpenCL and with PoCL. 77 without PyPI.
 """
 import json
 import os
@@ -103,6 +103,8 @@ def main():
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     here = Path(__file__).resolve().parent
     run(python / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", here, env={**clean, "TEST_PACKAGES": "1"})
+    tool = next((folder / "packages").glob("lib/*/site-packages/tetracubes/tetracubes"))
+    run(python / "python", here.parent / "tool" / "test_pieces_vtk.py", tool, "reference", env=clean)  # VTK: of pyvista
     ratios = json.loads(run(python / "python", here / "round_trip.py", env=clean, stdout=subprocess.PIPE, text=True).stdout)
     print(f"{made.name}: {size} bytes; time by that of the C calls: {ratios}")
     wanted, elsewhere = told(python / "python", folder), tried_elsewhere(made, folder)

@@ -39,17 +39,17 @@ const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
      "of --preview: isolines to draw, of one value or of several"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb or .npz (left out: only\n"
-     "the report); with several isovalues, % in FILE stands for the isovalue as\n"
-     "typed; - is standard output (give --format): the report then goes to\n"
-     "standard error"},
+     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
+     "out: only the report); with several isovalues, % in FILE stands for the\n"
+     "isovalue as typed; - is standard output (give --format): the report then\n"
+     "goes to standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
     {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
      "unstructured grid to write: .vtu; - is standard output"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb or npz, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
     {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
      "picture of the surface to write, as PNG; also without -o; with several\n"
      "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
@@ -69,8 +69,8 @@ const option option_table[] = {
      "to the points between them; point:NAME and cell:NAME choose where both\n"
      "have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
-     "other fields, interpolated onto the vertices (PLY, VTP, NPZ); a name that\n"
-     "the file needs itself, as Normals, gets _ behind"},
+     "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
+     "name that the file needs itself, as Normals, gets _ behind"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},
@@ -114,8 +114,8 @@ const option option_table[] = {
      "never another result"},
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
-     "it is done where it would not (one structured grid; to PLY, VTP and STL;\n"
-     "not with --check, --verify, --soup, --drop-degenerate, --preview)"},
+     "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
+     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --preview)"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

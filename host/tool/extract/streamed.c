@@ -148,7 +148,7 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     memcpy(to->report->origin, origin, sizeof whole.origin);
     to->report->has_origin = 1;
     if (!j->in->o->output || to->file) return 0;
-    return surface_files_open_pieces(j->in->o, s->iso, &whole, j->in->carried, &j->files, &to->file);
+    return surface_files_open_pieces(j->in->o, j->in->data, s->iso, &whole, j->in->carried, &j->files, &to->file);
 }
 
 static void add_bounds(surface_report *s, const tc_mesh_data *m) {

@@ -138,9 +138,11 @@ void surface_files_tell_precision(const options *o, int block_count, const surfa
 
 /* --------------------------------------------------------------------------------------------------------- writing */
 
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group) {
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group) {
     mesh_write_options how = write_options(o, mesh);
+    how.world = d->world;
+    how.units = d->units;
     how.fields = fields->fields;
     how.field_count = fields->count;
     how.group = group;
@@ -150,7 +152,7 @@ int surface_files_write(const options *o, const typed_isovalue *iso, int block, 
     return status;
 }
 
-int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
                               const carried_fields *fields, output_group *group, piece_file **file) {
     piece_file *p = calloc(1, sizeof *p);
     *file = NULL;
@@ -158,6 +160,8 @@ int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const
     p->how = (mesh_write_options){.format = o->format,
                                   .fields = fields->fields,
                                   .field_count = fields->count,
+                                  .world = d->world,
+                                  .units = d->units,
                                   .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
                                   .group = group};
     p->path = surface_file_name(o, o->output, iso, 0);

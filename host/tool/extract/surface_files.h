@@ -32,10 +32,10 @@ int surface_files_count_coarse(const options *o, const surface_source *source, c
  * (precision.h). */
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
 
-/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file waits in
- * the group. */
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group);
+/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file says in
+ * which space and units the input's coordinates are, and waits in the group. */
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group);
 
 /* The file of a surface whose pieces come one after the other (mesh_file). It waits in the group when it is closed. */
 typedef struct piece_file {
@@ -45,7 +45,7 @@ typedef struct piece_file {
 } piece_file;
 
 /* whole: as for mesh_file_open. *file is to be closed. Returns 0 or a status. */
-int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
                               const carried_fields *fields, output_group *group, piece_file **file);
 
 /* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
