@@ -50,6 +50,17 @@ def test_committed(folder):
         expect((SOURCE / "bench" / "pictures" / f"{name}.svg").exists(), f"{path.name}: no plot; run bench/plot.py")
 
 
+def test_python(folder):
+    """The table of the Python package."""
+    committed = SOURCE / "host" / "python" / "README.md"
+    page = folder / "python.md"
+    shutil.copy(committed, page)
+    done = run(sys.executable, SOURCE / "bench" / "python_table.py", "--page", page)
+    expect(done.returncode == 0, f"python_table.py: {done.returncode} {done.stderr}")
+    expect(page.read_text() == committed.read_text(), f"{committed} is not what bench/python_table.py makes of the results")
+    expect("scikit-image" in page.read_text().split("<!-- bench:begin -->")[1], f"{committed}: no table")
+
+
 def test_partial(folder):
     """A machine without peers, as bench/gpu leaves it, with a case left out."""
     path = sorted(RESULTS.glob("*.json"))[0]
@@ -112,6 +123,7 @@ def main():
         os.environ["MPLCONFIGDIR"] = name
         folder = Path(name)
         test_committed(folder)
+        test_python(folder)
         test_partial(folder)
         test_failures(folder)
         test_plot(folder)

@@ -7,7 +7,7 @@
  * that say so, belong to one variant, the rest to both. host/lib/opencl/variant.c chooses that of a device.
  *
  * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
- * WORK_ITEMS, of a group; MISSING; METHOD, a name in methods.h.
+ * WORK_ITEMS, of a group; MISSING; METHOD, a name in methods.h; CLOSED, where surfaces are closed.
  */
 #ifndef COMMON_CL
 #define COMMON_CL
@@ -24,6 +24,10 @@
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
 #pragma clang diagnostic ignored "-Wpass-failed"
+#endif
+
+#ifndef CLOSED
+#define CLOSED 0
 #endif
 
 #define PASTE2(a, b) a##b

@@ -8,7 +8,7 @@
 #ifndef COUNT_CL
 #define COUNT_CL
 
-#include "cells.cl"
+#include "border.cl"
 #include "sign.cl"
 #include "tetrahedra.cl"
 
@@ -76,15 +76,20 @@ typedef struct row_counts {
 inline_always row_counts rows_count(const slab *s, const cube_rows *r, uint y, uint z, uint w,
                                     global const ulong *cells) {
     row_counts c = {0, 0, 0, 0};
-    crossings edges = crossings_owned(r);
-    lanes active = cubes_active(r);
+    crossings edges = crossings_owned(r); /* not by vertices_owned: this order needs fewer registers */
+    lanes active = cubes_active(r), in_border = 0;
 #if MISSING
     crossings_keep(s, cells, y, z, w, &edges);
     active &= cells_rows(s, cells, y, z, w);
 #endif
-    if (!lanes_any(active | crossings_any(&edges))) return c;
+#if CLOSED
+    edges.type[PLACE_TYPE] = places_owned(s, r, y, z, w, cells);
+    border_faces faces = border_faces_of(s, cells, y, z, w);
+    if (lanes_any(border_faces_any(&faces))) in_border = border_triangles(r, &faces);
+#endif
+    if (!lanes_any(active | in_border | crossings_any(&edges))) return c;
     c.packed = offsets_pack(&edges, &c.vertices);
-    c.triangles = triangles_count(r, &active);
+    c.triangles = triangles_count(r, &active) + in_border;
     c.cells = lanes_popcount(active);
     return c;
 }

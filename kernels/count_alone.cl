@@ -40,11 +40,16 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
     return false;
 }
 
-/* Whether a uniform brick emits something; true for a mixed brick, which may. Where the seven bricks at higher x, y and
- * z are in this tile and on the same side, their signs suffice. */
-inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+/* Whether a uniform brick emits something; true for a mixed brick, which may, and where an inside brick may have a part
+ * of the border that closes the surface. Where the seven bricks at higher x, y and z are in this tile and on the same
+ * side, their signs suffice. */
+inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words signs,
+                               global const ulong *cells) {
     const uint number = brick_index(s, y, z, w), sign = signs.bricks[number].sign;
     if (sign == SIGN_MIXED) return true;
+#if CLOSED
+    if (sign == SIGN_INSIDE && bricks_at_border(s, cells, y, z, w, 1)) return true;
+#endif
     const uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
     const uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
     global const brick_state *here = signs.bricks + number, *behind = here + deep;
@@ -157,6 +162,10 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
     if (!s->results.ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
     global const brick_range *here = ranges + s->results.range_offset + brick_index(s, y, z, w);
     uint sign = run_sign(&s->test, here, count);
+#if CLOSED
+    const bool closes = MISSING ? true : bricks_at_border(s, NULL, y, z, w, count);
+    if (sign == SIGN_INSIDE && closes) return false;
+#endif
     return sign != SIGN_MIXED && run_sign(&s->test, here + up, count) == sign &&
            run_sign(&s->test, here + deep, count) == sign && run_sign(&s->test, here + up + deep, count) == sign &&
            range_sign(&s->test, here[across]) == sign && range_sign(&s->test, here[up + across]) == sign &&
@@ -180,7 +189,7 @@ inline_always void layer_count(const slab *s, tile t, uint z, tile_words signs, 
             uint end = min(run + RUN_BRICKS_X, s->words_x);
             if (!ZEROS && run_skipped(s, t, y, z, run, end - run, ranges)) continue;
             for (uint w = run; w < end; w++) {
-                if (!brick_emits(s, t, y, z, w, signs)) continue;
+                if (!brick_emits(s, t, y, z, w, signs, cells)) continue;
                 global brick_state *b = &signs.bricks[brick_index(s, y, z, w)];
                 b->vertices = sums->vertices, b->triangles = sums->triangles;
                 b->rows = brick_count(s, t, y, z, w, signs, cells, offsets, triangle_offsets, sums);

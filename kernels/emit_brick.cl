@@ -17,7 +17,9 @@
 #include "emit_numbers.cl"
 #include "vertex.cl"
 
-#define CASE_BITS  (ZEROS ? 17 : 9)                 /* a pattern's bits, those of corners that are vertices, parity */
+#define PARITY_BIT (ZEROS ? 16 : 8) /* of a case, after a pattern's bits and those of zero corners */
+#define BORDER_BIT 17               /* with zeros: an entry's index in place of a case */
+#define CASE_BITS  (CLOSED ? (ZEROS ? BORDER_BIT + 1 : 11) : PARITY_BIT + 1)
 #define CASE_STEP  (3 * OF_METHOD(triangles_usual)) /* indices that are copied at once, as many as most cubes have */
 #define BATCH_STEP 16
 
@@ -52,6 +54,7 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
         global const BITS *from = in.samples + sample;
         work->a[n] = *from;
         work->b[n] = from[step];
+        if (CLOSED) work->b[n] = step ? work->b[n] : (BITS) ~*from; /* another number, to divide by the difference */
 #if GRID == 2
         global const float *p0 = in.coordinates + (3 * sample + s->arrays.point_offset);
         line_prefetch(p0);
@@ -71,6 +74,7 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
 #endif
         for (uint n = 0; n < BATCH_STEP; n++) {
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(&s->test));
+            if (CLOSED) t[n] = is_place(list[first + n]) ? 0 : t[n];
 #if GRID == 0
             position_make(s, brick, list[first + n], t[n], positions + 3 * n);
 #endif
@@ -109,9 +113,9 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Lists the active cubes of the rows in mask: a cube's index in the table of numbers from bit CASE_BITS on, below that
- * its case. With mask registers, patterns of all rows are made first: loading a part of a vector that
- * was just stored would stall. */
+/* Lists the active cubes of the rows in mask, behind `count` items; returns the number of all. An item is a cube's
+ * index in the table of numbers from bit CASE_BITS on, below that its case. With mask registers, patterns of all rows
+ * are made first: loading a part of a vector that was just stored would stall. */
 #ifdef MASK_REGISTERS
 inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
     bytes64 patterns = 0;
@@ -122,9 +126,8 @@ inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
     return patterns;
 }
 
-inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
+inline_always uint cubes_list(const slab *s, uint mask, uint count, brick_work *work) {
     const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    uint count = 0;
     for (uint rows = mask; rows; rows &= rows - 1) {
         uint brick_row = lowest_bit(rows), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         work->patterns[brick_row] = row_patterns(work->corners[z] + 2 * y, work->corners[z + 1] + 2 * y);
@@ -141,7 +144,7 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
             uint skipped = lowest_bit(active);
             x += skipped, active >>= skipped;
             uint16 odd = (lane ^ x ^ row_odd(s, y, z)) & 1, number = NUMBER_INDEX(x, y, z) + lane;
-            uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << (CASE_BITS - 1) | number << CASE_BITS;
+            uint16 items = convert_uint16(vload16(0, patterns + x)) | odd << PARITY_BIT | number << CASE_BITS;
             if (ZEROS) items |= convert_uint16(vload16(0, zero_patterns + x)) << 8;
             count += items_keep(items, active, work->list + count);
             x += 16, active >>= 16;
@@ -150,8 +153,8 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
     return count;
 }
 #else
-inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
-    uint count = 0;
+inline_always uint cubes_list(const slab *s, uint mask, uint count, brick_work *work) {
+    const uint first = count;
     for (; mask; mask &= mask - 1) {
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         ulong active = work->active[z][y];
@@ -162,11 +165,11 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
         } while (active);
         count = end;
     }
-    for (uint n = 0; n < count; n++) {
+    for (uint n = first; n < count; n++) {
         uint x = work->list[n] & 0x7f, y = (work->list[n] >> 7) % BRICK_ROWS, z = (work->list[n] >> 7) / BRICK_ROWS;
         uint odd = (x ^ row_odd(s, y, z)) & 1;
         ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
-        uint pattern = pattern_at(corners, x) | odd << (CASE_BITS - 1);
+        uint pattern = pattern_at(corners, x) | odd << PARITY_BIT;
         if (ZEROS) {
             corners = (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
             pattern |= pattern_at(corners, x) << 8;
@@ -175,6 +178,46 @@ inline_always uint cubes_list(const slab *s, uint mask, brick_work *work) {
     }
     return count;
 }
+#endif
+
+#if CLOSED
+
+/* Lists the faces on the border of the cubes of a row of the brick; `at` has a word for each row of its plane. */
+inline_always uint faces_list(const slab *s, uint y, uint z, const ulong at[CAP_FACES][BRICK_ROWS], uint count,
+                              brick_work *work) {
+    const ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
+    ulong8 zero_corners = 0;
+    if (ZEROS)
+        zero_corners = (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
+    const uint border = ZEROS ? 1u << BORDER_BIT : 0;
+    const ulong any = at[0][y] | at[1][y] | at[2][y] | at[3][y] | at[4][y] | at[5][y];
+    for (ulong rest = any; rest; rest &= rest - 1) {
+        const uint x = lowest_bit(rest), inside = pattern_at(corners, x), odd = (x ^ row_odd(s, y, z)) & 1;
+        const uint zeros = ZEROS ? pattern_at(zero_corners, x) : 0;
+        for (uint face = 0; face < CAP_FACES && inside; face++)
+            if (at[face][y] >> x & 1)
+                work->list[count++] =
+                    border_case(odd, face, inside, zeros) | border | NUMBER_INDEX(x, y, z) << CASE_BITS;
+    }
+    return count;
+}
+
+/* Lists the active cubes of each row in mask, and behind them its faces on the border. */
+inline_always uint border_list(const slab *s, corner c, uint mask, row_results k1, brick_work *work) {
+    ulong at[CAP_FACES][BRICK_ROWS];
+    uint count = 0;
+    for (uint z = 0; z < BRICK_PLANES; z++) {
+        const border_faces f = border_faces_of(s, k1.cells, c.y, c.z + z, c.x / 64);
+        for (uint face = 0; face < CAP_FACES; face++) vstore8(f.at[face], 0, at[face]);
+        for (uint rows = mask >> (BRICK_ROWS * z) & ((1u << BRICK_ROWS) - 1); rows; rows &= rows - 1) {
+            const uint y = lowest_bit(rows);
+            count = cubes_list(s, 1u << (BRICK_ROWS * z + y), count, work);
+            count = faces_list(s, y, z, at, count, work);
+        }
+    }
+    return count;
+}
+
 #endif
 
 /* Stores the vertex numbers of a cube's triangles, by the indices in its case (CASE_INDEX).
@@ -201,13 +244,19 @@ inline_always void case_store(const uint *number, global const uchar *entry, uin
 }
 #endif
 
+/* The entry of a listed item in the table of cases. */
+inline_always global const uchar *entry_of(global const uchar *cases, uint item) {
+    if (!ZEROS) return cases + CUBE_CASE_BYTES * item;
+    if (CLOSED && item >> BORDER_BIT) return cases + CUBE_CASE_BYTES * (item & ((1u << BORDER_BIT) - 1));
+    return case_of(cases, item >> PARITY_BIT, item & 0xff, item >> 8 & 0xff);
+}
+
 inline_always void triangles_emit(uint count, global const uchar *cases, global uint *index, brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_CUBES) {
         uint *at = work->triangles, end = min(count, first + BATCH_CUBES);
         for (uint n = first; n < end; n++) {
             const uint pattern = work->list[n] & ((1u << CASE_BITS) - 1);
-            global const uchar *entry = ZEROS ? case_of(cases, pattern >> 16, pattern & 0xff, pattern >> 8 & 0xff)
-                                              : cases + CUBE_CASE_BYTES * pattern;
+            global const uchar *entry = entry_of(cases, pattern);
             case_store(work->number + NUMBER_STEP * (work->list[n] >> CASE_BITS), entry, at, work);
             at += 3u * *entry;
         }
@@ -269,17 +318,26 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
     const corner c = brick_corner(s, number);
     const brick_state state = k1.bricks[number];
     uint first = s->mesh.vertex_base + state.vertices;
+#if CLOSED
+    const bool at_border = bricks_at_border(s, k1.cells, c.y, c.z, c.x / 64, 1);
+#else
+    const bool at_border = false;
+#endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
-    crossings_store(s, c, &signs, k1, work);
+    crossings_store(s, c, &signs, at_border, k1, work);
     uint count = edges_list(s, c, state.rows, first, in, work);
 #ifdef REAL
     vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif
-    plane_number(s, c, &signs, k1, work);
-    next_rows_number(s, c, &signs, k1, work);
-    column_number(s, c, &signs, k1, work);
-    count = cubes_list(s, state.rows, work);
+    plane_number(s, c, &signs, at_border, k1, work);
+    next_rows_number(s, c, &signs, at_border, k1, work);
+    column_number(s, c, &signs, at_border, k1, work);
+#if CLOSED
+    count = at_border ? border_list(s, c, state.rows, k1, work) : cubes_list(s, state.rows, 0, work);
+#else
+    count = cubes_list(s, state.rows, 0, work);
+#endif
     triangles_emit(count, cases, mesh.triangles + 3ul * (uint)(state.triangles - s->mesh.triangle_window), work);
 }
 

@@ -12,14 +12,14 @@
 #ifndef EMIT_NUMBERS_CL
 #define EMIT_NUMBERS_CL
 
-#include "cells.cl"
+#include "border.cl"
 #include "mesh.cl"
 #include "snapped.cl"
 #include "tetrahedra.cl"
 
 #define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)
-#define LIST_EDGES  (BRICK_WORDS * 64 * VERTEX_TYPES)
-#define LIST_MORE   16 /* items that may be stored past its end */
+#define LIST_EDGES  (BRICK_WORDS * 64 * (CLOSED ? 7 : VERTEX_TYPES)) /* or cubes, and their faces on the border */
+#define LIST_MORE   16                                               /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
 #define CASE_ITEMS  (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
@@ -120,16 +120,16 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
     }
 }
 
-/* Crossed edges and active cubes of the brick itself. */
-inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, row_results k1,
+/* Crossed edges and active cubes of the brick itself. at_border: whether a closed surface may end in the brick; else
+ * none of its samples, and of those that its cubes have, is on the border. */
+inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
                                    brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
         cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
                                    signs->rows[0][n + 1], signs_up(signs, n + 1));
-        crossings edges = crossings_owned(&r);
+        crossings edges = vertices_owned(s, &r, c.y, c.z + n, c.x / 64, at_border, k1.cells);
         lanes active = cubes_active(&r);
 #if MISSING
-        crossings_keep(s, k1.cells, c.y, c.z + n, c.x / 64, &edges);
         active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
 #endif
         if (ZEROS) triangles_count(&r, &active); /* leaves those that emit */
@@ -151,14 +151,19 @@ inline_always void neighbour_row_number(uint *number, ulong crossed, uint first)
     } while (crossed);
 }
 
-/* Lists and numbers the samples of a row that are vertices. */
-inline_always uint snapped_list(const slab *s, corner c, uint y, uint z, ulong snapped, uint first, uint count,
-                                uint *number, grid_arrays in, brick_work *work) {
-    for (; snapped; snapped &= snapped - 1) {
-        uint bit = lowest_bit(snapped);
-        number[NUMBER_STEP * bit + 6] = first + count;
+/* Lists and numbers the samples of a row that are vertices in their own places; row: the place of the first one, in
+ * EDGE_CODE. */
+inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong places, uint row, uint first, uint count,
+                               uint *number, grid_arrays in, brick_work *work) {
+    for (; places; places &= places - 1) {
+        uint bit = lowest_bit(places);
+        number[NUMBER_STEP * bit + PLACE_TYPE] = first + count;
 #ifdef REAL
-        work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, work->link_offsets, in);
+        const bool is_zero = ZEROS ? (CLOSED ? work->zero_corners[z][2 * y] >> bit & 1 : 1) : 0;
+        if (is_zero)
+            work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, work->link_offsets, in);
+        else
+            work->list[count] = EDGE_PLACE + row + bit;
 #endif
         count++;
     }
@@ -172,7 +177,7 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
-        loop_unrolled for (uint type = 0; type < (ZEROS ? 6 : VERTEX_TYPES); type++) {
+        loop_unrolled for (uint type = 0; type < PLACE_TYPE; type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);
@@ -184,38 +189,37 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
             } while (crossed);
             count = end;
         }
-        if (ZEROS)
-            count = snapped_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], first, count, number, in, work);
+        if (VERTEX_TYPES > PLACE_TYPE)
+            count = places_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], row, first, count, number, in, work);
     }
     return count;
 }
 
 /* Numbers the crossings in the next plane that the brick's cubes have. */
-inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
+                                brick_work *work) {
     const uint z = c.z + BRICK_PLANES, w = c.x / 64;
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
     if (z >= s->nz) return;
     cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
-    crossings edges = crossings_owned(&r);
-#if MISSING
-    crossings_keep(s, k1.cells, c.y, z, w, &edges);
-#endif
+    crossings edges = vertices_owned(s, &r, c.y, z, w, at_border, k1.cells);
     ulong crossed[4][BRICK_ROWS];
     vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
-    vstore8(edges.type[6], 0, crossed[3]);
-    const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[6];
+    vstore8(edges.type[PLACE_TYPE], 0, crossed[3]);
+    const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[PLACE_TYPE];
     for (uint rows = lanes_nonzero(any); rows; rows &= rows - 1) {
         uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
         neighbour_row_number(number, crossed[0][y], number_of(o, 0));
         neighbour_row_number(number + 1, crossed[1][y], number_of(o, 1));
         if (DIAGONALS) neighbour_row_number(number + 3, crossed[2][y], number_of(o, 3));
-        if (ZEROS) neighbour_row_number(number + 6, crossed[3][y], number_of(o, 6));
+        if (VERTEX_TYPES > PLACE_TYPE)
+            neighbour_row_number(number + PLACE_TYPE, crossed[3][y], number_of(o, PLACE_TYPE));
     }
 }
 
 /* Numbers the crossings in the next row of each plane. */
-inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, row_results k1,
+inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
                                     brick_work *work) {
     const uint y = c.y + BRICK_ROWS, w = c.x / 64;
     const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
@@ -235,13 +239,17 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         crossings_keep(s, k1.cells, y, c.z + n, w, &edges);
         x = edges.type[0].s0, z = edges.type[2].s0, xz = edges.type[4].s0;
 #endif
-        if (!(x | z | xz | zero)) continue;
+        ulong places = zero;
+#if CLOSED
+        if (at_border) places |= a0 & border_samples(s, k1.cells, y, c.z + n, w).s0;
+#endif
+        if (!(x | z | xz | places)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
         neighbour_row_number(number, x, number_of(o, 0));
         neighbour_row_number(number + 2, z, number_of(o, 2));
         if (DIAGONALS) neighbour_row_number(number + 4, xz, number_of(o, 4));
-        if (ZEROS) neighbour_row_number(number + 6, zero, number_of(o, 6));
+        if (VERTEX_TYPES > PLACE_TYPE) neighbour_row_number(number + PLACE_TYPE, places, number_of(o, PLACE_TYPE));
     }
 }
 
@@ -261,7 +269,8 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
 
 /* Numbers the crossings in the next column, x = 64. Called last, as the functions above leave meaningless numbers there
  * for rows without crossings. */
-inline_always void column_number(const slab *s, corner c, const brick_signs *signs, row_results k1, brick_work *work) {
+inline_always void column_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
+                                 brick_work *work) {
     const uint w = c.x / 64 + 1;
     if (w >= s->words_x) return;
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
@@ -286,13 +295,22 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         crossings_keep(s, k1.cells, c.y, z, w, &edges);
         crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
 #endif
+#if CLOSED
+        edges.type[PLACE_TYPE] = za, up.type[PLACE_TYPE] = next_zeros(signs->rows[1][n]);
+        if (at_border) {
+            edges.type[PLACE_TYPE] |= a & border_samples(s, k1.cells, c.y, z, w);
+            up.type[PLACE_TYPE] |= next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w);
+        }
+#endif
         column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
         column_store(s, c.y, z, w, 2, lanes_nonzero(edges.type[2]), c, k1, work);
         column_store(s, c.y, z, w, 5, lanes_nonzero(edges.type[5]), c, k1, work);
-        if (ZEROS) column_store(s, c.y, z, w, 6, lanes_nonzero(edges.type[6]), c, k1, work);
+        if (VERTEX_TYPES > PLACE_TYPE)
+            column_store(s, c.y, z, w, PLACE_TYPE, lanes_nonzero(edges.type[PLACE_TYPE]), c, k1, work);
         if (c.y + BRICK_ROWS >= s->ny) continue;
         if (up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
-        if (ZEROS && up.type[6].s0) column_store(s, c.y + BRICK_ROWS, z, w, 6, 1, c, k1, work);
+        if (VERTEX_TYPES > PLACE_TYPE && up.type[PLACE_TYPE].s0)
+            column_store(s, c.y + BRICK_ROWS, z, w, PLACE_TYPE, 1, c, k1, work);
     }
 }
 

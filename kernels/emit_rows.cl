@@ -10,7 +10,7 @@
 #ifndef EMIT_ROWS_CL
 #define EMIT_ROWS_CL
 
-#include "cells.cl"
+#include "border.cl"
 #include "mesh.cl"
 #include "snapped.cl"
 #include "tetrahedra.cl"
@@ -79,10 +79,7 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
     const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
     if (y >= s->ny || z >= s->nz) return;
     cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
-    crossings edges = crossings_owned(&r);
-#if MISSING
-    crossings_keep(s, k1.cells, y, z, w, &edges);
-#endif
+    crossings edges = vertices_owned(s, &r, y, z, w, true, k1.cells);
     const owner o = owner_of(s, y, z, w, k1);
 #pragma unroll
     for (uint type = 0; type < VERTEX_TYPES; type++) table->crossed[type][n] = edges.type[type];
@@ -102,25 +99,35 @@ inline_always void table_make(const slab *s, corner brick, row_results k1, local
 
 #ifdef REAL
 
+/* The edge of the vertex of a type at a bit of the row (y, z), whose first sample is at `row` in EDGE_CODE. */
+inline_always uint edge_at(const slab *s, corner brick, uint y, uint z, uint type, uint bit, uint row, ulong even,
+                           ulong zeros, grid_arrays in) {
+    const bool is_zero = CLOSED ? zeros >> bit & 1 : 1;
+    if (ZEROS && type == PLACE_TYPE && is_zero)
+        return snapped_edge(s, edges_corner(brick), brick.x + bit, y, z, NULL, in);
+    return (CLOSED && type == PLACE_TYPE ? EDGE_PLACE : edge_code(type, !(even >> bit & 1))) + row + bit;
+}
+
 /* All vertices of row n of a table, in order. */
-inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in,
+inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in, row_results k1,
                                 const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
     const corner first = edges_corner(brick);
     const uint row = (y - first.y) << 7 | (z - first.z) << 11 | EDGES_BEFORE;
+    const ulong zeros = ZEROS && CLOSED ? row_of(s, y, z, brick.x / 64, k1).zero_at : 0;
     ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < VERTEX_TYPES; type++) {
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint edge = ZEROS && type == 6 ? snapped_edge(s, first, brick.x + bit, y, z, NULL, in)
-                                           : edge_code(type, !(even >> bit & 1)) + row + bit;
+            uint edge = edge_at(s, brick, y, z, type, bit, row, even, zeros, in);
             ulong from =
                 row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));
             long step = edge_step(s, edge);
             BITS a = in.samples[from], b = in.samples[from + step];
-            float position[3], t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
+            float position[3], t = 0;
+            if (!is_place(edge)) t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
 #if GRID
             position_between(s, in, first, edge, from, step, t, position);
 #else
@@ -162,7 +169,18 @@ inline_always uint pattern_at(const cube_rows *r, uint bit) {
            (uint)(r->d0 >> bit & 1) << 6 | (uint)(r->d1 >> bit & 1) << 7;
 }
 
-/* All triangles of row n of a table, in order, from index `out` of the mesh on. */
+/* Stores the triangles of an entry of the table of cases, from index `out` of the mesh on; returns how many. */
+inline_always uint entry_store(const slab *s, uint y, uint z, uint w, uint n, uint bit, uint out,
+                               global const uchar *entry, row_results k1, const local row_table *table,
+                               mesh_buffers mesh) {
+    const uint count = entry[0];
+    for (uint m = 0; m < 3 * count; m++)
+        mesh.triangles[3ul * out + m] = vertex_number(s, y, z, w, n, bit, entry[1 + m], k1, table);
+    return count;
+}
+
+/* All triangles of row n of a table, in order, from index `out` of the mesh on: those of the surface, then those of the
+ * border. */
 inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, uint out, row_results k1,
                                  const local row_table *table, global const uchar *cases, mesh_buffers mesh) {
     const cube_rows r = row_cubes(s, y, z, w, true, true, k1);
@@ -173,11 +191,22 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, 
     for (; active; active &= active - 1) {
         uint bit = lowest_bit(active), odd = (uint)(~r.even >> bit & 1);
         global const uchar *entry = case_of(cases, odd, pattern_at(&r, bit), zeros_at(&r, bit));
-        const uint count = entry[0];
-        for (uint m = 0; m < 3 * count; m++)
-            mesh.triangles[3ul * out + m] = vertex_number(s, y, z, w, n, bit, entry[1 + m], k1, table);
-        out += count;
+        out += entry_store(s, y, z, w, n, bit, out, entry, k1, table, mesh);
     }
+#if CLOSED
+    const border_faces f = border_faces_of(s, k1.cells, y, z, w);
+    for (ulong rest = border_faces_any(&f); rest; rest &= rest - 1) {
+        const uint bit = lowest_bit(rest), odd = (uint)(~r.even >> bit & 1);
+        const uint inside = pattern_at(&r, bit), zeros = zeros_at(&r, bit);
+        uint faces = 0;
+#pragma unroll
+        for (uint face = 0; face < CAP_FACES; face++) faces |= (uint)(f.at[face] >> bit & 1) << face;
+        for (; inside && faces; faces &= faces - 1) {
+            global const uchar *entry = cases + CUBE_CASE_BYTES * border_case(odd, lowest_bit(faces), inside, zeros);
+            out += entry_store(s, y, z, w, n, bit, out, entry, k1, table, mesh);
+        }
+    }
+#endif
 }
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
@@ -190,7 +219,7 @@ inline_always void row_emit(const slab *s, uint number, uint brick_row, grid_arr
     const uint n = brick_row % BRICK_ROWS + TABLE_ROWS_Y * (brick_row / BRICK_ROWS);
     const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + brick_row];
 #ifdef REAL
-    row_vertices(s, brick, y, z, n, in, table, mesh);
+    row_vertices(s, brick, y, z, n, in, k1, table, mesh);
 #endif
     row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }

@@ -72,9 +72,13 @@ inline_always uint edge_code(uint type, bool odd) {
     }
 }
 
+/* A vertex in the place of a sample, of a closed surface: an edge without length. */
+#define EDGE_PLACE     EDGE_CODE(0, 0, 0, 0, 0, 0)
+#define is_place(edge) (CLOSED && ((edge) ^ EDGE_PLACE) >> 14 == 0)
+
 /* The entry of a cube in the table of cases: its parity, corners inside, and corners that are vertices. */
 inline_always global const uchar *case_of(global const uchar *cases, uint odd, uint inside, uint zeros) {
-    const uint count = CASE_COUNT(VERTEX_TYPES);
+    const uint count = CASE_COUNT(METHOD_TYPES);
     if (!ZEROS) return cases + CUBE_CASE_BYTES * (count * odd + inside);
     global const ushort *digits = (global const ushort *)(cases + CUBE_CASE_BYTES * 2 * count);
     return cases + CUBE_CASE_BYTES * (count * odd + 2 * digits[inside] + digits[zeros]);

@@ -7,7 +7,8 @@
 /* METHOD(name, types, most, usual)
  *
  * name: as the public header numbers methods, from 0 on; kernels are built with -DMETHOD=name
- * types: of vertices, the first so many of these: on an edge x, y, z, xy, xz, yz; at a sample
+ * types: of vertices, the first so many of these: on an edge x, y, z, xy, xz, yz; at a sample. Closed surfaces have the
+ *        last one besides
  * most: triangles of a cube at the most; no more than 10, which fill CUBE_CASE_BYTES
  * usual: triangles that are copied without a branch; more only where a cube has more
  *

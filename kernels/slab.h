@@ -43,10 +43,15 @@ typedef struct brick_range {
 } brick_range;
 
 /* The table of cases for kernel 2, of 2 parities x CASE_COUNT patterns of a cube: the number of triangles, then three
- * vertices for each. A pattern of two signs has a bit per corner; where samples can be vertices, a digit to the base 3,
- * and behind the table are 256 shorts: number n's bits as digits. */
+ * vertices for each. A pattern of two signs has a bit per corner; where the surface can go through samples, a digit to
+ * the base 3, and behind the table are 256 shorts: number n's bits as digits. */
 #define CASE_COUNT(vertex_types) ((vertex_types) > 6 ? 6561 : 256)
 enum { CUBE_CASE_BYTES = 32 };
+
+/* Of closed surfaces entries for faces on the border follow, from this one on: 2 parities x CAP_FACES x CAP_FACE_CASES
+ * cases of a face, a digit to the base 3 for each of its corners. */
+#define CAP_FIRST(vertex_types) (2 * CASE_COUNT(vertex_types) + 2 * 256 / CUBE_CASE_BYTES)
+enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FACE_CASES };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that

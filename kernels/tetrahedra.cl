@@ -85,9 +85,14 @@ inline_always lanes cubes_active(const cube_rows *r) {
     name##_vertex_types = (types), name##_triangles_most = (most), name##_triangles_usual = (usual),
 enum { METHODS(METHOD_CONSTANTS) };
 
-#define VERTEX_TYPES OF_METHOD(vertex_types)
-#define DIAGONALS    (VERTEX_TYPES > 3) /* whether edges across faces have vertices */
-#define ZEROS        (VERTEX_TYPES > 6) /* whether samples can be vertices */
+#define METHOD_TYPES OF_METHOD(vertex_types)
+#define DIAGONALS    (METHOD_TYPES > 3) /* whether edges across faces have vertices */
+#define ZEROS        (METHOD_TYPES > 6) /* whether the surface can go through samples, which are vertices then */
+
+/* Vertices on edges have the first types. The last one is of vertices in samples' own places: those that the surface
+ * goes through, and of closed surfaces inside samples of the border. */
+#define PLACE_TYPE   (DIAGONALS ? 6 : 3)
+#define VERTEX_TYPES (PLACE_TYPE + (ZEROS || CLOSED ? 1 : 0))
 
 /* Edges of vertices may begin as many samples before the brick that owns them: a sample's vertex is on any of its
  * edges. */
@@ -95,7 +100,7 @@ enum { METHODS(METHOD_CONSTANTS) };
 
 /* Vertices owned by the samples of rows a: edges whose ends differ, where both are in the grid; samples. */
 typedef struct crossings {
-    lanes type[7]; /* x, y, z, xy, xz, yz, sample */
+    lanes type[7]; /* x, y, z, xy, xz, yz, sample; without diagonals, sample is the fourth */
 } crossings;
 
 /* Where the samples p and q of an edge are on different sides. */
@@ -250,8 +255,8 @@ inline_always lanes offsets_pack(const crossings *edges, lanes *vertex_count) {
     lanes xz = xy + lanes_popcount(edges->type[3]);
     lanes yz = xz + lanes_popcount(edges->type[4]);
     lanes sample = yz + lanes_popcount(edges->type[5]);
-    *vertex_count = ZEROS ? sample + lanes_popcount(edges->type[6]) : sample;
-    return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46 | (ZEROS ? sample << 55 : (lanes)0);
+    *vertex_count = VERTEX_TYPES > 6 ? sample + lanes_popcount(edges->type[6]) : sample;
+    return y << 14 | z << 21 | xy << 29 | xz << 37 | yz << 46 | (VERTEX_TYPES > 6 ? sample << 55 : (lanes)0);
 }
 
 /* Shift and width of a type are a byte and four bits of two constants: no table, as `type` may be variable. The first

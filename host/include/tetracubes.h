@@ -312,7 +312,8 @@ typedef struct tc_extract_options {
     int closed;   /* nonzero: the surface is closed where it ends, at the grid's border and beside missing cells: by the
                      inside part of the faces that one present cube has. Inside samples there are vertices: at the
                      sample, with its gradient as normal. The mesh then bounds the present part of {f >= isovalue}.
-                     Structured grids only (TC_ERROR_ARGUMENT), by the reference engine (TC_ERROR_DEVICE) */
+                     Of grids of tetrahedra by TC_METHOD_TETRA alone (TC_ERROR_ARGUMENT), and by the reference
+                     engine (TC_ERROR_DEVICE) */
     int reserved; /* 0 */
 } tc_extract_options;
 

@@ -50,8 +50,6 @@ static tc_status piece_check(const tc_grid *grid, const tc_extract_options *opti
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other variant of the kernels.
  */
 static tc_status grid_vet(tc_grid *grid, const tc_extract_options *options, bool emits) {
-    if (options->closed && grid->device)
-        return (tc_status)fail(TC_ERROR_DEVICE, "kernels do not close surfaces: use the reference engine");
     if (!surface_needs_kernels(grid, options)) return TC_OK;
     if (method_has_zeros(options->method) && !device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: method snap takes %s samples by the reference engine",

@@ -99,6 +99,7 @@ static int print_texts(int argc, char **argv) {
 int main(int argc, char **argv) {
     int provided;
     truncation_watch();
+    writers_add();
     if (argc == 3 && strcmp(argv[1], TRIAL_COMMAND) == 0) return trial_child(argv[2]);
     if (print_texts(argc, argv)) return fflush(stdout) ? STATUS_FAILED : 0;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided); /* threads write in turn */

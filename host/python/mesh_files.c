@@ -1,10 +1,12 @@
 /*
- * mesh_files.c - the tool's writers and its hash, for the Python package: files have the same bytes as the tool's
+ * mesh_files.c - the tool's writers, its hash and its pictures, for the Python package: files have the same bytes as
+ * the tool's
  */
 #include "exit_status.h"
 #include "failure.h"
 #include "mesh_check.h"
 #include "mesh_write.h"
+#include "surface_picture.h"
 
 #include <stdlib.h>
 
@@ -14,6 +16,10 @@ FILES_API uint64_t mesh_files_hash(const tc_mesh_data *mesh);
 FILES_API int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
                               const char *const *names, const int *components, const float *const *values,
                               int *is_relative);
+FILES_API const char *mesh_files_view(int n, view_angles *angles);
+FILES_API int mesh_files_draw(const tc_mesh_data *mesh, view_angles angles, int width, int height,
+                              unsigned char *pixels);
+FILES_API int mesh_files_save_picture(const char *path, int width, int height, unsigned char *pixels);
 FILES_API const char *mesh_files_message(void);
 
 uint64_t mesh_files_hash(const tc_mesh_data *mesh) {
@@ -32,6 +38,25 @@ int mesh_files_save(const char *path, const char *format, const tc_mesh_data *me
     *is_relative = !status && mesh_write_is_relative(path, mesh, &options);
     free(fields);
     return status;
+}
+
+/* The name of view n and its angles; behind the last NULL, and the angles where none is chosen. */
+const char *mesh_files_view(int n, view_angles *angles) {
+    const char *name = view_name(n);
+    *angles = name ? view_named(n) : VIEW_DEFAULT;
+    return name;
+}
+
+/* pixels: 3 bytes each, row by row from the top, white before. */
+int mesh_files_draw(const tc_mesh_data *mesh, view_angles angles, int width, int height, unsigned char *pixels) {
+    picture p = {width, height, pixels};
+    return surface_picture(mesh, NULL, 0, angles, &p);
+}
+
+int mesh_files_save_picture(const char *path, int width, int height, unsigned char *pixels) {
+    const picture p = {width, height, pixels};
+    int status = picture_check("picture", path);
+    return status ? status : picture_write(&p, path, NULL);
 }
 
 const char *mesh_files_message(void) { return failure_text(); }

@@ -1,8 +1,11 @@
 #include "read_formats.h"
 
+#include "file/xml_root.h"
 #include "image/image.h"
 #include "plot3d/plot3d.h"
+#include "vtk_hdf/vtk_hdf.h"
 #include "vtk_legacy/vtk_legacy.h"
+#include "vtk_parallel/vtk_parallel.h"
 #include "vtk_xml/vtk_xml.h"
 
 #include <stdio.h>
@@ -55,16 +58,19 @@ static int begins_as_nifti(const mapping *file) {
 
 static int begins_as_vtk_legacy(const mapping *file) { return file_starts_with(file, "# vtk DataFile Version"); }
 
-/* The element VTKFile, after a prolog and comments if there are any. */
 static int begins_as_vtk_xml(const mapping *file) {
-    enum { PROLOG = 4096 };
-    size_t size = file->size < PROLOG ? file->size : PROLOG;
-    return size && memmem(file->bytes, size, "<VTKFile", 8) != NULL;
+    char type[XML_TYPE_BYTES];
+    return xml_root_type(file, type);
+}
+
+static int begins_as_vtk_parallel(const mapping *file) {
+    char type[XML_TYPE_BYTES];
+    return xml_root_type(file, type) && xml_type_is_index(type);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ table */
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, HDF5, VTK_LEGACY, VTK_XML, PLOT3D, FORMAT_COUNT };
+enum { RAW, NRRD, METAIMAGE, NIFTI, NPY, TIFF, HDF5, VTK_LEGACY, VTK_PARALLEL, VTK_XML, PLOT3D, FORMAT_COUNT };
 
 /* What begins as NIfTI may be a Plot3D grid of 348 points along x. */
 const read_format read_formats[FORMAT_COUNT] = {
@@ -102,13 +108,20 @@ const read_format read_formats[FORMAT_COUNT] = {
               .has_frames = 1},
     [HDF5] = {.name = "HDF5",
               .library = LIBRARY_HDF5,
-              .notes = {{"images", LIBRARY_NONE}},
+              .notes = {{"images", LIBRARY_NONE}, {"VTKHDF", LIBRARY_NONE}},
               .endings = "|.h5|.hdf5|.vtkhdf|",
               .begins = begins_as_hdf5,
-              .read = IF_BUILT(HAVE_HDF5, hdf5_read),
+              .read = IF_BUILT(HAVE_HDF5, vtk_hdf_read),
               .instead = "save the array as .npy or NRRD",
               .has_frames = 1},
     [VTK_LEGACY] = {.name = "VTK legacy", .endings = "|.vtk|", .begins = begins_as_vtk_legacy, .read = vtk_legacy_read},
+    [VTK_PARALLEL] = {.name = "parallel VTK XML",
+                      .library = LIBRARY_EXPAT,
+                      .notes = {{".pvti .pvtr .pvts .pvtu .vtm", LIBRARY_NONE}},
+                      .endings = "|.pvti|.pvtr|.pvts|.pvtu|.vtm|.vtmb|",
+                      .begins = begins_as_vtk_parallel,
+                      .read = IF_BUILT(HAVE_EXPAT, vtk_parallel_read),
+                      .instead = "save the whole grid as VTK legacy (.vtk)"},
     [VTK_XML] = {.name = "VTK XML",
                  .library = LIBRARY_EXPAT,
                  .notes = {{".vti .vtr .vts .vtu", LIBRARY_NONE},

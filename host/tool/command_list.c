@@ -15,6 +15,7 @@ const command command_list[] = {
      "What gzip has packed is unpacked into memory.\n"
      "\n"
      "  tetracubes extract head.nii.gz --iso 500 -o skin.ply\n"
+     "  tetracubes extract head.nii.gz --iso 500 --preview skin.png\n"
      "  tetracubes extract slices/%04d.tif --spacing 0.2,0.2,1 --iso 90 -o cells.glb\n"
      "  tetracubes extract head.nhdr --iso 500,1150 -o head-%.stl --check\n"
      "  tetracubes extract ct.raw --dims 512,512,300 --type i16 --spacing 0.7,0.7,1 --iso 300 -o ct.ply\n"
@@ -40,6 +41,7 @@ const command command_list[] = {
      "input.\n"
      "\n"
      "  tetracubes info head.nii.gz\n"
+     "  tetracubes info head.nii.gz --iso 500 --preview slices.png\n"
      "  tetracubes info engine.vtu --field temperature\n"
      "  tetracubes info ct.raw --dims 512,512,300 --type i16 --json"},
     {"tetrahedralize", COMMAND_TETRAHEDRALIZE, tetrahedralize_run, NULL, "a grid cut into tetrahedra that fit together",

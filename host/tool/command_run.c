@@ -36,12 +36,24 @@ void command_help(const command *c, FILE *out) {
     if (c->help) c->help(out);
 }
 
+#ifdef HAVE_MESH_WRITE_HDF5
+enum { has_hdf5 = 1 };
+void writers_add(void) { mesh_write_add_hdf5(); }
+#else
+enum { has_hdf5 = 0 };
+void writers_add(void) {}
+#endif
+
 void version_print(const char *program, FILE *out) {
     fprintf(out, "%s %s\n", program, tc_version());
     print_formats("reads:", out);
 #define MESH_LABEL(name, label, ...) ", " label
 #define COMPLEX_LABEL(name, label)   ", " label
-    fprintf(out, "writes: %s; %s (tetrahedra)\n", &MESH_FORMATS(MESH_LABEL)[2], &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
+    const char *labels = &MESH_FORMATS(MESH_LABEL)[2];
+    const size_t left_out = has_hdf5 ? 0 : sizeof ", VTKHDF" - 1; /* the last */
+    fprintf(out, "writes: %.*s; %s (tetrahedra)\n", (int)(strlen(labels) - left_out), labels,
+            &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
+    fprintf(out, "pictures: %s\n", HAVE_PNG ? "PNG" : "none, as it was built without libpng");
 }
 
 int command_run(const command *c, int argc, char **argv, int (*parsed)(options *o, int status)) {
@@ -51,7 +63,7 @@ int command_run(const command *c, int argc, char **argv, int (*parsed)(options *
     if (!status && o.help) {
         command_help(c, stdout);
     } else if (!status) {
-        streams_choose(o.output);
+        streams_choose(o.output, o.preview);
         progress_begin(o.quiet);
         json_report_begin();
         notice_begin(o.quiet, o.json);

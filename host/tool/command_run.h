@@ -8,6 +8,9 @@
  * of parsing them; what it returns takes the place of that. Returns an exit status with its text (failure.h). */
 int command_run(const command *c, int argc, char **argv, int (*parsed)(options *o, int status));
 
+/* Makes known the writers that this build has beside those that all have; before anything else. */
+void writers_add(void);
+
 /* What COMMAND --help prints. */
 void command_help(const command *c, FILE *out);
 

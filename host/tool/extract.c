@@ -21,6 +21,7 @@
 #include "extract/surface_files.h"
 #include "extract/surface_notices.h"
 #include "extract/streamed.h"
+#include "extract/surface_preview.h"
 #include "failure.h"
 #include "input/input.h"
 #include "library_status.h"
@@ -53,7 +54,8 @@ static int check_usage(job *j) {
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
     int status = input_request(o, &j->request);
-    return status ? status : surface_files_check(o, NULL);
+    if (!status) status = surface_files_check(o, NULL);
+    return status ? status : surface_preview_check(o, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- stages */
@@ -62,6 +64,7 @@ static int read_input(job *j) {
     double begin = now_ms();
     int status = input_read(&j->request, &j->data);
     if (!status) status = surface_files_check(j->o, &j->data);
+    if (!status) status = surface_preview_check(j->o, &j->data);
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
@@ -192,6 +195,13 @@ static int judge_surface(surface_job *w) {
     return !status && j->o->check ? surface_judge(&j->blocks, s, &w->is_good) : status;
 }
 
+static int write_preview(surface_job *w, block_range blocks, const result_mesh *mesh) {
+    double begin = now_ms();
+    int status = surface_preview_write(w->j->o, w->s->iso, blocks.first, mesh, &w->files);
+    w->j->report.write_ms += now_ms() - begin;
+    return status ? status : progress_status();
+}
+
 static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *made, const result_mesh *mesh,
                       int is_last) {
     job *j = w->j;
@@ -199,7 +209,7 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
     int status = carried_fields_interpolate(&j->carried, &j->main, blocks, &w->how, made);
     if (!status) status = result_mesh_carry(mesh, &j->carried);
     if (!status && is_last) carried_fields_tell(&j->carried);
-    if (!status) status = surface_files_write(j->o, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
+    if (!status) status = surface_files_write(j->o, &j->data, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
@@ -219,6 +229,7 @@ static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *m
     if (!status && is_last) status = judge_surface(w);
     if (status || (status = progress_status())) return status;
     if (s->has_verdict && !s->verified) w->is_good = 0;
+    if (w->is_good && j->o->preview && (status = write_preview(w, blocks, mesh))) return status;
     return w->is_good && j->o->output ? write_mesh(w, blocks, made, mesh, is_last) : 0;
 }
 
@@ -237,14 +248,22 @@ static int make_mesh(surface_job *w, block_range blocks, int is_last) {
     return status;
 }
 
+static int describe_files(surface_job *w) {
+    const options *o = w->j->o;
+    const int blocks = w->j->blocks.count;
+    if (o->output && !(w->s->path = surface_files_describe(o, o->output, w->s->iso, blocks))) return STATUS_FAILED;
+    if (o->preview && !(w->s->preview = surface_files_describe(o, o->preview, w->s->iso, blocks))) return STATUS_FAILED;
+    return 0;
+}
+
 /* Puts the surface's files under their names, all together. */
 static int publish(surface_job *w) {
     job *j = w->j;
     double begin = now_ms();
     if (!w->is_good) j->failed_count++;
-    if (!w->is_good || !j->o->output) return 0;
-    w->s->path = surface_files_describe(j->o, w->s->iso, j->blocks.count);
-    int status = w->s->path ? output_group_publish(&w->files) : STATUS_FAILED;
+    if (!w->is_good) return 0;
+    int status = describe_files(w);
+    if (!status) status = output_group_publish(&w->files);
     j->report.write_ms += now_ms() - begin;
     return status;
 }
@@ -337,9 +356,12 @@ int extract_run_together(const options *o, team *t) {
     if ((status = print_report(&j, begin))) goto cleanup;
     if (j.failed_count)
         status = fail(STATUS_CHECK, "%d of %zu surfaces failed and %s", j.failed_count, o->isovalue_count,
-                      o->output ? "were not written" : "should not be used");
+                      o->output || o->preview ? "were not written" : "should not be used");
 cleanup:
-    for (size_t n = 0; n < j.report.surface_count; n++) free(j.report.surfaces[n].path);
+    for (size_t n = 0; n < j.report.surface_count; n++) {
+        free(j.report.surfaces[n].path);
+        free(j.report.surfaces[n].preview);
+    }
     free(j.report.surfaces);
     engine_close(&j.reference);
     engine_close(&j.main);

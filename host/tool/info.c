@@ -6,9 +6,11 @@
 #include "info/describe_blocks.h"
 #include "info/no_surface.h"
 #include "info/open_choices.h"
+#include "info/slice_preview.h"
 #include "input/input.h"
 #include "input/part_report.h"
 #include "input/statistics.h"
+#include "output.h"
 #include "progress.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
@@ -90,6 +92,7 @@ static int print_json(const facts *f) {
     json_object_set_new(object, "format", json_string(f->d->format));
     add_grid(object, only_block(f->d));
     json_object_set_new(object, "space", string_json(f->d->space));
+    json_object_set_new(object, "units", string_json(f->d->units));
     json_object_set_new(object, "notice", string_json(f->d->notice));
     add_field(object, f);
     json_object_set_new(object, "blocks", describe_blocks_json(f->d));
@@ -153,7 +156,7 @@ static void print_field(const facts *f) {
     print_suggestions(f);
 }
 
-static void print_text(const facts *f) {
+static void print_text(const options *o, const facts *f) {
     printf("%s\n", f->path);
     printf("format        %s\n", f->d->format);
     if (f->d->frames)
@@ -161,6 +164,7 @@ static void print_text(const facts *f) {
     else
         describe_blocks_text(f->d);
     print_field(f);
+    if (o->preview) printf("preview       %s\n", output_is_dash(o->preview) ? "standard output" : o->preview);
 }
 
 /* A notice for each field that was rounded in some block; input_select gives that of the chosen one. */
@@ -196,7 +200,9 @@ static int read_facts(const options *o, dataset *d, scalar *field, facts *f) {
     read_request request;
     int status = input_request(o, &request);
     request.describe = 1;
+    if (!status && o->preview) status = slice_preview_check(o, NULL);
     if (!status) status = input_read(&request, d);
+    if (!status && o->preview) status = slice_preview_check(o, d);
     if (!status) status = progress_status();
     if (!status) status = open_choices_find(&request, d, &f->open);
     if (!status) status = option_effects_check_input(o, d, !f->open.can_select);
@@ -217,11 +223,12 @@ int info_run(const options *o) {
     scalar field;
     facts f = {.path = o->operand_count ? o->operands[0] : "", .d = &d};
     int status = read_facts(o, &d, &field, &f);
+    if (!status && o->preview && f.field) status = slice_preview_write(o, &d, f.field, &f.s);
     if (status) goto cleanup;
     if (o->json)
         status = print_json(&f);
     else if (!o->quiet)
-        print_text(&f);
+        print_text(o, &f);
 cleanup:
     open_choices_release(&f.open);
     dataset_release(&d);

@@ -45,7 +45,7 @@ static int check_usage(const options *o) {
         return fail(STATUS_USAGE, "join needs the files of all parts: tetracubes join PARTS... -o FILE");
     if (!o->output) return fail(STATUS_USAGE, "join needs -o FILE, the mesh to write");
     int status = mesh_file_check(o->output, &how);
-    if (!status) status = input_overwrite_check(o, NULL, o->output);
+    if (!status) status = input_overwrite_check(o, NULL, "-o", o->output);
     return status ? status : output_check(o->output);
 }
 
@@ -64,6 +64,7 @@ static int open_parts(join_job *j) {
 static int open_file(join_job *j) {
     static const float some;
     const part_layout *l = &j->parts[0].layout;
+    const json_t *surface = j->parts[0].header.surface;
     tc_mesh_data whole = {.struct_size = sizeof whole};
     for (size_t n = 0; n < j->count; n++) {
         const part_header *h = &j->parts[n].header;
@@ -81,6 +82,8 @@ static int open_file(join_job *j) {
     j->how = (mesh_write_options){.format = j->o->format,
                                   .fields = j->fields,
                                   .field_count = l->array_count - 1 - l->channel_count,
+                                  .world = json_string_value(json_object_get(surface, "world")),
+                                  .units = json_string_value(json_object_get(surface, "units")),
                                   .origin_at = options_given(j->o, "--origin-at") ? j->o->origin_at : NULL};
     for (int n = 0; n < j->how.field_count; n++) {
         const part_array *a = &l->arrays[l->channel_count + n];

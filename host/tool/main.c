@@ -88,6 +88,7 @@ static int dispatch(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     truncation_watch(); /* before drivers start threads and put handlers of their own in front */
+    writers_add();
     int status = dispatch(argc, argv);
     int is_written = fflush(stdout) == 0 && !ferror(stdout), error = errno;
     streams_restore();

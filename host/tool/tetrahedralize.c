@@ -37,14 +37,14 @@ typedef struct conversion {
 static int check_usage(const options *o) {
     if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
     int status = complex_write_check(o->output);
-    if (!status) status = input_overwrite_check(o, NULL, o->output);
+    if (!status) status = input_overwrite_check(o, NULL, "-o", o->output);
     return status ? status : output_check(o->output);
 }
 
 static int read_input(conversion *c) {
     int has_choice = 0, status = input_request(c->o, &c->request);
     if (!status) status = input_read(&c->request, &c->data);
-    if (!status) status = input_overwrite_check(c->o, &c->data, c->o->output);
+    if (!status) status = input_overwrite_check(c->o, &c->data, "-o", c->o->output);
     if (!status) status = input_has_choice(&c->request, &c->data, &has_choice);
     if (!status) status = option_effects_check_input(c->o, &c->data, !has_choice);
     if (!status && has_choice) status = input_select(&c->request, &c->data, &c->field);
@@ -264,6 +264,8 @@ int tetrahedralize_run(const options *o) {
     if (!status) status = read_input(&c);
     if (!status) status = cut(&c);
     if (!status) status = join(&c);
+    c.file.world = c.data.world;
+    c.file.units = c.data.units;
     if (!status) status = complex_write(o->output, &c.file);
     c.total_ms = now_ms() - begin;
     if (!status) status = print_report(&c);

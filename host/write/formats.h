@@ -30,8 +30,9 @@ typedef struct shown_mesh {
     const vertex_array *arrays; /* beside the positions: those that the format takes */
     int array_count;
     const shown_part *parts;
-    int part_count; /* at least 1 */
-    int is_moved;   /* some offset is not 0: coordinates are doubles where the format has them */
+    int part_count;            /* at least 1 */
+    int is_moved;              /* some offset is not 0: coordinates are doubles where the format has them */
+    const char *world, *units; /* of coordinates: texts of letters and digits, or "" */
 } shown_mesh;
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary formats are written as numbers lie in memory");
@@ -98,6 +99,18 @@ static inline void shown_position_f32(const shown_mesh *s, uint64_t vertex, floa
     if (s->is_moved) shown_position(s, vertex, position);
     for (uint64_t axis = 0; axis < 3; axis++)
         out[axis] = s->is_moved ? (float)position[axis] : s->mesh->positions[3 * vertex + axis];
+}
+
+/* What the file says of its coordinates, "SPACE=LPS" and "UNITS=mm", as 3D Slicer writes and reads the first, in so
+ * many lines as there are: name(n) and value(n), n from 0; the name is NULL behind the last. */
+typedef struct shown_note {
+    const char *name, *value;
+} shown_note;
+
+static inline shown_note shown_notes(const shown_mesh *s, int n) {
+    const shown_note world = {"SPACE", s->world}, units = {"UNITS", s->units}, none = {NULL, NULL};
+    if (*s->world && n == 0) return world;
+    return *s->units && n == (*s->world != 0) ? units : none;
 }
 
 /* Copies to an address of any alignment; returns the address behind. */

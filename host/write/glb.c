@@ -87,7 +87,10 @@ static void add_accessors(file_text *t, const glb_view *views, int count) {
 }
 
 static void add_json(file_text *t, const shown_mesh *s, const glb_view *views, int count) {
-    text_add(t, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tetracubes\"},\"scene\":0,");
+    text_add(t, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tetracubes\"");
+    for (int n = 0; shown_notes(s, n).name; n++)
+        text_add(t, "%s\"%s\":\"%s\"", n ? "," : ",\"extras\":{", shown_notes(s, n).name, shown_notes(s, n).value);
+    text_add(t, "%s},\"scene\":0,", shown_notes(s, 0).name ? "}" : "");
     if (is_empty(s)) {
         text_add(t, "\"scenes\":[{}]}");
     } else {

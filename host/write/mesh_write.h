@@ -22,17 +22,18 @@
  *     counts       what the format counts in 32 bits: vertices, triangles or nothing
  *     fits         of a format whose files have a limit of size: the function that tells whether a mesh keeps it
  *     pieces       how a mesh may be written piece by piece: triangles by NUMBERS of their vertices, by their CORNERS,
- * or NOT, as places in the file are not known before
+ *                  or NOT, as places in the file are not known before
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NUMBERS)                                                         \
-    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)                                                         \
-    ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                             \
-    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                                    \
-    ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                              \
-    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                                \
-    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NOT)
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NUMBERS)                                                \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)                                                 \
+    ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                    \
+    ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                               \
+    ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                         \
+    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                           \
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NOT)                                                    \
+    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
@@ -54,6 +55,7 @@ typedef struct mesh_write_options {
     const mesh_part
         *parts; /* in the order of vertices; together all of them. part_count 0: one, with the mesh's origin */
     int part_count;
+    const char *world, *units;  /* of coordinates, as "LPS" and "mm", which go into headers; NULL or "": not known */
     const double *origin_at;    /* the world position that becomes 0, 0, 0 in the file. NULL: the file has world
                                    coordinates; STL, which has only float32, has them relative to the mesh's origin */
     struct output_group *group; /* where the file waits until it appears with others (output_group.h); NULL: it appears
@@ -61,6 +63,10 @@ typedef struct mesh_write_options {
     const struct output_shared *shared; /* of a file that several processes write piece by piece, each with pieces of
                                            its own (output.h); NULL: this one alone */
 } mesh_write_options;
+
+/* Adds the writer of VTKHDF, which is refused without it: a part of the library mesh_write_hdf5, so that programs that
+ * do without libhdf5 need not have it. To be called once, before the others. */
+void mesh_write_add_hdf5(void);
 
 /* To be called before any work is done. 0 where path's ending, or options->format, is a format that is written and
  * takes the fields; else STATUS_USAGE with a message that names the formats. options may be NULL here and below. */
@@ -125,6 +131,7 @@ typedef struct complex_file {
     const uint32_t *tetrahedra;         /* 4 points each */
     const struct dataset_field *fields; /* of the points: host/read/dataset/dataset.h */
     int field_count;
+    const char *world, *units; /* as above */
 } complex_file;
 
 /* 0 where path ends with .vtu, else STATUS_USAGE: to be called before any work is done. */

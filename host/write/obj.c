@@ -39,9 +39,14 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
 
 void obj_write(output *o, const shown_mesh *s) {
     char header[128];
+    int notes = 0;
     int length = snprintf(header, sizeof header, "# tetracubes isosurface: %llu vertices, %llu triangles\n",
                           (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count);
     output_bytes(o, header, (uint64_t)length);
+    for (; shown_notes(s, notes).name; notes++) {
+        length = snprintf(header, sizeof header, "# %s=%s\n", shown_notes(s, notes).name, shown_notes(s, notes).value);
+        output_bytes(o, header, (uint64_t)length);
+    }
     write_positions(o, s, keywords[ROLE_POSITIONS]);
     for (int n = 0; n < s->array_count; n++) write_vectors(o, s, keywords[s->arrays[n].role], s->arrays[n].values);
     output_records(o, s->mesh->triangle_count, FACE_MOST, encode_faces, s);

@@ -52,9 +52,10 @@ static void add_properties(file_text *header, const shown_mesh *s) {
 
 static void make_header(const shown_mesh *s, file_text *header) {
     const char *type = stored_types[s->is_moved ? TC_F64 : TC_F32].ply;
-    text_add(header,
-             "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\nelement vertex %llu\n"
-             "property %s x\nproperty %s y\nproperty %s z\n",
+    text_add(header, "ply\nformat binary_little_endian 1.0\ncomment tetracubes isosurface\n");
+    for (int n = 0; shown_notes(s, n).name; n++)
+        text_add(header, "comment %s=%s\n", shown_notes(s, n).name, shown_notes(s, n).value);
+    text_add(header, "element vertex %llu\nproperty %s x\nproperty %s y\nproperty %s z\n",
              (unsigned long long)file_vertex_count(s), type, type, type);
     add_properties(header, s);
     text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",

@@ -8,6 +8,7 @@
 #include "formats.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum { HEADER_BYTES = 80, TRIANGLE_BYTES = 50 };
 
@@ -43,6 +44,11 @@ static unsigned char *encode_triangles(const void *source, uint64_t first, uint6
 /* Ignores s->soup: in STL every triangle has vertices of its own. */
 void stl_write(output *o, const shown_mesh *s) {
     char header[HEADER_BYTES + 4] = "binary STL, tetracubes isosurface";
+    for (int n = 0; shown_notes(s, n).name; n++) {
+        const size_t used = strlen(header);
+        snprintf(header + used, HEADER_BYTES - used, "%s%s=%s", n ? " " : ". ", shown_notes(s, n).name,
+                 shown_notes(s, n).value);
+    }
     uint32_t count = (uint32_t)s->triangle_count;
     memcpy(header + HEADER_BYTES, &count, sizeof count);
     output_expect(o, sizeof header + (uint64_t)count * TRIANGLE_BYTES);

@@ -60,6 +60,22 @@ static void add_array(vtk_file *f, const vtk_array *array, const char *name) {
     f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));
 }
 
+/* A string is the codes of its characters, and 0. */
+static void add_note(vtk_file *f, const char *name, const char *value) {
+    text_add(&f->text, "      <Array type=\"String\" Name=\"%s\" NumberOfTuples=\"1\" format=\"ascii\">", name);
+    for (const char *at = value; *at; at++) text_add(&f->text, "%d ", *at);
+    text_add(&f->text, "0</Array>\n");
+}
+
+void vtk_notes_add(vtk_file *f, const char *world, const char *units) {
+    const int has_world = world && *world, has_units = units && *units;
+    if (!has_world && !has_units) return;
+    text_add(&f->text, "    <FieldData>\n");
+    if (has_world) add_note(f, "SPACE", world);
+    if (has_units) add_note(f, "UNITS", units);
+    text_add(&f->text, "    </FieldData>\n");
+}
+
 void vtk_array_add(vtk_file *f, const vtk_array *array) { add_array(f, array, array->name); }
 
 static int is_taken(const vtk_file *f, const char *name, const char *const *own) {

@@ -43,6 +43,10 @@ void vtk_array_add(vtk_file *f, const vtk_array *array);
  * names of the arrays that the writer makes itself (NULL after the last), or that of an earlier field. */
 void vtk_field_add(vtk_file *f, const vtk_array *array, const char *const *own);
 
+/* Adds the element FieldData with these texts of letters and digits; NULL or "" is left out, and FieldData without any.
+ */
+void vtk_notes_add(vtk_file *f, const char *world, const char *units);
+
 /* Writes the whole file and frees what the vtk_file holds. */
 void vtk_file_write(vtk_file *f, const char *grid);
 

@@ -98,6 +98,7 @@ void vtp_write(output *o, const shown_mesh *s) {
         o->error = ENOMEM;
         return;
     }
+    vtk_notes_add(&f, s->world, s->units);
     text_add(&f.text,
              "    <Piece NumberOfPoints=\"%llu\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
              "NumberOfPolys=\"%llu\">\n",

@@ -85,6 +85,7 @@ int complex_write(const char *path, const complex_file *c) {
     int status = complex_write_check(path);
     if (!status) status = output_open(&o, path);
     if (status) return status;
+    vtk_notes_add(&f, c->world, c->units);
     text_add(&f.text, "    <Piece NumberOfPoints=\"%llu\" NumberOfCells=\"%llu\">\n      <PointData>\n",
              (unsigned long long)c->point_count, (unsigned long long)c->tetrahedron_count);
     for (int i = 0; i < c->field_count; i++) add_field(&f, c, &c->fields[i]);

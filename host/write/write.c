@@ -8,11 +8,16 @@
 #include "formats.h"
 #include "held_triangles.h"
 #include "output_group.h"
+#include "vtkhdf.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+void (*vtkhdf_writer)(output *o, const shown_mesh *s);
+
+void vtkhdf_write(output *o, const shown_mesh *s) { vtkhdf_writer(o, s); }
 
 enum counted { COUNTS_vertices, COUNTS_triangles, COUNTS_nothing };
 enum pieces { PIECES_NOT, PIECES_NUMBERS, PIECES_CORNERS };
@@ -42,10 +47,7 @@ static const format *find_format(const char *name) {
     return NULL;
 }
 
-static int is_any(const format *f) {
-    (void)f;
-    return 1;
-}
+static int is_there(const format *f) { return f->write != vtkhdf_write || vtkhdf_writer; }
 
 static int has_role(const format *f, vertex_role role) { return f->roles >> role & 1; }
 
@@ -59,9 +61,9 @@ static int goes_in_pieces(const format *f) { return f->pieces != PIECES_NOT; }
 static const char *list_formats(int (*is_meant)(const format *f), const char *before, char list[LIST_BYTES]) {
     size_t used = 0;
     const format *last = formats;
-    for (const format *f = formats; f < formats + FORMAT_COUNT; f++) last = is_meant(f) ? f : last;
+    for (const format *f = formats; f < formats + FORMAT_COUNT; f++) last = is_there(f) && is_meant(f) ? f : last;
     for (const format *f = formats; f <= last; f++)
-        if (is_meant(f))
+        if (is_there(f) && is_meant(f))
             used += (size_t)snprintf(list + used, LIST_BYTES - used, "%s%s%s",
                                      !used       ? ""
                                      : f == last ? " or "
@@ -93,13 +95,15 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     int named = options && options->format;
     char list[LIST_BYTES];
     *chosen = find_format(named ? options->format : ending_of(path));
+    if (*chosen && !is_there(*chosen))
+        return fail(STATUS_USAGE, "%s: is VTKHDF, for which libhdf5 was not built in: write vtp", path);
     if (*chosen) return check_fields(path, options, *chosen);
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as %s", options->format,
-                    list_formats(is_any, "", list));
+                    list_formats(is_there, "", list));
     if (output_is_dash(path)) return fail(STATUS_USAGE, "-o - has no ending: name the format by --format");
     return fail(STATUS_USAGE, "%s: its ending names no known format: let it end in %s, or name the format by --format",
-                path, list_formats(is_any, ".", list));
+                path, list_formats(is_there, ".", list));
 }
 
 static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {
@@ -195,6 +199,11 @@ static int set_arrays(shown_mesh *s, const mesh_write_options *options, const fo
     return 0;
 }
 
+static void set_notes(shown_mesh *s, const mesh_write_options *options) {
+    s->world = options && options->world ? options->world : "";
+    s->units = options && options->units ? options->units : "";
+}
+
 int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     output o;
@@ -204,6 +213,7 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
                         .vertex_count = mesh->vertex_count,
                         .triangle_count = mesh->triangle_count,
                         .soup = options && options->soup};
+    set_notes(&shown, options);
     int status = choose_format(path, options, &f);
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);
@@ -265,6 +275,7 @@ int mesh_file_open(const char *path, const mesh_write_options *options, const tc
     m->whole = *whole;
     m->shown =
         (shown_mesh){.mesh = &m->whole, .vertex_count = whole->vertex_count, .triangle_count = whole->triangle_count};
+    set_notes(&m->shown, options);
     int status = choose_format(path, options, &m->format);
     if (!status) status = check_counts(path, whole, 0, m->format);
     if (!status) status = set_offsets(&m->shown, options, m->format, &m->parts);

@@ -60,6 +60,13 @@ const bytes_case cases[] = {
     {CASE_CURVILINEAR, TC_F64, TC_METHOD_TETRA, CASE_NORMALS, 0, false},
     {CASE_CURVILINEAR, TC_U8, TC_METHOD_HYBRID, 0, 0, false},
     {CASE_CURVILINEAR, TC_F32, TC_METHOD_SNAP, CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_CLOSED, 2, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_CLOSED | CASE_DEEP | CASE_MISSING | CASE_NORMALS, 1, false},
+    {CASE_UNIFORM, TC_I32, TC_METHOD_TETRA, CASE_CLOSED | CASE_BLANKED, 0, false},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_HYBRID, CASE_CLOSED, 0, false},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_HYBRID, CASE_CLOSED | CASE_MISSING, 1, false},
+    {CASE_RECTILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_NORMALS, 0, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_MISSING | CASE_NORMALS, 1, true},
     {CASE_COMPLEX, TC_U8, TC_METHOD_TETRA, 0, 3, true},
     {CASE_COMPLEX, TC_I8, TC_METHOD_TETRA, 0, 0, false},
     {CASE_COMPLEX, TC_U16, TC_METHOD_TETRA, 0, 0, false},
@@ -76,10 +83,11 @@ const char *case_name(const bytes_case *c) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear", "complex"};
     static char name[120];
     const bool named = c->method != TC_METHOD_TETRA;
-    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
              c->flags & CASE_DEEP ? ", deep" : "", c->flags & CASE_MISSING ? ", missing" : "",
              c->flags & CASE_BLANKED ? ", blanked" : "", c->flags & CASE_EXTREMES ? ", extremes" : "",
-             c->flags & CASE_NORMALS ? ", normals" : "", named ? ", " : "", named ? tc_method_name(c->method) : "");
+             c->flags & CASE_NORMALS ? ", normals" : "", c->flags & CASE_CLOSED ? ", closed" : "", named ? ", " : "",
+             named ? tc_method_name(c->method) : "");
     return name;
 }
 
@@ -122,6 +130,7 @@ static void how_fill(const bytes_case *c, tc_extract_options *how) {
     how->isovalue = c->flags & CASE_EXTREMES ? 1e-3 : ISOVALUE;
     how->normals = c->flags & CASE_NORMALS ? 1 : 0;
     how->method = c->method;
+    how->closed = c->flags & CASE_CLOSED ? 1 : 0;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- grids */

@@ -61,7 +61,7 @@ static void free_mesh(tc_mesh_data *mesh) {
 
 /* ---------------------------------------------------------------------------------------------------------- parsers */
 
-static char *read_file(const char *path, size_t *bytes) {
+static inline char *read_file(const char *path, size_t *bytes) {
     FILE *file = fopen(path, "rb");
     *bytes = 0;
     if (!file) return NULL;

@@ -25,7 +25,7 @@ SURFACE_KEYS = COUNT_KEYS | {"degenerate_triangles", "bounds", "origin", "hash"}
 CHECK_KEYS = {"boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges", "coarse_vertices",
               "euler_characteristic", "components", "area", "volume", "smallest_angle_median", "angles_below_10",
               "angles_below_20"}
-INFO_KEYS = {"input", "format", "dims", "first", "roi", "step", "type", "spacing", "matrix", "space", "notice", "range",
+INFO_KEYS = {"input", "format", "dims", "first", "roi", "step", "type", "spacing", "matrix", "space", "units", "notice", "range",
              "nonfinite", "histogram", "isovalues", "field", "blocks", "missing", "notices", "choices"}
 
 

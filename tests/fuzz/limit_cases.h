@@ -67,6 +67,25 @@ static const limit_case size_cases[] = {
                       "format=\"appended\" offset=\"" HUGE "\"/></PointData></Piece></ImageData>"
                       "<AppendedData encoding=\"raw\">_1234</AppendedData></VTKFile>",
      "'a'"},
+    {"a.pvti",
+     XML("PImageData") "<PImageData WholeExtent=\"0 2147483647 0 2147483647 0 2147483647\"><Piece Extent=\"0 1 0 1 0 "
+                       "1\" "
+                       "Source=\"whole.vti\"/></PImageData></VTKFile>",
+     "leave a gap"},
+    {"a.pvti",
+     XML("PImageData") "<PImageData WholeExtent=\"0 2147483647 0 2147483647 0 2147483647\"><Piece Extent=\"0 "
+                       "2147483647 "
+                       "0 2147483647 0 2147483647\" Source=\"whole.vti\"/></PImageData></VTKFile>",
+     "has the points 0 to 1 along x"},
+    {"a.pvti",
+     XML("PImageData") "<PImageData WholeExtent=\"0 " HUGE " 0 1 0 1\"><Piece Extent=\"0 1 0 1 0 1\" "
+                       "Source=\"whole.vti\"/></PImageData></VTKFile>",
+     "WholeExtent"},
+    {"a.pvti",
+     XML("PImageData") "<PImageData WholeExtent=\"0 1 0 1 0 1\" GhostLevel=\"2147483648\"><Piece Extent=\"0 1 0 1 0 "
+                       "1\" "
+                       "Source=\"whole.vti\"/></PImageData></VTKFile>",
+     "GhostLevel"},
     {"a.npy",
      NPY288 "{'descr':'<f8','fortran_order':True,'shape':(" HUGE "," HUGE ",2)}" BLANKS64 BLANKS64 BLANKS64 "        ",
      "2^64"},

@@ -49,7 +49,10 @@ static void check_cases(const limit_case *cases, size_t count) {
 /* ---------------------------------------------------------------------------------------------------- size arithmetic
  */
 
-static void test_sizes(void) { check_cases(size_cases, sizeof size_cases / sizeof *size_cases); }
+static void test_sizes(void) {
+    file_text("whole.vti", XML8("")); /* the piece of lists of pieces */
+    check_cases(size_cases, sizeof size_cases / sizeof *size_cases);
+}
 
 /* ------------------------------------------------------------------------------------------------------ compression */
 
@@ -151,6 +154,11 @@ static void test_headers(void) {
                    "<Piece Extent=\"0 1 0 1 0 1\"><PointData>",
                    "<DataArray type=\"UInt8\" format=\"ascii\"/>", 5000, "more than 4096 arrays");
     check_repeated("deep.vtu", "<VTKFile type=\"UnstructuredGrid\">", "<a>", 100000, "nested");
+    check_repeated("deep.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\">", "<a>", 100000, "nested");
+    check_repeated("many.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>",
+                   "<DataSet file=\"a.vti\"/>", 20000, "more than 16384 files");
+    check_repeated("many.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>", "<Piece Source=\"a.vtu\"/>",
+                   20000, "more than 16384 files");
 }
 
 /* ------------------------------------------------------------------------------------------------------------- names

@@ -223,6 +223,14 @@ class Memory(Failures):
                 self.fail_requests("extract", "@grid.vtk", "--iso", "80,90", "--engine", "reference", "--normals",
                                    "--check", "-o", f"s%.{ending}")
 
+    def test_pictures(self):
+        if "pictures: PNG" not in subprocess.check_output([TOOL, "--version"], text=True):
+            self.skipTest("built without libpng")
+        size = ["--preview-size", "40,30"]
+        self.fail_requests("extract", "@a.nrrd", "--iso", "80,90", "--engine", "reference", "-o", "s%.ply", "--preview",
+                           "s%.png", *size)
+        self.fail_requests("info", "@a.nrrd", "--iso", "80", "--preview", "s.png", *size)
+
     def test_other_commands(self):
         self.fail_requests("tetrahedralize", "@cells.vtk", "-o", "s.vtu")
         self.fail_requests("tetrahedralize", "@bare.vtk", "-o", "s.vtu")

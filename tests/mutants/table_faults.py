@@ -321,7 +321,7 @@ MUTANTS = [
            ("host/lib/opencl/context.c", "test_fork", "context->process != getpid();", "context->process == 0;",
             "contexts of the parent are used by a child")),
     *point("memory budgets",
-           ("host/lib/structured/slab_plan.c", "test_budget", "(unsigned long long)plan_budget(context, grid, zeros));",
+           ("host/lib/structured/slab_plan.c", "test_budget", "(unsigned long long)plan_budget(context, grid, needs));",
             "(unsigned long long)bytes);", "a budget is advised that does not suffice"),
            ("host/lib/structured/structured.c", "test_budget", "r->context->workspace_plan == plan;", "true;",
             "buffers of another method are kept besides")),

@@ -217,10 +217,11 @@ static void classify_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++)
         for (int method = 0; tc_method_name((tc_method)method); method++)
-            for (int missing = 0; missing < 2; missing++) {
-                const kernel_kind kind = {.type = (tc_type)type, .method = (tc_method)method, .missing = missing};
-                snprintf(name, sizeof name, "classify-%s-%s%s", type_names[type], tc_method_name((tc_method)method),
-                         missing ? "-missing" : "");
+            for (int more = 0; more < 4; more++) {
+                const kernel_kind kind = {
+                    .type = (tc_type)type, .method = (tc_method)method, .missing = more & 1, .closed = more & 2};
+                snprintf(name, sizeof name, "classify-%s-%s%s%s", type_names[type], tc_method_name((tc_method)method),
+                         more & 1 ? "-missing" : "", more & 2 ? "-closed" : "");
                 status_check(program_get(context, PROGRAM_CLASSIFY, kind, &found));
             }
 }
@@ -230,16 +231,17 @@ static void emit_programs(tc_context *context) {
     for (int type = TC_U8; type <= TC_F64; type++)
         for (int method = 0; tc_method_name((tc_method)method); method++)
             for (int grid = GRID_UNIFORM; grid <= GRID_CURVILINEAR; grid++)
-                for (int more = 0; more < 4; more++) {
+                for (int more = 0; more < 8; more++) {
                     const kernel_kind kind = {.grid = (unsigned)grid,
                                               .type = (tc_type)type,
                                               .method = (tc_method)method,
                                               .made = POSITIONS_ALONE | (more & 2 ? 1u << CHANNEL_NORMALS : 0),
                                               .missing = more & 1,
-                                              .emits = true};
-                    snprintf(name, sizeof name, "emit-%s-%s-%s%s%s", type_names[type],
+                                              .emits = true,
+                                              .closed = more & 4};
+                    snprintf(name, sizeof name, "emit-%s-%s-%s%s%s%s", type_names[type],
                              tc_method_name((tc_method)method), kind_names[grid], more & 1 ? "-missing" : "",
-                             more & 2 ? "-normals" : "");
+                             more & 2 ? "-normals" : "", more & 4 ? "-closed" : "");
                     status_check(program_get(context, PROGRAM_EMIT, kind, &found));
                 }
 }

@@ -22,9 +22,12 @@ import tempfile
 PROCESSORS = ["x86-64", "haswell", "skylake-avx512"]
 SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "classify-u8-snap",
           "emit-u8-tetra-uniform", "emit-f32-snap-curvilinear-missing-normals", "snap-u8", "snap-f64-missing",
-          "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32"]
+          "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32",
+          "classify-u8-tetra-closed", "classify-f32-snap-missing-closed", "emit-f32-tetra-uniform-closed",
+          "emit-f32-snap-curvilinear-missing-normals-closed",
+          "emit-f32-hybrid-rectilinear-missing-normals-closed"]
 
-ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals"  # its options define what any file looks at
+ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals-closed"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
 
 # Work-items of a group, of which one has the other variant; quick: all processors for it, where most can differ.

@@ -15,7 +15,8 @@ OTHERS = ("to_pyvista", "import meshio", "import zarr", "import pyopencl", "impo
 
 
 def test_examples(tmp_path, monkeypatch):
-    """Those that need other packages only where these are there."""
+    """Those that need other packages only where these are there; pictures only where the package was built with PNG."""
+    has_png = tetracubes.isosurface(np.eye(3)[None].repeat(3, 0), 0.5, engine="reference")._repr_png_() is not None
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYOPENCL_CTX", "0")
     names = {}
@@ -25,7 +26,8 @@ def test_examples(tmp_path, monkeypatch):
             continue
         if "TEST_PACKAGES" in os.environ:
             prepare(tmp_path)
-        exec(compile(example, "README.md", "exec"), names)
+        lines = [line for line in example.split("\n") if has_png or ".png" not in line]
+        exec(compile("\n".join(lines), "README.md", "exec"), names)
         ran += 1
     assert ran >= 3 and (tmp_path / "ball.ply").stat().st_size > 10000
     assert [len(mesh.faces) > 0 for mesh in names["meshes"]] == [True] * 3

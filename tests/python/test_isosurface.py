@@ -27,6 +27,8 @@ def test_closed(ball):
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     assert mesh.hash == tetracubes.isosurface(half, 0.0, closed=True, engine="reference").hash
     assert len(tetracubes.isosurface(half, 0.0).faces) < len(mesh.faces)
+    with tetracubes.Grid(half) as grid:
+        assert grid.count(0.0, closed=True).faces == len(mesh.faces) > grid.count(0.0).faces
 
 
 @pytest.mark.parametrize("ending", ["ply", "vtp", "stl", "obj"])
@@ -111,6 +113,8 @@ def test_carried_values_are_written(surface, tmp_path):
 def test_save_fails(surface, tmp_path):
     with pytest.raises(ValueError, match="ply"):
         surface().save(tmp_path / "a.gltf")
+    with pytest.raises(ValueError, match="name the format by format=$"):
+        surface().save(tmp_path / "a")
     with pytest.raises(OSError, match="nowhere"):
         surface().save(tmp_path / "nowhere" / "a.ply")
     surface().save(tmp_path / "a.dat", format="ply")
@@ -136,6 +140,10 @@ def test_grid(ball):
         meshes = [grid.extract(level) for level in (-1, 0, 1)]
         counts = grid.count(0)
         assert grid.count(0, method="hybrid").faces < counts.faces
+        assert grid.count(0, normals=True).mesh_bytes == counts.mesh_bytes + 12 * counts.vertices
+    with tetracubes.Grid(ball[:14], engine="reference") as grid:
+        closed, sizes = grid.extract(0, closed=True), grid.count(0, closed=True)
+        assert sizes[:2] == (len(closed.vertices), len(closed.faces)) and sizes.faces > grid.count(0).faces
     sizes = [len(mesh.faces) for mesh in meshes]
     assert sizes == sorted(sizes, reverse=True)
     assert counts == (len(meshes[1].vertices), sizes[1], meshes[1].active_cells, counts.mesh_bytes)

@@ -132,9 +132,9 @@ static void expect_fields(const char *what, const dataset_block *b, uint64_t poi
     }
     EXPECT(b->blanked_points && b->blanked_cells, "%s: nothing is blanked", what);
     for (uint64_t i = 0; i < points && b->blanked_points; i++)
-        EXPECT(b->blanked_points[i] == (i == 5), "%s: point %" PRIu64 " blanked %d", what, i, b->blanked_points[i]);
+        EXPECT(!b->blanked_points[i] == (i != 5), "%s: point %" PRIu64 " blanked %d", what, i, b->blanked_points[i]);
     for (uint64_t i = 0; i < cells && b->blanked_cells; i++)
-        EXPECT(b->blanked_cells[i] == (i == 0 || i == 2), "%s: cell %" PRIu64 " blanked %d", what, i,
+        EXPECT(!b->blanked_cells[i] == (i != 0 && i != 2), "%s: cell %" PRIu64 " blanked %d", what, i,
                b->blanked_cells[i]);
 }
 

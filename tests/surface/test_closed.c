@@ -3,7 +3,7 @@
  * on a border; the volume enclosed is that of the part of the tetrahedra that is inside, which is computed from them
  *
  * All patterns of a cube, and random grids of all methods: uniform, mirrored and curvilinear, some with missing
- * samples.
+ * samples. So are grids of tetrahedra that these are cut into, which begin with the open surface.
  *
  * Usage: test_closed [COUNT]: so many random grids in place of 3,000
  */
@@ -128,6 +128,62 @@ static void grid_try(tc_context *context, const tc_grid_options *g, const float 
     tc_grid_destroy(grid);
 }
 
+/* The open surface comes first, with the same numbers. */
+static int begins_with(const tc_mesh_data *whole, const tc_mesh_data *open) {
+    int same = open->vertex_count <= whole->vertex_count && open->triangle_count <= whole->triangle_count;
+    for (uint64_t n = 0; n < 3 * open->vertex_count && same; n++) same = open->positions[n] == whole->positions[n];
+    for (uint64_t n = 0; n < 3 * open->triangle_count && same; n++) same = open->triangles[n] == whole->triangles[n];
+    return same;
+}
+
+/* Points that are carried are where the vertices are, but for rounding. */
+static int carried_are_positions(const float *carried, const tc_mesh_data *m) {
+    int same = 1;
+    for (uint64_t n = 0; n < 3 * m->vertex_count && same; n++)
+        same = fabs((double)carried[n] - (double)m->positions[n]) < 1e-5;
+    return same;
+}
+
+/* The same cut into tetrahedra: closed, counted, with points carried to where they are. */
+static void complex_try(tc_context *context, const tc_grid_options *g, const float *points, int number) {
+    tc_tetrahedra_grid_options o;
+    tc_tetrahedra t = {.struct_size = sizeof t};
+    tc_grid *grid = NULL;
+    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_mesh_data m[2] = {{.struct_size = sizeof m[0]}, {.struct_size = sizeof m[0]}};
+    tc_counts counts = {.struct_size = sizeof counts};
+    tc_extract_options how;
+    float *carried = NULL;
+    tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 3, .values = points};
+    tc_extract_options_init(&how);
+    how.isovalue = 0.5;
+    tc_tetrahedra_grid_options_init(&o);
+    bool made = !tc_tetrahedralize_grid(g, &t);
+    o.point_count = (uint64_t)(g->dims[0] * g->dims[1] * g->dims[2]);
+    o.points = points, o.type = TC_F32, o.samples = g->samples;
+    o.tetrahedron_count = t.tetrahedron_count, o.tetrahedra = t.tetrahedra;
+    made = made && !tc_tetrahedra_grid_create(context, &o, &grid);
+    for (how.closed = 0; how.closed < 2 && made; how.closed++)
+        made = !tc_extract(grid, &how, &meshes[how.closed]) && !tc_mesh_get(meshes[how.closed], &m[how.closed]);
+    how.closed = 1;
+    made = made && !tc_count(grid, &how, &counts) && (carried = malloc(12 * m[1].vertex_count + 1));
+    made = made && !tc_interpolate_field(grid, &how, &field, carried, 3 * m[1].vertex_count);
+    EXPECT(made, "tetrahedra %d: %s", number, tc_message());
+    EXPECT(!made || (counts.vertex_count == m[1].vertex_count && counts.triangle_count == m[1].triangle_count),
+           "tetrahedra %d: counts differ", number);
+    EXPECT(!made || carried_are_positions(carried, &m[1]),
+           "tetrahedra %d: points that are carried are not the vertices", number);
+    EXPECT(!made || begins_with(&m[1], &m[0]), "tetrahedra %d: the open surface is another", number);
+    EXPECT(is_closed(&m[1], m[1].triangle_count), "tetrahedra %d: not closed", number);
+    const double inside = inside_of_tetrahedra(g, points, how.isovalue);
+    EXPECT(fabs(enclosed(&m[1]) - inside) < 1e-3, "tetrahedra %d: volume %g, of the tetrahedra %g", number,
+           enclosed(&m[1]), inside);
+    free(carried);
+    for (int n = 0; n < 2; n++) tc_mesh_destroy(meshes[n]);
+    tc_grid_destroy(grid);
+    tc_tetrahedra_release(&t);
+}
+
 /* Patterns of a cube in both parities, then random grids. */
 static void number_try(tc_context *context, int number) {
     static float samples[SAMPLES_MOST], points[3 * SAMPLES_MOST];
@@ -152,6 +208,7 @@ static void number_try(tc_context *context, int number) {
     if (mirrored && !moved) g.matrix[0][0] = -1, g.matrix[0][3] = -g.matrix[0][3];
     if (!is_pattern && number % 3 == 0) g.has_nodata = 1, g.nodata = 0.25;
     for (int m = 0; tc_method_name((tc_method)m); m++) grid_try(context, &g, points, (tc_method)m, number);
+    complex_try(context, &g, points, number);
 }
 
 int main(int argc, char **argv) {

@@ -394,7 +394,6 @@ static void run(uint64_t seed) {
     how.closed = random_below(4) == 0;
     expect_joined(contexts[0], &grid, &how, seed);
     expect_streamed(contexts[0], &grid, &how, seed);
-    how.closed = 0;
     for (int n = 1; n < ENGINES && runs_on_device(&grid, &how, kind); n++)
         if (contexts[n]) {
             expect_joined(contexts[n], &grid, &how, seed);

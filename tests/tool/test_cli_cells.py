@@ -109,6 +109,24 @@ class Unstructured(GridCase):
             self.assertRegex(told, "kernels do not keep cells whole")
             self.assertRegex(told, "reference engine takes over")
 
+    def test_closed(self):
+        """By method tetra, which is the reference engine's: the inside of the surface, and with --iso below all the grid."""
+        grid = self.write_hexahedra("a.vtu")
+        how = ["--field", "bump", "--check", "--closed"]
+        for iso in ("0.5", "3", "-1000"):
+            closed, = self.report("extract", grid, *how, "--iso", iso, "--engine", "reference")["surfaces"]
+            for key in ("boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges"):
+                self.assertEqual(closed[key], 0, (iso, key))
+            self.assertEqual(closed["euler_characteristic"], 2, iso)
+        self.assertAlmostEqual(closed["volume"], 448, delta=25)  # as many cells, each a little out of shape
+        for method, says in (("hybrid", "unstructured.*tetra only"), ("snap", "unstructured.*snap")):
+            self.refuses(2, "extract", grid, *how, "--iso", "0.5", "--method", method, says=says)
+        if tool_case.HAS_DEVICE:
+            self.refuses(1, "extract", grid, *how, "--iso", "0.5", says="reference engine for grids of tetrahedra")
+            told = self.expect(0, "extract", grid, *how, "--iso", "0.5", "--engine", "auto")
+            self.assertRegex(told.stderr, "reference engine takes over")
+            self.assertIn("closed: 0 boundary edges", told.stdout)
+
     def test_polyhedra_are_not_kept_whole(self):
         faces = [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]]
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]

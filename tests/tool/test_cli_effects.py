@@ -26,14 +26,17 @@ VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "-
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
           "--method": ["snap"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
           "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"],
-          "--snap": ["0.3"]}
+          "--snap": ["0.3"], "--preview": ["a.png"], "--view": ["top"], "--preview-size": ["40,30"], "--iso": ["100"]}
 REFERENCE = ["--engine", "reference"]
 
 # Per case of the source: command, operand, more arguments. That of the option itself is added.
 CASES = {
     "has_no_mesh": ("extract", "u8.nrrd", ["--iso", "100", "--count"]),
     "has_no_output": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
-    "has_no_output_nor_reference": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_file": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_file_nor_reference": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_preview": ("info", "u8.nrrd", []),
+    "has_only_cells": ("info", "cells.vtu", []),
     "file_has_no_normals": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.stl"]),
     "has_no_main_engine": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_device": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
@@ -81,6 +84,8 @@ class Effects(GridCase):
         before = set(self.files())
         for commands, option, _, case, verdict in rows:
             command, operand, more = OPEN[commands] if case == "has_no_field" else CASES[case]
+            if command == "info" and commands == "COMMAND_EXTRACT":
+                command, more = "extract", ["--iso", "100", *REFERENCE]
             words = [command, *([operand] if operand else []), *more, option, *VALUES.get(option, [])]
             with self.subTest(words=words):
                 if verdict == "REFUSED":

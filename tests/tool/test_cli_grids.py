@@ -194,7 +194,7 @@ class Structured(GridCase):
             self.refuses(2, "extract", volume, "--iso", "1", "--method", "snap", "--snap", wrong, says="--snap")
 
     def test_closed(self):
-        """Surface and complement fill the grid; kernels do not close, and --engine auto goes on by the reference."""
+        """Surface and complement fill the grid; kernels close as the reference does."""
         volume = self.generate("gyroid", "g.nrrd", "20,21,22", "f32")
         arguments = ["extract", volume, "--iso", "127.5", "--check", "--closed", "--engine"]
         wanted = {}
@@ -208,9 +208,9 @@ class Structured(GridCase):
         whole = self.report("extract", volume, "--iso", "-1000", "--check", "--closed", "--engine", "reference")
         self.assertAlmostEqual(whole["surfaces"][0]["volume"], 8, places=4)
         if tool_case.HAS_DEVICE:
-            self.refuses(1, *arguments, "opencl", says="kernels do not close surfaces: use the reference engine")
-            told = self.expect(0, *arguments, "auto", says="the reference engine takes over")
+            told = self.expect(0, *arguments, "opencl", "--verify")
             self.assertIn("closed: 0 boundary edges", told.stdout)
+            self.assertIn("same bytes as the reference", told.stdout)
 
     def test_parity_goes_by_extent(self):
         self.needs_xml()

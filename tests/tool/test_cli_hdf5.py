@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """test_cli_hdf5.py TOOL [reference] - datasets that h5py (Debian: python3-h5py) has written: surfaces of the same arrays"""
+import gzip
 import itertools
 import json
 import os
@@ -91,10 +92,23 @@ class Datasets(GridCase):
         self.assertEqual((facts["format"], facts["spacing"]), ("HDF5", [0.5, 2, 3]))
         self.refuses(2, "extract", self.path("a.h5:/a"), "--iso", "1", *REFERENCE, "-o", self.path("a.h5"), "--format",
                      "ply", says="read as part of it")
-        with open(self.path("a.h5"), "rb") as file:
-            done = tool_case.subprocess.run([tool_case.TOOL, "info", "-"], stdin=file, stderr=-1, timeout=60)
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"give it as a file", done.stderr)
+
+    def test_streams(self):
+        """On standard input, and packed as a whole: libhdf5 reads memory."""
+        for form in ({}, dict(chunks=(2, 3, 4), compression="gzip")):
+            with h5py.File(self.path("a.h5"), "w") as file:
+                file.create_dataset("a", data=self.array, **form)
+                file.create_dataset("b", data=self.array * 0, **form)
+            with open(self.path("a.h5"), "rb") as file, gzip.open(self.path("a.h5.gz"), "wb") as packed:
+                packed.write(file.read())
+            self.assertEqual(self.surface("a.h5.gz:/a")["hash"], self.wanted)
+            for name in ("a.h5", "a.h5.gz"):
+                with open(self.path(name), "rb") as file:
+                    done = tool_case.subprocess.run(
+                        [tool_case.TOOL, "extract", "/dev/stdin:/a", "--iso", "50.5", "--json", *REFERENCE], stdin=file, stdout=-1,
+                        stderr=-1, timeout=60)
+                self.assertEqual((done.returncode, done.stderr), (0, b""))
+                self.assertEqual(json.loads(done.stdout)["surfaces"][0]["hash"], self.wanted)
 
 
 if __name__ == "__main__":

@@ -148,11 +148,20 @@ class Stream(GridCase):
             self.assertTrue(running.returncode == 1 and "cancelled" in text or running.returncode < 0, text)
             self.assertEqual(self.files(), ["n.nrrd"])
 
+    def test_separate_blocks(self):
+        """Of one block, too, the file has the block's number."""
+        volume = self.generate("sphere", "s.nrrd", "20,20,20")
+        said = self.expect(0, "extract", volume, "--iso", "127.5", "--engine", "reference", "--stream", "--blocks", "separate",
+                           "-o", self.path("a.ply")).stdout
+        self.assertRegex(said, r"written +\S+a_b0\.ply\n")
+        self.assertEqual(self.files(), ["a_b0.ply", "s.nrrd"])
+
     def test_refused(self):
         volume = self.generate("sphere", "s.nrrd", "20,20,20")
         words = ["extract", volume, "--iso", "127.5", "--engine", "reference", "--stream"]
         for more, says in ((["--check"], "--check needs the whole mesh"),
                            (["--drop-degenerate"], "--drop-degenerate needs"),
+                           (["--preview", self.path("a.png")], "--preview (draws the whole mesh|needs libpng)"),
                            (["--roi", ":,:,2:9"], "take a part"),
                            (["-o", self.path("a.obj")], "write ply, vtp or stl"),
                            (["-o", self.path("a.ply"), "--soup"], "--soup"),

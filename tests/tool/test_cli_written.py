@@ -10,6 +10,7 @@ import itertools
 import json
 import math
 import os
+import re
 import struct
 import sys
 import zipfile
@@ -30,7 +31,7 @@ def module(name):
         return None
 
 
-numpy, trimesh, pygltflib = map(module, ("numpy", "trimesh", "pygltflib"))
+numpy, trimesh, pygltflib, h5py = map(module, ("numpy", "trimesh", "pygltflib", "h5py"))
 
 
 class Written(GridCase):
@@ -119,12 +120,33 @@ class Written(GridCase):
                     self.assertEqual((archive[name].dtype.str, archive[name].shape), (kind, shape))
                     self.assertEqual(archive[name].ravel().tolist(), list(values))
 
+    def has_vtkhdf(self):
+        return "VTKHDF" in self.expect(0, "--version").stdout.split("writes:")[1]
+
+    def test_vtkhdf(self):
+        if not h5py or not self.has_vtkhdf():
+            self.skipTest("no h5py or built without libhdf5")
+        for iso, more in (("127.5", []), ("127.5", ["--soup", "--normals"]), ("300", ["--normals"])):
+            points, faces, _ = read_ply(self.written("ply", *more, iso=iso))
+            with h5py.File(self.written("vtkhdf", *more, iso=iso)) as file:
+                root = file["VTKHDF"]
+                self.assertEqual((root.attrs["Type"], list(root.attrs["Version"])), (b"PolyData", [2, 0]))
+                self.assertEqual([tuple(p) for p in root["Points"][()].tolist()], points)
+                corners = root["Polygons/Connectivity"][()]
+                self.assertEqual([tuple(t) for t in corners.reshape(-1, 3).tolist()], faces)
+                self.assertEqual(root["Polygons/Offsets"][()].tolist(), list(range(0, 3 * len(faces) + 1, 3)))
+                self.assertEqual(corners.dtype, "<i4")
+                counts = [root[name][0] for name in ("NumberOfPoints", "Polygons/NumberOfCells",
+                                                     "Polygons/NumberOfConnectivityIds", "Lines/NumberOfCells")]
+                self.assertEqual(counts, [len(points), len(faces), 3 * len(faces), 0])
+                self.assertEqual("Normals" in root["PointData"], "--normals" in more and bool(faces))
+
     def test_empty_npz(self):
         arrays = npz_arrays(self.written("npz", iso="300"))
         self.assertEqual({name: shape for name, (_, shape, _) in arrays.items()}, {"vertices": (0, 3), "faces": (0, 3)})
 
     def test_stream(self):
-        for ending in ("glb", "npz", "off"):
+        for ending in ("glb", "npz", "off", *(["vtkhdf"] if self.has_vtkhdf() else [])):
             with open(self.written(ending), "rb") as file:
                 good = file.read()
             with open(self.path("stream"), "wb") as out:
@@ -133,9 +155,73 @@ class Written(GridCase):
             with open(self.path("stream"), "rb") as file:
                 self.assertEqual((done.returncode, file.read()), (0, good))
 
+    def named(self, header):
+        """A NRRD file of 4 x 4 x 4 samples with these lines in its header."""
+        samples = bytes(n * 37 % 251 for n in range(64))
+        return self.write("named.nrrd", f"NRRD0005\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n{header}\n"
+                          .encode() + samples)
+
+    def notes(self, source, *more):
+        """What each format says of space and units."""
+        found = {}
+        for ending in ("ply", "stl", "obj", "vtp", "glb", "off", "npz"):
+            with open(self.written(ending, *more, source=source, iso="127.5"), "rb") as file:
+                content = file.read()
+            text = content.decode("latin-1")
+            if ending == "glb":
+                notes = glb_parts(self.path("out.glb"))[0]["asset"].get("extras", {})
+            elif ending == "vtp":
+                arrays = re.findall(r'<Array type="String" Name="(\w+)" NumberOfTuples="1" format="ascii">([\d ]+)<', text)
+                notes = {name: "".join(map(chr, map(int, codes.split()[:-1]))) for name, codes in arrays}
+            elif ending == "stl":
+                notes = dict(note.split("=") for note in text[:80].rstrip("\0").split() if "=" in note)
+            else:
+                notes = dict(re.findall(r"^(?:comment|#) (\w+)=(\S+)$", text[:400], re.M))
+            found[ending] = notes
+        self.assertEqual((found.pop("off"), found.pop("npz")), ({}, {}))
+        self.assertTrue(all(notes == found["ply"] for notes in found.values()), found)
+        return found["ply"]
+
+    def test_spaces_and_units(self):
+        """As 3D Slicer writes and reads the space; where the input says nothing, nothing is said."""
+        directions = "space directions: (-1,0,0) (0,-1,0) (0,0,1)\nspace origin: (0,0,0)\n"
+        for space, is_in in (("left-posterior-superior", "LPS"), ("right-anterior-superior", "RAS"), ("LAS", "LAS")):
+            self.assertEqual(self.notes(self.named(f"space: {space}\n{directions}")), {"SPACE": is_in})
+        millimetres = f'space: LPS\n{directions}space units: "mm" "mm" "mm"\n'
+        self.assertEqual(self.notes(self.named(millimetres)), {"SPACE": "LPS", "UNITS": "mm"})
+        self.assertEqual(self.notes(self.named(millimetres), "--spacing", "2,2,2"), {"SPACE": "LPS"})
+        self.assertEqual(self.report("info", self.path("named.nrrd"))["units"], "mm")
+        self.assertIn("left-posterior-superior (LPS), in um",
+                      self.expect(0, "info", self.named("space: left-posterior-superior\n" + directions +
+                                                        'units: "um" "um" "um"\n')).stdout)
+        for silent in ("", "space dimension: 3\n" + directions, 'units: "mm" "um" "mm"\n', "units: mm\n",
+                       'units: "a b" "a b" "a b"\n', 'units: "<&" "<&" "<&"\n', f'units: "{"m" * 40}"\n'):
+            self.assertEqual(self.notes(self.named(silent)), {}, silent)
+        meta = self.write("a.mha", b"NDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nAnatomicalOrientation = RAI\n"
+                          b"DistanceUnits = mm\nElementDataFile = LOCAL\n" + bytes(n * 37 % 251 for n in range(64)))
+        self.assertEqual(self.notes(meta), {"SPACE": "LPS", "UNITS": "mm"})
+        self.assertEqual(self.notes(self.write_nifti("a.nii", 3, 1)), {"SPACE": "RAS", "UNITS": "um"})
+        self.assertEqual(self.notes(self.write_nifti("a.nii", 0, 0)), {})
+        self.expect(0, "tetrahedralize", meta, "--quiet", "-o", self.path("a.vtu"))
+        with open(self.path("a.vtu"), "rb") as file:
+            self.assertIn(b'Name="SPACE" NumberOfTuples="1" format="ascii">76 80 83 0<', file.read())
+
+    def write_nifti(self, name, units, code):
+        header = bytearray(352)
+        struct.pack_into("<i", header, 0, 348)
+        struct.pack_into("<8h", header, 40, 3, 4, 4, 4, 1, 1, 1, 1)
+        struct.pack_into("<2h", header, 70, 2, 8)
+        struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+        struct.pack_into("<f", header, 108, 352)
+        header[123] = units
+        struct.pack_into("<2h", header, 252, 0, code)
+        struct.pack_into("<12f", header, 280, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
+        header[344:348] = b"n+1\0"
+        return self.write(name, bytes(header) + bytes(n * 37 % 251 for n in range(64)))
+
     def test_what_formats_lack(self):
         self.refuses(2, "extract", self.volume, "--iso", "1", *REFERENCE, "-o", self.path("a.off"), "--carry", "x",
-                     says="ply, vtp or npz")
+                     says="ply, vtp(,| or) npz")
         for ending in ("off",):
             said = self.expect(0, "extract", self.volume, "--iso", "127.5", *REFERENCE, "--normals", "-o",
                                self.path("a." + ending)).stderr

@@ -132,17 +132,22 @@ static void expect_same(const char *ending, const tc_mesh_data *mesh, const cut 
 }
 
 static void test_same(void) {
+#ifdef HAVE_MESH_WRITE_HDF5
+    static const char *const endings[] = {"ply", "vtp", "stl", "vtkhdf"};
+#else
     static const char *const endings[] = {"ply", "vtp", "stl"};
+#endif
+    const int count = sizeof endings / sizeof *endings;
     for (int n = 0; n < 48; n++) {
         tc_mesh_data mesh;
         const cut c = mesh_make(&mesh, n & 1, n >> 1 & 1);
-        for (int e = 0; e < 3; e++) expect_same(endings[e], &mesh, &c, e < 2 && n & 4);
+        for (int e = 0; e < count; e++) expect_same(endings[e], &mesh, &c, e != 2 && n & 4);
     }
     tc_mesh_data mesh;
     cut c = mesh_make(&mesh, 0, 0);
     memset(&c, 0, sizeof c);
     mesh.vertex_count = mesh.triangle_count = 0;
-    for (int e = 0; e < 3; e++) expect_same(endings[e], &mesh, &c, 0);
+    for (int e = 0; e < count; e++) expect_same(endings[e], &mesh, &c, 0);
 }
 
 static int count_files(void) {
@@ -155,7 +160,7 @@ static int count_files(void) {
 
 static void test_refused(void) {
     const mesh_write_options soup = {.soup = 1};
-    EXPECT(mesh_file_check("a.obj", NULL) == STATUS_USAGE && strstr(failure_text(), "ply, vtp or stl"), "obj: %s",
+    EXPECT(mesh_file_check("a.obj", NULL) == STATUS_USAGE && strstr(failure_text(), "ply, vtp"), "obj: %s",
            failure_text());
     EXPECT(mesh_file_check("a.ply", &soup) == STATUS_USAGE, "soup is taken");
     EXPECT(mesh_file_check("/dev/null", &(mesh_write_options){.format = "ply"}) == STATUS_USAGE, "a device is taken");
@@ -188,6 +193,9 @@ static void test_ended(void) {
 int main(int argc, char **argv) {
     random_state = argc > 1 ? strtoull(argv[1], NULL, 10) : 1;
     folder_make("pieces");
+#ifdef HAVE_MESH_WRITE_HDF5
+    mesh_write_add_hdf5();
+#endif
     test_same();
     test_refused();
     test_ended();

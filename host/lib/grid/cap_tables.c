@@ -54,8 +54,7 @@ static unsigned polygon_cut(const uint8_t *corners, unsigned count, const uint8_
     for (unsigned n = 0; n < count; n++) {
         const unsigned a = corners[n], b = corners[(n + 1) % count];
         if (a == apex) found = out->count;
-        if (signs[a] == INSIDE) vertex_add(out, CUBE_BORDER + a);
-        if (signs[a] == ZERO) vertex_add(out, CUBE_EDGES + a);
+        if (signs[a] != OUTSIDE) vertex_add(out, CUBE_EDGES + a);
         if (signs[a] + signs[b] == INSIDE && signs[a] != signs[b]) vertex_add(out, cube_edge_index(a, b));
     }
     return found;
@@ -112,7 +111,7 @@ static void face_of_cube(cap_case *c, unsigned parity, unsigned face, const uint
         for (unsigned n = 1; n < 4; n += 2) {
             const uint8_t corners[3] = {ring[n], ring[(n + 1) % 4], ring[n - 1]};
             p.count = 0;
-            vertex_add(&p, CUBE_BORDER + corners[0]);
+            vertex_add(&p, CUBE_EDGES + corners[0]);
             vertex_add(&p, cube_edge_index(corners[0], corners[1]));
             vertex_add(&p, cube_edge_index(corners[2], corners[0]));
             polygon_fan(c, &p, 0, mirrored);

@@ -73,6 +73,7 @@ void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batc
         gather_f32(grid->type, grid->samples, 1, 0, batch->high, count, b32);
         crossings_f32(a32, b32, (float)isovalue, count, t);
     }
+    for (uint32_t n = 0; n < count && batch->has_places; n++) t[n] = batch->low[n] == batch->high[n] ? 0 : t[n];
     for (int n = 0; n < components; n++) {
         gather_f64(f->type, f->values, components, n, batch->low, count, a);
         gather_f64(f->type, f->values, components, n, batch->high, count, b);

@@ -23,6 +23,7 @@ enum { BATCH_EDGES = 1024 };
 typedef struct edge_batch {
     uint64_t vertex;
     uint32_t count;
+    bool has_places; /* some of the edges are a sample, both ends: the vertex is in its place */
     int64_t low[BATCH_EDGES], high[BATCH_EDGES]; /* the samples at the ends, the lower number first */
 } edge_batch;
 

@@ -55,7 +55,7 @@ uint64_t grid_layer_bricks(const tc_grid *grid) {
 }
 
 tc_status seam_numbers_check(const tc_grid *grid, uint64_t vertex_count) {
-    const uint64_t brick_vertices = 64 * BRICK_WORDS * (VERTEX_BORDER + 1), bricks = grid_layer_bricks(grid);
+    const uint64_t brick_vertices = 64 * BRICK_WORDS * VERTEX_TYPES_MOST, bricks = grid_layer_bricks(grid);
     const uint64_t behind = grid->seams.next ? grid->seams.next[bricks - 1] + brick_vertices : 0;
     if (vertex_count + behind <= UINT32_MAX) return TC_OK;
     return (tc_status)fail(

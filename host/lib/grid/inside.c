@@ -20,27 +20,30 @@ static uint64_t bits_of_f64(double value) {
 
 static inside_range integer_range(double isovalue, double least, double most) {
     double threshold = ceil(isovalue);
-    if (threshold <= least || threshold > most) return (inside_range){.uniform = true};
+    const bool all = threshold <= least;
+    if (threshold > most) return (inside_range){.uniform = true};
+    if (all) threshold = least;
     uint64_t flip = least < 0 ? (uint64_t)(int64_t)least : 0; /* the sign bit, and above it what keys do not have */
     uint32_t key = (uint32_t)((uint64_t)(int64_t)threshold - (uint64_t)(int64_t)least);
-    return (inside_range){false, (uint64_t)(int64_t)threshold, (uint64_t)(most - threshold), flip, key, key};
+    return (inside_range){all, all, (uint64_t)(int64_t)threshold, (uint64_t)(most - threshold), flip, key, key};
 }
 
 static inside_range f32_range(double isovalue) {
     float threshold = (float)isovalue;
     if ((double)threshold < isovalue) threshold = nextafterf(threshold, INFINITY);
-    if (threshold <= -FLT_MAX || threshold > FLT_MAX) return (inside_range){.uniform = true};
+    const bool all = threshold <= -FLT_MAX;
+    if (threshold > FLT_MAX) return (inside_range){.uniform = true};
     uint32_t bits = bits_of_f32(threshold), sign = 0x80000000, key = threshold > 0 ? bits | sign : ~(bits | sign);
-    if (threshold > 0) return (inside_range){false, bits, 0x7fffffff - bits, 0, key, key};
-    return (inside_range){false, 0, sign | bits, 0, key, key};
+    if (threshold > 0) return (inside_range){false, false, bits, 0x7fffffff - bits, 0, key, key};
+    return (inside_range){all, all, 0, sign | bits, 0, key, key};
 }
 
 static inside_range f64_range(double isovalue) {
-    if (isovalue <= -DBL_MAX) return (inside_range){.uniform = true};
+    const bool all = isovalue <= -DBL_MAX;
     uint64_t bits = bits_of_f64(isovalue), sign = UINT64_C(1) << 63, key = isovalue > 0 ? bits | sign : ~(bits | sign);
     uint32_t below = (uint32_t)(key >> 32), from = below + ((uint32_t)key != 0);
-    if (isovalue > 0) return (inside_range){false, bits, INT64_MAX - bits, 0, from, below};
-    return (inside_range){false, 0, sign | bits, 0, from, below};
+    if (isovalue > 0) return (inside_range){false, false, bits, INT64_MAX - bits, 0, from, below};
+    return (inside_range){all, all, 0, sign | bits, 0, from, below};
 }
 
 inside_range inside_range_of(tc_type type, double isovalue) {

@@ -15,13 +15,20 @@
 #include <stdbool.h>
 
 typedef struct inside_range {
-    bool uniform; /* all values of the type are on the same side: no surface */
+    bool uniform; /* all values of the type are on the same side: no surface, but for a closed one where that is inside
+                   */
+    bool inside;  /* of uniform: all are inside */
     uint64_t low, span;
     uint64_t key_flip;                /* for integers: see slab.h */
     uint32_t key_inside, key_outside; /* ranges of bricks compare with them: see slab.h */
 } inside_range;
 
 inside_range inside_range_of(tc_type type, double isovalue);
+
+/* False where no samples of the type have a surface. */
+static inline bool inside_has_surface(inside_range inside, bool closed) {
+    return !inside.uniform || (closed && inside.inside);
+}
 
 /* The same for the kernels; has_nodata is 0. */
 isovalue_test isovalue_test_of(inside_range inside, double isovalue);

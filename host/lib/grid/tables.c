@@ -53,8 +53,7 @@ uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b) {
 owned_edge cube_vertex(unsigned index) {
     if (index < CUBE_EDGES) return cube_edges[index];
     const unsigned corner = (index - CUBE_EDGES) & 7;
-    const uint8_t type = index < CUBE_BORDER ? VERTEX_SAMPLE : VERTEX_BORDER;
-    return (owned_edge){corner & 1, corner >> 1 & 1, (uint8_t)(corner >> 2), type};
+    return (owned_edge){corner & 1, corner >> 1 & 1, (uint8_t)(corner >> 2), VERTEX_SAMPLE};
 }
 
 /* On an edge whose ends differ; one that ends in a corner of `zeros` has its vertex there. */

@@ -26,12 +26,9 @@
 
 enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
 
-/* Vertices that a sample owns, in their order in a mesh: on its six edges, and the one in its own place (method snap).
- */
+/* Vertices that a sample owns, in their order in a mesh: on its six edges, and the one in its own place, where the
+ * surface goes through the sample (method snap), or ends at the border inside it (closed surfaces). */
 enum vertex_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ, VERTEX_SAMPLE, VERTEX_TYPES_MOST };
-
-/* Of closed surfaces, behind all of these: an inside sample of the border, at its own place. */
-enum { VERTEX_BORDER = VERTEX_TYPES_MOST };
 
 extern const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4]; /* [parity][tetrahedron][vertex] */
 extern const uint8_t tetrahedron_edges[6][2];                        /* [edge][end] */
@@ -58,9 +55,7 @@ extern const owned_edge cube_edges[CUBE_EDGES];
 /* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
-/* The place of a vertex of a cube: an index in cube_edges, CUBE_EDGES + c for a surface through corner c, or
- * CUBE_BORDER + c for corner c as a sample of the border. */
-enum { CUBE_BORDER = CUBE_EDGES + 8 };
+/* The place of a vertex of a cube: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
 owned_edge cube_vertex(unsigned index);
 
 /* What all tetrahedra of a cube emit, derived from the tables above; edges are indices as cube_vertex has them. */

@@ -63,7 +63,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
-    device_buffer cases[METHOD_COUNT][2]; /* table of each method; [1] for mirrored grids */
+    device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */
 } workspace;
 
 struct tc_context {
@@ -85,7 +85,7 @@ struct tc_context {
     bool variant_changed;                  /* the other variant was taken within a call, which starts again */
     bool vetted[KERNEL_KINDS + 1];         /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *workspace_grid;  /* the grid that the workspace was last used for */
-    const void *workspace_plan;            /* of a structured grid: its plan, of which it has two */
+    const void *workspace_plan;            /* of a structured grid: its plan, of which it has several */
     bool trial_passed[KERNEL_KINDS];       /* kernels that were tried (trial.c) */
     const struct tc_grid *counted_grid;    /* whose counts the workspace holds since tc_count; NULL: none */
     const struct tc_grid *classified_grid; /* whose surface it holds, counted or extracted; NULL: none */

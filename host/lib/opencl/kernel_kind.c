@@ -6,17 +6,18 @@ _Static_assert(SAMPLE_TYPE_COUNT == 8, "kinds are numbered by eight types, here 
 
 unsigned kind_number(kernel_kind k) {
     const unsigned shape = (k.grid * METHOD_COUNT + (unsigned)k.method) * 8 + (unsigned)k.type;
-    return (shape << CHANNEL_COUNT | k.made) * 4 + 2u * k.missing + k.emits;
+    return (shape << CHANNEL_COUNT | k.made) * 4 + 2u * k.missing + k.emits + (k.closed ? KERNEL_KINDS / 2 : 0);
 }
 
 kernel_kind kind_of_number(unsigned n) {
-    const unsigned shape = n >> 2 >> CHANNEL_COUNT;
+    const unsigned shape = n % (KERNEL_KINDS / 2) >> 2 >> CHANNEL_COUNT;
     return (kernel_kind){.grid = shape / 8 / METHOD_COUNT,
                          .method = (tc_method)(shape / 8 % METHOD_COUNT),
                          .type = (tc_type)(shape % 8),
                          .made = n >> 2 & ((1u << CHANNEL_COUNT) - 1),
                          .missing = n >> 1 & 1,
-                         .emits = n & 1};
+                         .emits = n & 1,
+                         .closed = n >= KERNEL_KINDS / 2};
 }
 
 kernel_kind kind_of_classify(kernel_kind kind) {

@@ -16,11 +16,12 @@ typedef struct kernel_kind {
     tc_method method;
     channel_set made;    /* by kernel 2 */
     bool missing, emits; /* emits: kernel 2 too */
+    bool closed;         /* of structured grids: surfaces are closed */
 } kernel_kind;
 
-enum { KIND_COMPLEX = 3, KERNEL_KINDS = (4 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
+enum { KIND_COMPLEX = 3, KERNEL_KINDS = (2 * 4 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
 
-/* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing. */
+/* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing; in its upper half: closed. */
 unsigned kind_number(kernel_kind kind);
 kernel_kind kind_of_number(unsigned number);
 

@@ -28,9 +28,9 @@ static unsigned floating_bits(tc_type type) { return type_is_real(type) ? 8 * (u
 
 /* Kernel 1 sees samples as bit patterns, so types of one width share it. */
 static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DMETHOD=%s",
+    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DMETHOD=%s%s",
              type_texts[kind.type].bits, floating_bits(kind.type), kind.missing, context->launch.work_items,
-             tc_method_name(kind.method));
+             tc_method_name(kind.method), kind.closed ? " -DCLOSED=1" : "");
 }
 
 static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {
@@ -52,9 +52,10 @@ static void complex_options_write(const tc_context *context, kernel_kind kind, c
     snprintf(out, bytes, "%s -DCOMPLEX=1", common);
 }
 
-/* A definition that no file looks at tells the program from the one of kernel 2. */
+/* A definition that no file looks at tells the program from the one of kernel 2. Closed surfaces need no other one. */
 static void snap_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
     char common[PROGRAM_OPTIONS_BYTES - 16];
+    kind.closed = false;
     emit_options_write(context, kind, 0, common, sizeof common);
     snprintf(out, bytes, "%s -DSNAP=1", common);
 }

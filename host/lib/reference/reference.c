@@ -4,8 +4,9 @@
  *
  * Canonical order: bricks of 64 x 8 x 4 samples in x, y, z order; in a brick, rows of 64 samples in y, z order; in a
  * row, vertices by type, then x; triangles by x, then tetrahedron, then table order. In the hybrid method edges
- * are those of cubes, and triangles come from the table of a cube. Of closed surfaces a row has, behind its other
- * vertices, those at samples of the border by x, and behind its triangles those in the border by x, then face.
+ * are those of cubes, and triangles come from the table of a cube. The last type of vertices is at samples: those that
+ * the surface goes through, and of closed surfaces those of the border. These also have, behind the triangles of a row,
+ * those in the border by x, then face.
  */
 #include "reference/reference.h"
 
@@ -181,19 +182,21 @@ static bool at_border_of_cubes(const reference *r, const int64_t p[3]) {
     return present > 0 && present < 8;
 }
 
-/* Whether a sample owns a vertex of a type, and the ends of the edge that it lies on. A sample of the border is both
- * ends. */
-static bool vertex_find(const reference *r, const int64_t owner[3], int type, int64_t a[3], int64_t b[3]) {
-    if (type == VERTEX_BORDER) {
-        memcpy(a, owner, 3 * sizeof *a);
-        memcpy(b, owner, 3 * sizeof *b);
-        return sample_is(r, owner, INSIDE) && !sample_is(r, owner, SNAPPED) && at_border_of_cubes(r, owner);
-    }
-    if (type == VERTEX_SAMPLE) {
-        if (!sample_is(r, owner, SNAPPED)) return false;
+/* Whether a sample owns a vertex in its own place, as the surface goes through it, or ends at the border inside it. The
+ * latter is both ends of the edge that the vertex lies on. */
+static bool sample_vertex_find(const reference *r, const int64_t owner[3], int64_t a[3], int64_t b[3]) {
+    if (sample_is(r, owner, SNAPPED)) {
         snapped_edge(r, owner, a, b);
         return true;
     }
+    memcpy(a, owner, 3 * sizeof *a);
+    memcpy(b, owner, 3 * sizeof *b);
+    return r->closed && sample_is(r, owner, INSIDE) && at_border_of_cubes(r, owner);
+}
+
+/* Whether a sample owns a vertex of a type, and the ends of the edge that it lies on. */
+static bool vertex_find(const reference *r, const int64_t owner[3], int type, int64_t a[3], int64_t b[3]) {
+    if (type == VERTEX_SAMPLE) return sample_vertex_find(r, owner, a, b);
     if (!edge_exists(r, owner, type)) return false;
     edge_ends(r, owner, type, a, b);
     return sample_is(r, a, INSIDE) != sample_is(r, b, INSIDE) && !sample_is(r, a, SNAPPED) && !sample_is(r, b, SNAPPED);
@@ -215,8 +218,8 @@ static void row_vertices_of(reference *r, int type, int64_t x0, int64_t x1, int6
 
 static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t z) {
     const int types = row_uniform(r, x0, x1, y, z) ? 0 : methods[r->method].vertex_types;
-    for (int type = 0; type < types; type++) row_vertices_of(r, type, x0, x1, y, z);
-    if (r->closed) row_vertices_of(r, VERTEX_BORDER, x0, x1, y, z);
+    for (int type = 0; type < types && type < VERTEX_SAMPLE; type++) row_vertices_of(r, type, x0, x1, y, z);
+    if (types > VERTEX_SAMPLE || r->closed) row_vertices_of(r, VERTEX_SAMPLE, x0, x1, y, z);
 }
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
@@ -401,7 +404,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     r->threshold = (float)options->snap;
     r->closed = options->closed;
     r->halo_layer = grid_has_seam(grid) ? own_layer(r, 1) : -1;
-    r->id_types = r->closed ? VERTEX_BORDER + 1 : methods[r->method].vertex_types;
+    r->id_types = r->closed ? VERTEX_TYPES_MOST : methods[r->method].vertex_types;
     if (r->method == TC_METHOD_HYBRID) methods[r->method].derive(r->cases[0], grid->mirrored);
     if (r->closed) methods[r->method].derive_caps(r->caps[0][0], grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));

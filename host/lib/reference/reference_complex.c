@@ -1,11 +1,14 @@
 /*
  * The scalar reference of complexes: one loop over the tetrahedra, or the cells that they were cut from (method
  * hybrid), counts, another emits. A hash table holds the crossed
- * edges met so far with their vertices; vertices are numbered in the order in which edges are first met.
+ * edges met so far with their vertices; vertices are numbered in the order in which edges are first met. Closed
+ * surfaces go on with the border (complex_border.h): vertices at its inside points, in the order of these, and its
+ * triangles.
  */
 #include "grid/cell_cases.h"
 #include "grid/complex.h"
 #include "reference/carry_vertex.h"
+#include "reference/complex_border.h"
 
 #include "failure.h"
 #include "grid/tables.h"
@@ -30,6 +33,9 @@ typedef struct reference {
     uint64_t table_size, entry_count;
     tc_mesh *mesh; /* NULL: count only */
     const carry *carried;
+    bool closed;
+    complex_border border;
+    uint32_t *point_numbers; /* of the border's vertices at points, or NO_NUMBER */
     uint64_t vertex_count, triangle_count, active_count;
     uint32_t next; /* tetrahedron */
 } reference;
@@ -75,8 +81,7 @@ static float edge_crossing(const reference *r, uint32_t low, uint32_t high) {
     return type_is_wide(r->grid->type) ? crossing_f64(a, b, r->isovalue) : crossing_f32(a, b, r->isovalue);
 }
 
-static void vertex_emit(reference *r, uint32_t low, uint32_t high) {
-    const float t = edge_crossing(r, low, high);
+static void vertex_emit(reference *r, uint32_t low, uint32_t high, float t) {
     const float *p0 = r->grid->complex->points + 3 * (uint64_t)low, *p1 = r->grid->complex->points + 3 * (uint64_t)high;
     float *out = (float *)r->mesh->channels[CHANNEL_POSITIONS].memory + 3 * r->vertex_count;
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
@@ -106,7 +111,7 @@ static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32
     if (e->number == NO_NUMBER) {
         if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
         e->number = (uint32_t)r->vertex_count;
-        if (r->mesh) vertex_emit(r, low, high);
+        if (r->mesh) vertex_emit(r, low, high, edge_crossing(r, low, high));
         if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
         r->vertex_count++;
     }
@@ -224,6 +229,55 @@ static tc_status cell_run(reference *r) {
     return status;
 }
 
+/* ------------------------------------------------------------------------------------------------------------ border
+ */
+
+/* Which points of a face are inside, a bit each. */
+static unsigned face_pattern(const reference *r, const border_face *face) {
+    unsigned pattern = 0;
+    for (int n = 0; n < 3; n++) pattern |= (unsigned)(grid_value_at(r->grid, face->points[n]) >= r->isovalue) << n;
+    return pattern;
+}
+
+/* Vertices at the inside points of the border. */
+static tc_status border_vertices(reference *r) {
+    const uint64_t point_count = r->grid->complex->point_count;
+    memset(r->point_numbers, 0xff, (size_t)point_count * sizeof *r->point_numbers);
+    for (const border_face *f = r->border.faces; f < r->border.faces + r->border.face_count; f++)
+        for (unsigned n = 0; n < 3; n++)
+            if (face_pattern(r, f) >> n & 1) r->point_numbers[f->points[n]] = 0;
+    for (uint64_t n = 0; n < point_count; n++) {
+        if (r->point_numbers[n] == NO_NUMBER) continue;
+        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
+        if (r->mesh) vertex_emit(r, (uint32_t)n, (uint32_t)n, 0);
+        if (r->carried) carry_vertex(r->carried, r->vertex_count, (int64_t)n, (int64_t)n, 0);
+        r->point_numbers[n] = (uint32_t)r->vertex_count++;
+    }
+    return TC_OK;
+}
+
+static tc_status border_vertex_number(const reference *r, border_vertex v, uint32_t *number) {
+    const uint32_t low = v.a < v.b ? v.a : v.b, high = v.a < v.b ? v.b : v.a;
+    const edge_entry *e = edge_find(r, low, high);
+    *number = v.a == v.b ? r->point_numbers[v.a] : e->taken ? e->number : NO_NUMBER;
+    return *number == NO_NUMBER ? change_fail() : TC_OK;
+}
+
+static tc_status border_run(reference *r) {
+    static const uint8_t in_order[3] = {0, 1, 2};
+    tc_status status = border_vertices(r);
+    for (uint64_t f = 0; f < r->border.face_count && !status; f++) {
+        border_vertex triangles[2][3];
+        const int count = border_face_cut(&r->border.faces[f], face_pattern(r, &r->border.faces[f]), triangles);
+        for (int n = 0; n < count && !status; n++) {
+            uint32_t numbers[3] = {0};
+            for (int m = 0; m < 3 && !status; m++) status = border_vertex_number(r, triangles[n][m], &numbers[m]);
+            if (!status) status = triangle_emit(r, numbers, in_order);
+        }
+    }
+    return status;
+}
+
 /* before, share: where this stage begins in the whole call and its share of it, for progress. */
 static tc_status grid_run(reference *r, const char *stage, double before, double share) {
     const uint64_t count = r->grid->complex->tetrahedron_count, steps = 64;
@@ -238,13 +292,24 @@ static tc_status grid_run(reference *r, const char *stage, double before, double
         if (!status)
             status = context_progress(r->grid->context, stage, before + share * (double)(step + 1) / (double)steps);
     }
-    return status;
+    return !status && r->closed ? border_run(r) : status;
+}
+
+static void reference_end(reference *r) {
+    free(r->table);
+    free(r->point_numbers);
+    complex_border_release(&r->border);
 }
 
 static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
     *r = (reference){.grid = grid, .isovalue = options->isovalue};
     r->keeps_cells = options->method == TC_METHOD_HYBRID;
-    return table_allocate(r, 1024) ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
+    r->closed = options->closed;
+    if (!table_allocate(r, 1024)) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the crossed edges");
+    if (!r->closed) return TC_OK;
+    r->point_numbers = malloc((size_t)grid->complex->point_count * sizeof *r->point_numbers);
+    if (!r->point_numbers) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the border's vertices");
+    return complex_border_find(grid, options->isovalue, &r->border);
 }
 
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
@@ -256,7 +321,7 @@ tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options 
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_count;
     counts->classify_ms = clock_ms() - start;
-    free(r.table);
+    reference_end(&r);
     return status;
 }
 
@@ -267,7 +332,7 @@ tc_status reference_complex_carry(const tc_grid *grid, const tc_extract_options 
     r.carried = c;
     if (!status) status = grid_run(&r, "carry", 0, 1);
     *vertex_count = r.vertex_count;
-    free(r.table);
+    reference_end(&r);
     return status;
 }
 
@@ -286,6 +351,6 @@ tc_status reference_complex_extract(const tc_grid *grid, const tc_extract_option
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;
     mesh->timings.total_ms = clock_ms() - start;
-    free(r.table);
+    reference_end(&r);
     return status;
 }

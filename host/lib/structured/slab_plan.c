@@ -4,8 +4,10 @@
 #include "slab.h"
 #include "grid/tables.h"
 
-/* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan word counts to 2^30. */
-static const uint64_t scan_samples = ((UINT64_C(1) << 30) - 1) / 10;
+/* The most samples of a slab: a cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan
+ * word counts to 2^30. Closed surfaces have four triangles at most in each face of a cube, of which planes have one
+ * more layer than cubes: ten, and 3 1/4 times four, as a slab has at least four planes. */
+static uint64_t scan_samples(plan_needs needs) { return ((UINT64_C(1) << 30) - 1) / (needs.closed ? 23 : 10); }
 
 static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
@@ -29,9 +31,9 @@ uint32_t slab_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_inde
 }
 
 /* Layers of bricks before a slab and after it in its window of words. */
-static uint32_t layers_before(const slab_plan *plan) { return plan->zeros ? 2 : 0; }
+static uint32_t layers_before(const slab_plan *plan) { return plan->needs.zeros ? 2 : 0; }
 
-static uint32_t layers_after(const slab_plan *plan) { return plan->zeros ? 2 : 1; }
+static uint32_t layers_after(const slab_plan *plan) { return plan->needs.zeros ? 2 : 1; }
 
 uint32_t slab_words_begin(const slab_plan *plan, uint32_t slab_index) {
     const uint32_t z0 = slab_begin(plan, slab_index);
@@ -46,14 +48,14 @@ uint32_t slab_words_end(const slab_plan *plan, const tc_grid *grid, uint32_t sla
 uint32_t slab_samples_begin(const slab_plan *plan, uint32_t slab_index) {
     const uint32_t z0 = slab_begin(plan, slab_index);
     if (plan->samples_whole || z0 == 0) return 0;
-    return plan->zeros ? slab_words_begin(plan, slab_index) : z0 - 1;
+    return plan->needs.zeros ? slab_words_begin(plan, slab_index) : z0 - 1;
 }
 
 uint32_t slab_samples_end(const slab_plan *plan, const tc_grid *grid, uint32_t slab_index) {
     const uint64_t nz = (uint64_t)grid->dims[2];
     if (plan->samples_whole) return (uint32_t)nz;
-    return plan->zeros ? slab_words_end(plan, grid, slab_index)
-                       : (uint32_t)min_u64(slab_end(plan, grid, slab_index) + 2ull, nz);
+    return plan->needs.zeros ? slab_words_end(plan, grid, slab_index)
+                             : (uint32_t)min_u64(slab_end(plan, grid, slab_index) + 2ull, nz);
 }
 
 uint32_t plan_window_count(const slab_plan *plan) { return plan->overlaps && !plan->samples_whole ? 2 : 1; }
@@ -69,14 +71,14 @@ uint64_t plan_words_per_plane(const slab_plan *plan, const tc_grid *grid) {
 }
 
 uint64_t plan_cell_planes(const slab_plan *plan, const tc_grid *grid) {
-    if (plan->zeros) return min_u64(plan_window_layers(plan) * (uint64_t)BRICK_PLANES, (uint64_t)grid->dims[2]);
+    if (plan->needs.zeros) return min_u64(plan_window_layers(plan) * (uint64_t)BRICK_PLANES, (uint64_t)grid->dims[2]);
     return plan->slab_layers * (uint64_t)BRICK_PLANES + 2;
 }
 
 uint64_t plan_bricks_per_layer(const slab_plan *plan) { return (uint64_t)plan->words_x * plan->bricks_y; }
 
 uint32_t plan_zero_bricks(const slab_plan *plan) {
-    return plan->zeros ? (uint32_t)(UNIFORM_BRICKS + plan_window_layers(plan) * plan_bricks_per_layer(plan)) : 0;
+    return plan->needs.zeros ? (uint32_t)(UNIFORM_BRICKS + plan_window_layers(plan) * plan_bricks_per_layer(plan)) : 0;
 }
 
 /* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
@@ -97,9 +99,10 @@ static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_pla
 }
 
 uint64_t plan_array_bytes(const slab_plan *plan, const tc_grid *grid, int array) {
-    uint64_t planes = plan->samples_whole ? (uint64_t)grid->dims[2]
-                                          : min_u64((plan->slab_layers + (plan->zeros ? 4ull : 0)) * BRICK_PLANES + 3,
-                                                    (uint64_t)grid->dims[2]);
+    uint64_t planes =
+        plan->samples_whole
+            ? (uint64_t)grid->dims[2]
+            : min_u64((plan->slab_layers + (plan->needs.zeros ? 4ull : 0)) * BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
     return grid_array_data(grid, array) ? planes * grid_array_plane_bytes(grid, array) : 0;
 }
 
@@ -115,11 +118,13 @@ static bool can_miss_samples(const tc_grid *grid) {
 static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const slab_plan *plan, uint64_t *largest) {
     uint64_t layers = plan_window_layers(plan);
     uint64_t bricks = layers * plan_bricks_per_layer(plan), words = 8 * BRICK_WORDS * bricks;
-    uint64_t signs = plan->zeros ? 2 * words : words, arrays = 0, windows = plan_window_count(plan);
+    uint64_t signs = plan->needs.zeros ? 2 * words : words, arrays = 0, windows = plan_window_count(plan);
     uint64_t state = 4ull * plan->slab_count * (STATE_WORDS + (uint64_t)TILE_WORDS * plan->slab_tiles);
     uint64_t scratch = 8ull * plan->scratch_words * context->launch.work_groups;
     uint64_t ranges = sizeof(brick_range) * plan->layer_count * plan_bricks_per_layer(plan);
-    uint64_t cases = 8 * CASES_TWO_SIGNS + (plan->zeros ? 4 * CASES_THREE_SIGNS : 0), constant = plan->zeros ? 4 : 2;
+    uint64_t cases = 8 * CASES_TWO_SIGNS + (plan->needs.zeros ? 4 * CASES_THREE_SIGNS : 0),
+             constant = plan->needs.zeros ? 4 : 2;
+    if (plan->needs.closed) cases += (plan->needs.zeros ? 6ull : 4) * CAP_ENTRIES;
     uint64_t fixed =
         cases * CUBE_CASE_BYTES + constant * 8 * BRICK_WORDS + 12 * 4096; /* and buffers from page to page */
     *largest = signs;
@@ -143,7 +148,8 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     plan->slab_count = plan->own_slabs + (plan->own_end < plan->layer_count);
     tiles_shape(context, grid, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
-    uint64_t words = (plan->zeros ? 2ull : 1) * BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
+    uint64_t words =
+        (plan->needs.zeros ? 2ull : 1) * BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
     return *bytes <= budget && largest <= context->info.max_buffer_bytes && words <= UINT32_MAX;
 }
 
@@ -172,7 +178,7 @@ static uint32_t layers_fit(const tc_context *context, const tc_grid *grid, slab_
 static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab_plan *plan, uint32_t most,
                             uint64_t budget) {
     uint64_t bytes;
-    plan->words_whole = !plan->zeros; /* which go with all samples or with windows of them */
+    plan->words_whole = !plan->needs.zeros; /* which go with all samples or with windows of them */
     if (plan->words_whole) plan->words_whole = plan_fits(context, grid, plan, 1, budget, &bytes);
     if (plan->samples_whole && !plan->words_whole) plan->overlaps = false; /* slabs share the window of words */
     return layers_fit(context, grid, plan, most, budget);
@@ -180,13 +186,13 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
 
 static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
     const uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES;
-    return (uint32_t)min_u64(scan_samples / layer_samples, plan->own_end - plan->own_first);
+    return (uint32_t)min_u64(scan_samples(plan->needs) / layer_samples, plan->own_end - plan->own_first);
 }
 
 static uint32_t layers_of(int64_t planes) { return (uint32_t)((planes + BRICK_PLANES - 1) / BRICK_PLANES); }
 
-static slab_plan plan_begin(const tc_grid *grid, bool zeros) {
-    return (slab_plan){.zeros = zeros,
+static slab_plan plan_begin(const tc_grid *grid, plan_needs needs) {
+    return (slab_plan){.needs = needs,
                        .words_x = (uint32_t)((grid->dims[0] + 63) / 64),
                        .bricks_y = (uint32_t)((grid->dims[1] + BRICK_ROWS - 1) / BRICK_ROWS),
                        .layer_count = layers_of(grid->dims[2]),
@@ -196,58 +202,61 @@ static slab_plan plan_begin(const tc_grid *grid, bool zeros) {
 
 /* The least bytes of everything but the mesh, and the bytes with all arrays whole; false where a buffer is too large.
  */
-static bool plan_least(const tc_context *context, const tc_grid *grid, bool zeros, uint64_t *bytes) {
-    slab_plan plan = plan_begin(grid, zeros);
+static bool plan_least(const tc_context *context, const tc_grid *grid, plan_needs needs, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid, needs);
     plan.samples_whole = grid->cl_samples != NULL;
     return plan_fits(context, grid, &plan, 1, UINT64_MAX, bytes);
 }
 
-static bool plan_whole(const tc_context *context, const tc_grid *grid, bool zeros, uint64_t *bytes) {
-    slab_plan plan = plan_begin(grid, zeros);
+static bool plan_whole(const tc_context *context, const tc_grid *grid, plan_needs needs, uint64_t *bytes) {
+    slab_plan plan = plan_begin(grid, needs);
     plan.samples_whole = plan.words_whole = true;
     plan.overlaps = !context->in_place;
     return plan_fits(context, grid, &plan, layers_most(grid, &plan), UINT64_MAX, bytes);
 }
 
-uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool zeros) {
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, plan_needs needs) {
     uint64_t bytes;
-    plan_whole(context, grid, zeros, &bytes);
+    plan_whole(context, grid, needs, &bytes);
     return (bytes + 2) / 3 * 4;
 }
 
 /* The mesh has half of the budget where the grid is not whole, a quarter or more where it is; emission goes on with a
- * row of bricks in it at a time: six vertices per sample, with normals, and ten triangles per cube at most. */
-uint64_t plan_budget(const tc_context *context, const tc_grid *grid, bool zeros) {
-    const uint64_t sample_bytes = 2 * EDGES_PER_SAMPLE * 12 + CUBE_TRIANGLES_MAX * 12;
-    const uint64_t row = plan_begin(grid, zeros).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
+ * row of bricks in it at a time: six vertices per sample, with normals, and ten triangles per cube at most; where it is
+ * closed, one vertex more, and four triangles for each of the faces of its cubes (3.4 a cube). */
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid, plan_needs needs) {
+    const uint64_t closing = needs.closed ? 2 * 12 + 14 * 12 : 0;
+    const uint64_t sample_bytes = 2 * EDGES_PER_SAMPLE * 12 + CUBE_TRIANGLES_MAX * 12 + closing;
+    const uint64_t row = plan_begin(grid, needs).words_x * 64ull * BRICK_ROWS * BRICK_PLANES * sample_bytes;
     uint64_t least, whole, budget;
-    plan_least(context, grid, zeros, &least);
+    plan_least(context, grid, needs, &least);
     budget = 2 * (least > row ? least : row);
-    if (!plan_whole(context, grid, zeros, &whole)) return budget;
-    const uint64_t from = plan_budget_whole(context, grid, zeros);
+    if (!plan_whole(context, grid, needs, &whole)) return budget;
+    const uint64_t from = plan_budget_whole(context, grid, needs);
     return whole + row > (from > budget ? from : budget) ? whole + row : budget;
 }
 
-static tc_status plan_refuse(const tc_context *context, const tc_grid *grid, bool zeros) {
+static tc_status plan_refuse(const tc_context *context, const tc_grid *grid, plan_needs needs) {
     uint64_t bytes;
-    if (!plan_least(context, grid, zeros, &bytes))
+    if (!plan_least(context, grid, needs, &bytes))
         return (tc_status)fail(TC_ERROR_MEMORY,
                                "a layer of this grid needs larger buffers than %s has, %llu bytes each: use the "
                                "reference engine, or parts of the grid",
                                context->info.name, (unsigned long long)context->info.max_buffer_bytes);
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "a layer of this grid needs %llu bytes of device memory beside its mesh; allow %llu or more",
-                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid, zeros));
+                           (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid, needs));
 }
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool zeros, sample_place samples,
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_place samples,
                          slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     const uint64_t budget = context_budget(context);
-    *plan = plan_begin(grid, zeros);
-    if (layer_samples > scan_samples)
+    *plan = plan_begin(grid, needs);
+    if (layer_samples > scan_samples(needs))
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
-                               (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)scan_samples);
+                               (long long)grid->dims[0], (long long)grid->dims[1],
+                               (unsigned long long)scan_samples(needs));
     const uint32_t most = layers_most(grid, plan);
     plan->samples_whole = plan->words_whole = true;
     plan->overlaps = !context->in_place;
@@ -259,7 +268,7 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool ze
             plan->overlaps = false;
             layers = windows_fit(context, grid, plan, most, part);
         }
-        if (layers == 0) return plan_refuse(context, grid, plan->zeros);
+        if (layers == 0) return plan_refuse(context, grid, needs);
         plan_fits(context, grid, plan, layers, budget, &bytes);
     }
     plan->mesh_bytes = budget - bytes;

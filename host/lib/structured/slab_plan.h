@@ -12,7 +12,8 @@
  *
  * Method snap has a plan of its own. Whether a sample is snapped depends on samples up to five steps away, one for each
  * colour. So windows have two layers of bricks more on either side, of which those steps use up the outer part; and
- * where buffers hold the whole grid, all of it is snapped at once.
+ * where buffers hold the whole grid, all of it is snapped at once. Closed surfaces may have more triangles, and so
+ * smaller slabs.
  */
 #ifndef SLAB_PLAN_H
 #define SLAB_PLAN_H
@@ -20,14 +21,20 @@
 #include "opencl/context.h"
 #include "grid/grid.h"
 
+/* What a plan has to serve beyond open surfaces on edges. */
+typedef struct plan_needs {
+    bool zeros;  /* method snap: words of zeros beside sign words, and windows reach further */
+    bool closed; /* surfaces are closed */
+} plan_needs;
+
 typedef struct slab_plan {
     uint32_t words_x, bricks_y, layer_count;
     uint32_t own_first, own_end;     /* layers of the grid's own vertices and cells: all, unless it is a piece */
     uint32_t slab_layers;            /* of most slabs */
     uint32_t slab_count, own_slabs;  /* of a piece with a seam one more than it owns: the layer behind */
     bool samples_whole, words_whole; /* samples: with all other arrays of the grid */
-    bool zeros;                      /* of method snap: words of zeros beside sign words, and windows reach further */
-    bool overlaps;                   /* copies and kernels run at once: windows are double */
+    plan_needs needs;
+    bool overlaps;                               /* copies and kernels run at once: windows are double */
     uint32_t tile_rows, tile_layers, slab_tiles; /* slab_tiles: at most, per slab */
     uint32_t scratch_words;                      /* per group */
     uint32_t work_items;                         /* for which tiles are shaped */
@@ -36,14 +43,13 @@ typedef struct slab_plan {
 
 /* The least budget with which a grid can be extracted whatever its samples are, normals included; and with which it can
  * be whole on the device, as tc_emit needs, without the mesh. Within the device's limit on buffers. */
-uint64_t plan_budget(const tc_context *context, const tc_grid *grid, bool zeros);
-uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, bool zeros);
+uint64_t plan_budget(const tc_context *context, const tc_grid *grid, plan_needs needs);
+uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, plan_needs needs);
 
 /* Where a plan has the samples: whole where that fits; or as another plan of the grid has them. */
 typedef enum sample_place { SAMPLES_THAT_FIT, SAMPLES_WHOLE, SAMPLES_IN_WINDOWS } sample_place;
 
-/* zeros: of method snap. */
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, bool zeros, sample_place samples,
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_place samples,
                          slab_plan *plan);
 
 /* Shapes the tiles again where the context has changed to the other variant of the kernels. */

@@ -113,35 +113,40 @@ static tc_status workspace_reserve(run *r) {
 }
 
 void structured_reshape(tc_grid *grid) {
-    slab_plan_reshape(grid->context, grid, &grid->device->plan);
-    if (grid->device->snap_plan.layer_count) slab_plan_reshape(grid->context, grid, &grid->device->snap_plan);
+    for (int n = 0; n < 4; n++) {
+        slab_plan *plan = &grid->device->plans[n / 2][n % 2];
+        if (plan->layer_count) slab_plan_reshape(grid->context, grid, plan);
+    }
 }
 
-/* Takes the whole arrays from the device: all methods have windows of them from now on. */
+/* Takes the whole arrays from the device: all plans have windows of them from now on, and are made again. */
 static tc_status arrays_withdraw(tc_grid *grid) {
     struct device_grid *device = grid->device;
     slab_plan plan;
-    tc_status status = slab_plan_make(grid->context, grid, false, SAMPLES_IN_WINDOWS, &plan);
+    tc_status status = slab_plan_make(grid->context, grid, (plan_needs){0}, SAMPLES_IN_WINDOWS, &plan);
     if (status) return status;
     cl->Finish(grid->context->queue);
     for (int array = 0; array < ARRAY_COUNT; array++) buffer_release(grid->context, &device->arrays[array]);
     grid->context->workspace_grid = NULL; /* its buffers are those of the plan before */
-    device->plan = plan;
+    for (int n = 0; n < 4; n++) device->plans[n / 2][n % 2].layer_count = 0;
+    device->plans[0][0] = plan;
     return TC_OK;
 }
 
-/* Where the words of snap do not fit beside the whole arrays they may fit beside windows of them. */
-static tc_status plan_provide(tc_grid *grid, tc_method method) {
+/* Where the words of snap, or the tables of closed surfaces, do not fit beside the whole arrays they may fit beside
+ * windows of them. */
+static tc_status plan_provide(tc_grid *grid, const tc_extract_options *options) {
     struct device_grid *device = grid->device;
-    const bool whole = device->plan.samples_whole;
-    if (!method_has_zeros(method) || device->snap_plan.layer_count) return TC_OK;
+    const bool whole = device->plans[0][0].samples_whole;
+    const plan_needs needs = {method_has_zeros(options->method), options->closed};
     slab_plan plan;
-    tc_status status = slab_plan_make(grid->context, grid, true, whole ? SAMPLES_WHOLE : SAMPLES_IN_WINDOWS, &plan);
+    if (plan_of(device, options)->layer_count) return TC_OK;
+    tc_status status = slab_plan_make(grid->context, grid, needs, whole ? SAMPLES_WHOLE : SAMPLES_IN_WINDOWS, &plan);
     if (status == TC_ERROR_MEMORY && whole && !grid->cl_samples) {
-        status = slab_plan_make(grid->context, grid, true, SAMPLES_IN_WINDOWS, &plan);
+        status = slab_plan_make(grid->context, grid, needs, SAMPLES_IN_WINDOWS, &plan);
         if (!status) status = arrays_withdraw(grid);
     }
-    if (!status) device->snap_plan = plan;
+    if (!status) *plan_of(device, options) = plan;
     return status;
 }
 
@@ -151,17 +156,19 @@ kernel_kind structured_kind(const tc_grid *grid, const tc_extract_options *optio
                               .method = options->method,
                               .missing = grid->device && grid->device->missing,
                               .made = channels_asked(options),
-                              .emits = true};
+                              .emits = true,
+                              .closed = options->closed};
     return emits ? kind : kind_of_classify(kind);
 }
 
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits) {
-    const slab_plan *plan = plan_of_method(grid->device, options->method);
-    tc_status status = plan_provide(grid, options->method);
+    const slab_plan *plan = plan_of(grid->device, options);
+    tc_status status = plan_provide(grid, options);
     *r = (run){.grid = grid,
                .context = grid->context,
                .plan = plan,
                .method = options->method,
+               .closed = options->closed,
                .made = channels_asked(options),
                .base = base_of(grid, plan, inside, options)};
     r->copies = r->context->queue;
@@ -203,8 +210,8 @@ static tc_status slab_classify(run *r, uint32_t slab_index) {
     slab s;
     slab_describe(r, ref, &s);
     const bool snapped = r->plan->words_whole && slab_index > 0; /* with all of the grid */
-    tc_status status = r->plan->zeros && snapped ? TC_OK : slab_mark_cells(r, ref, &s);
-    if (!status && r->plan->zeros && !snapped) status = window_snap(r, ref, &s);
+    tc_status status = r->plan->needs.zeros && snapped ? TC_OK : slab_mark_cells(r, ref, &s);
+    if (!status && r->plan->needs.zeros && !snapped) status = window_snap(r, ref, &s);
     if (status) return status;
     const cl_uint scratch_words = r->plan->scratch_words;
     const kernel_argument arguments[] = {ARGUMENT(s),
@@ -339,7 +346,7 @@ static void results_keep(tc_grid *grid, const tc_extract_options *options, run *
 tc_status structured_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
     inside_range inside = inside_range_of(grid->type, options->isovalue);
     run r;
-    if (inside.uniform) {
+    if (!inside_has_surface(inside, options->closed)) {
         results_keep(grid, options, NULL);
         return TC_OK;
     }
@@ -358,7 +365,7 @@ tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, t
     inside_range inside = inside_range_of(grid->type, options->isovalue);
     double classified;
     run r;
-    if (inside.uniform) return TC_OK;
+    if (!inside_has_surface(inside, options->closed)) return TC_OK;
     tc_status status = classify(&r, grid, options, inside, true, 0.5);
     classified = clock_ms();
     if (!status) status = seam_numbers_check(grid, r.vertex_count);

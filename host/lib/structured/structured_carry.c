@@ -35,10 +35,10 @@ typedef struct carry_job {
     const carry *carry;
     double isovalue;
     results k1;
-    int vertex_types;
-    int64_t from[EDGES_PER_SAMPLE][2],
-        to[EDGES_PER_SAMPLE][2]; /* samples from an edge's owner to its ends, by parity */
-    uint64_t slab_brick;         /* the slab's first, and those before its end */
+    int edge_types, vertex_types; /* the latter one more where the surface is closed: vertices at samples */
+    int64_t from[VERTEX_TYPES_MOST][2],
+        to[VERTEX_TYPES_MOST][2]; /* samples from an edge's owner to its ends, by parity */
+    uint64_t slab_brick;          /* the slab's first, and those before its end */
     uint64_t brick_end;
     uint64_t slab_vertex;
     _Atomic uint64_t next;
@@ -100,12 +100,18 @@ static row_pair row_of(const brick_words *w, int y, int z, uint64_t valid) {
     return (row_pair){at, at >> 1 | w->word[1][z][y] << 63};
 }
 
+/* Samples of a word that exist. */
+static uint64_t row_valid(const carry_job *j, uint32_t x) {
+    const uint32_t left = (uint32_t)j->grid->dims[0] - x;
+    return left >= 64 ? UINT64_MAX : (UINT64_C(1) << left) - 1;
+}
+
 /* As crossings_owned in kernels/tetrahedra.cl: crossed edges that the samples of a row own. */
 static void crossings_of(const carry_job *j, const brick_words *w, int row, int plane, const uint32_t first[3],
-                         uint64_t crossed[EDGES_PER_SAMPLE]) {
+                         uint64_t crossed[VERTEX_TYPES_MOST]) {
     const int64_t *dims = j->grid->dims;
     const uint32_t left = (uint32_t)dims[0] - first[0], y = first[1] + (uint32_t)row, z = first[2] + (uint32_t)plane;
-    const uint64_t valid = left >= 64 ? UINT64_MAX : (UINT64_C(1) << left) - 1, has_x = left > 64 ? valid : valid >> 1;
+    const uint64_t valid = row_valid(j, first[0]), has_x = left > 64 ? valid : valid >> 1;
     const uint64_t has_y = y + 1 < dims[1] ? UINT64_MAX : 0, has_z = z + 1 < dims[2] ? UINT64_MAX : 0;
     const uint64_t even =
         (grid_parity(j->grid) + y + z) & 1 ? UINT64_C(0xaaaaaaaaaaaaaaaa) : UINT64_C(0x5555555555555555);
@@ -147,6 +153,29 @@ static uint64_t present_only(const carry_job *j, uint64_t crossed, int type, con
     return kept;
 }
 
+static bool at_border_of_cubes(const tc_grid *grid, const int64_t p[3]) {
+    int present = 0;
+    for (int c = 0; c < 8; c++)
+        present += cube_present(grid, (int64_t[3]){p[0] - (c & 1), p[1] - (c >> 1 & 1), p[2] - (c >> 2)});
+    return present > 0 && present < 8;
+}
+
+/* As border_samples in kernels/border.cl: those of the samples of a row, from `first` on. */
+static uint64_t border_only(const carry_job *j, uint64_t samples, const int64_t first[3]) {
+    const int64_t *dims = j->grid->dims, last = dims[0] - 1 - first[0];
+    uint64_t kept = first[0] == 0 ? 1 : 0;
+    if (!j->grid->device->missing) {
+        const bool all = first[1] == 0 || first[1] + 1 == dims[1] || first[2] == 0 || first[2] + 1 == dims[2];
+        if (last < 64) kept |= UINT64_C(1) << last;
+        return all ? samples : samples & kept;
+    }
+    kept = 0;
+    for (uint64_t rest = samples; rest; rest &= rest - 1)
+        if (at_border_of_cubes(j->grid, (int64_t[3]){first[0] + __builtin_ctzll(rest), first[1], first[2]}))
+            kept |= rest & -rest;
+    return kept;
+}
+
 /* Where a row's vertices of a type end, counted from its first, as kernel 1 has packed it (kernels/tetrahedra.cl:
  * offsets_pack). The end of the last type is not packed. */
 static uint32_t type_end(uint64_t packed, int type) {
@@ -156,9 +185,9 @@ static uint32_t type_end(uint64_t packed, int type) {
 
 /* Cells are looked at only where kernel 1 has counted fewer vertices than edges are crossed, and for the last type. */
 static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t first[3],
-                           uint64_t crossed[EDGES_PER_SAMPLE]) {
+                           uint64_t crossed[VERTEX_TYPES_MOST]) {
     uint32_t begin = 0;
-    for (int type = 0; type < j->vertex_types; type++) {
+    for (int type = 0; type < j->edge_types; type++) {
         const uint32_t end = type == EDGE_YZ ? begin : type_end(packed, type);
         if (begin + (uint32_t)__builtin_popcountll(crossed[type]) != end)
             crossed[type] = present_only(j, crossed[type], type, first);
@@ -179,9 +208,9 @@ static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t
 }
 
 /* Adds the crossed edges of a row in the order of their vertices. */
-static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE], int64_t owner, unsigned odd,
+static void row_add(const carry_job *j, const uint64_t crossed[VERTEX_TYPES_MOST], int64_t owner, unsigned odd,
                     edge_batch *batch) {
-    if (batch->count + EDGES_PER_SAMPLE * 64 > BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
+    if (batch->count + VERTEX_TYPES_MOST * 64 > BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
     uint32_t count = batch->count;
     for (int type = 0; type < j->vertex_types; type++) {
         uint64_t rest = crossed[type];
@@ -241,13 +270,15 @@ static void brick_carry(carry_job *j, uint64_t brick, edge_batch *batch) {
         const int brick_row = __builtin_ctz(rows), row = brick_row % BRICK_ROWS, plane = brick_row / BRICK_ROWS;
         const int64_t p[3] = {first[0], first[1] + (uint32_t)row, first[2] + (uint32_t)plane};
         const uint64_t packed = j->k1.offsets[BRICK_WORDS * brick + (uint64_t)brick_row];
-        uint64_t crossed[EDGES_PER_SAMPLE];
+        uint64_t crossed[VERTEX_TYPES_MOST];
         if (p[1] >= dims[1] || p[2] >= dims[2] || batch->vertex + batch->count != vertex + (packed & 0x3fff)) {
             j->wrong = true;
             return;
         }
         crossings_of(j, &words, row, plane, first, crossed);
         if (j->grid->device->missing) crossings_keep(j, packed, p, crossed);
+        if (j->vertex_types > j->edge_types)
+            crossed[j->edge_types] = border_only(j, row_of(&words, row, plane, row_valid(j, first[0])).at, p);
         row_add(j, crossed, (p[2] * dims[1] + p[1]) * dims[0] + p[0],
                 (grid_parity(j->grid) + (unsigned)(p[1] + p[2])) & 1, batch);
     }
@@ -262,7 +293,7 @@ static uint64_t active_brick(const carry_job *j, uint64_t n) {
 
 static void bricks_carry(void *shared) {
     carry_job *j = shared;
-    edge_batch batch = {0};
+    edge_batch batch = {.has_places = j->vertex_types > j->edge_types};
     uint64_t n;
     while ((n = atomic_fetch_add(&j->next, SHARE_BRICKS)) < j->end && !j->wrong) {
         const uint64_t end = n + SHARE_BRICKS < j->end ? n + SHARE_BRICKS : j->end;
@@ -323,6 +354,8 @@ static void ends_fill(carry_job *j) {
             j->from[type][parity] = turned;
             j->to[type][parity] = across - turned;
         }
+    for (int parity = 0; parity < 2 && j->vertex_types > j->edge_types; parity++)
+        j->from[j->edge_types][parity] = j->to[j->edge_types][parity] = 0;
 }
 
 /* Buffers of the workspace, mapped while threads read them. */
@@ -354,25 +387,28 @@ static tc_status mapping_open(tc_context *context, const slab_plan *plan, mappin
 void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
-    const struct device_grid *device = grid->device;
-    if (options->closed) return false; /* the kernels close no surfaces */
-    if (inside_range_of(grid->type, options->isovalue).uniform || method_has_zeros(options->method)) return true;
+    struct device_grid *device = grid->device;
+    const inside_range inside = inside_range_of(grid->type, options->isovalue);
+    if (!inside_has_surface(inside, options->closed) || method_has_zeros(options->method)) return true;
     return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
            device->classified_options.method == options->method &&
-           (device->plan.words_whole || device->store.words != NULL);
+           !device->classified_options.closed == !options->closed &&
+           (plan_of(device, options)->words_whole || device->store.words != NULL);
 }
 
 tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                            uint64_t *vertex_count) {
-    const struct device_grid *device = grid->device;
-    carry_job j = {.grid = grid, .plan = &device->plan, .carry = c, .isovalue = options->isovalue};
+    struct device_grid *device = grid->device;
+    carry_job j = {.grid = grid, .plan = plan_of(device, options), .carry = c, .isovalue = options->isovalue};
     mapping m;
     if (method_has_zeros(options->method)) return reference_carry(grid, options, c, vertex_count);
     *vertex_count = 0;
-    if (!device->heads || inside_range_of(grid->type, options->isovalue).uniform) return TC_OK;
+    if (!device->heads || !inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed))
+        return TC_OK;
     for (uint32_t n = 0; n < j.plan->own_slabs; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
-    j.vertex_types = methods[options->method].vertex_types;
+    j.edge_types = methods[options->method].vertex_types;
+    j.vertex_types = j.edge_types + (options->closed ? 1 : 0);
     ends_fill(&j);
     if (!j.plan->words_whole) {
         const slab_store *s = &device->store;

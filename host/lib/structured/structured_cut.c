@@ -107,7 +107,7 @@ static tc_status strip_refuse(const run *r, const mesh_window *part) {
         (unsigned long long)channels_mesh_bytes(r->made, part->vertex1 - part->vertex0,
                                                 part->triangle1 - part->triangle0),
         (unsigned long long)r->plan->mesh_bytes, (unsigned long long)r->context->info.max_buffer_bytes,
-        (unsigned long long)plan_budget(r->context, r->grid, r->plan->zeros));
+        (unsigned long long)plan_budget(r->context, r->grid, r->plan->needs));
 }
 
 static tc_status step_add(emit_plan *e, const emit_step *step) {

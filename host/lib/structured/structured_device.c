@@ -13,9 +13,9 @@
 static tc_status counted_check(const tc_grid *grid, const tc_extract_options *options) {
     const struct device_grid *device = grid->device;
     const tc_extract_options *counted = &device->classified_options;
-    const slab_plan *plan = plan_of_method(device, options->method);
+    const slab_plan *plan = plan_of(grid->device, options);
     if (grid->context->counted_grid != grid || counted->isovalue != options->isovalue ||
-        counted->method != options->method || counted->snap != options->snap ||
+        counted->method != options->method || counted->snap != options->snap || !counted->closed != !options->closed ||
         channels_asked(counted) != channels_asked(options))
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "tc_emit emits what tc_count has counted just before: count this grid "
@@ -25,7 +25,7 @@ static tc_status counted_check(const tc_grid *grid, const tc_extract_options *op
                                "the device cannot hold this grid whole, as tc_emit needs it, in buffers of %llu bytes "
                                "and the memory allowed: allow %llu or more, or use tc_extract",
                                (unsigned long long)grid->context->info.max_buffer_bytes,
-                               (unsigned long long)plan_budget_whole(grid->context, grid, plan->zeros));
+                               (unsigned long long)plan_budget_whole(grid->context, grid, plan->needs));
     if (!device_makes_vertices(grid->context, grid->type))
         return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: vertices of %s samples cannot be made there",
                                grid->context->info.name, tc_type_name(grid->type));

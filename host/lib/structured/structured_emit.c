@@ -77,40 +77,61 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
     return status;
 }
 
-/* How kernel 2 finds the vertex on an edge of a cube: by the edge's owner and type, or, where a work-item has a brick
- * to itself, by its index among their numbers. */
-static uint8_t edge_item(const run *r, uint8_t edge) {
-    const owned_edge e = cube_vertex(edge);
-    if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(e.dx, e.dy, e.dz, e.type);
-    return (uint8_t)CASE_INDEX(e.dx, e.dy, e.dz, e.type, methods[r->method].vertex_types);
+/* How kernel 2 finds a vertex of a cube: by its owner and type, or, where a work-item has a brick to itself, by its
+ * index among their numbers. The type of vertices at samples follows those of edges. */
+static uint8_t vertex_item(const run *r, uint8_t vertex) {
+    const int types = methods[r->method].vertex_types;
+    owned_edge v = cube_vertex(vertex);
+    if (v.type == VERTEX_SAMPLE && types < VERTEX_SAMPLE) v.type = (uint8_t)types;
+    if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(v.dx, v.dy, v.dz, v.type);
+    return (uint8_t)CASE_INDEX(v.dx, v.dy, v.dz, v.type, types);
 }
 
-/* The table of cases of the run's method, in memory that the caller frees. Its vertices are as kernel 2 names them
- * (edge_item). */
+/* Names the vertices of cases as kernel 2 does. */
+static void vertices_name(const run *r, cube_case *cases, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
+            for (int corner = 0; corner < 3; corner++)
+                cases[n].edges[triangle][corner] = vertex_item(r, cases[n].edges[triangle][corner]);
+}
+
+/* The entries of faces on the border. */
+static void caps_make(const run *r, cube_case *out) {
+    cap_case caps[CAP_ENTRIES];
+    methods[r->method].derive_caps(caps, r->grid->mirrored);
+    for (size_t n = 0; n < CAP_ENTRIES; n++) {
+        out[n] = (cube_case){.triangle_count = caps[n].triangle_count};
+        memcpy(out[n].edges, caps[n].vertices, sizeof caps[n].vertices);
+    }
+}
+
+/* The table of cases of the run's method, in memory that the caller frees. */
 static tc_status cases_make(const run *r, void **out, uint64_t *bytes) {
     _Static_assert(sizeof(cube_case) == CUBE_CASE_BYTES, "kernels read it so");
     _Static_assert(CASE_COUNT(VERTEX_SAMPLE) == CASES_TWO_SIGNS && CASE_COUNT(VERTEX_TYPES_MOST) == CASES_THREE_SIGNS,
                    "kernels count them so");
-    const size_t count = 2 * (size_t)CASE_COUNT(methods[r->method].vertex_types);
-    cube_case *cases = malloc(count * sizeof *cases + 256 * sizeof(uint16_t));
+    _Static_assert((int)CAP_FACES == (int)CUBE_FACES && (int)CAP_FACE_CASES == (int)CAP_CASES, "kernels find them so");
+    const int types = methods[r->method].vertex_types;
+    const size_t count = 2 * (size_t)CASE_COUNT(types), first = (size_t)CAP_FIRST(types);
+    const size_t caps = r->closed ? CAP_ENTRIES : 0;
+    cube_case *cases = malloc((first + caps) * sizeof *cases);
     if (!cases) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the case table");
     methods[r->method].derive(cases, r->grid->mirrored);
-    for (size_t n = 0; n < count; n++)
-        for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
-            for (int corner = 0; corner < 3; corner++) {
-                uint8_t *edge = &cases[n].edges[triangle][corner];
-                *edge = edge_item(r, *edge);
-            }
+    vertices_name(r, cases, count);
     uint16_t *digits = (uint16_t *)(cases + count);
     for (unsigned n = 0; n < 256; n++) digits[n] = bits_as_digits(n);
+    if (r->closed) {
+        caps_make(r, cases + first);
+        vertices_name(r, cases + first, caps);
+    }
     *out = cases;
-    *bytes = count * sizeof *cases + 256 * sizeof *digits;
+    *bytes = (first + caps) * sizeof *cases;
     return TC_OK;
 }
 
-/* The table of cases, uploaded once per context, method and winding. */
+/* The table of cases, uploaded once per context, method and winding, with and without faces on the border. */
 static tc_status cases_provide(run *r, device_buffer **out) {
-    device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored];
+    device_buffer *buffer = &r->context->work.cases[r->method][r->grid->mirrored][r->closed];
     void *cases = NULL;
     uint64_t bytes = 0;
     *out = buffer;
@@ -210,7 +231,7 @@ static tc_status step_emit(run *r, uint32_t n) {
     emit_step *step = &e->steps[n];
     slab s;
     step_describe(r, step, &s);
-    const bool snapped_whole = r->plan->zeros && r->plan->words_whole;
+    const bool snapped_whole = r->plan->needs.zeros && r->plan->words_whole;
     const bool marked = r->plan->slab_count == 1 || snapped_whole; /* for kernel 1, and nothing has overwritten that */
     tc_status status = step->opens_slab && !marked ? slab_mark_cells(r, step->ref, &s) : TC_OK;
     if (!status && e->window_count) status = window_open(r, e->mesh, &step->part);

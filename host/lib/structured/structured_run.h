@@ -20,9 +20,8 @@ typedef struct slab_store {
 
 /* What an OpenCL context adds to a grid. */
 struct device_grid {
-    slab_plan plan;
-    slab_plan snap_plan;               /* for method snap, made when first needed: before, layer_count is 0 */
-    device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plan.samples_whole */
+    slab_plan plans[2][2]; /* [zeros][closed]; but for the first made when first needed: before, layer_count is 0 */
+    device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plans have samples_whole */
     device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
     device_buffer ranges;              /* of all bricks, made at the first visit */
     bool ranges_known;
@@ -39,6 +38,7 @@ typedef struct run {
     const slab_plan *plan;
     kernels kernels;
     tc_method method;
+    bool closed;
     channel_set made;
     slab base;       /* the fields that all slabs share */
     uint32_t *heads; /* per slab: STATE_WORDS words, after classification */
@@ -50,8 +50,8 @@ typedef struct run {
     double start_ms;       /* kernels are built by then */
 } run;
 
-static inline const slab_plan *plan_of_method(const struct device_grid *device, tc_method method) {
-    return method_has_zeros(method) ? &device->snap_plan : &device->plan;
+static inline slab_plan *plan_of(struct device_grid *device, const tc_extract_options *options) {
+    return &device->plans[method_has_zeros(options->method)][options->closed != 0];
 }
 
 /* A slab and the window that it is in: below plan_window_count. */

@@ -55,7 +55,7 @@ static tc_status arrays_provide(tc_grid *grid) {
     cl_command_queue queue = grid->context->queue;
     tc_status status = TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
-        status = array_provide(grid, &grid->device->plan, queue, &grid->device->arrays[array], array, 0,
+        status = array_provide(grid, &grid->device->plans[0][0], queue, &grid->device->arrays[array], array, 0,
                                array_planes(grid, array));
     if (status || grid->context->in_place) return status;
     cl_int error = cl->Finish(queue);
@@ -102,16 +102,17 @@ tc_status structured_grid_create(tc_grid *grid) {
     uint64_t ignored[2];
     struct device_grid *device = calloc(1, sizeof *device);
     if (!device) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a grid");
+    slab_plan *plan = &device->plans[0][0];
     grid->device = device;
     device->missing = grid->blanked_samples || grid->blanked_cells ||
                       (grid->has_nodata && value_bits(grid->type, grid->nodata, ignored));
-    tc_status status = slab_plan_make(grid->context, grid, false, SAMPLES_THAT_FIT, &device->plan);
-    uint64_t bricks = device->plan.layer_count * plan_bricks_per_layer(&device->plan);
+    tc_status status = slab_plan_make(grid->context, grid, (plan_needs){0}, SAMPLES_THAT_FIT, plan);
+    uint64_t bricks = plan->layer_count * plan_bricks_per_layer(plan);
     if (!status)
         status = buffer_reserve(grid->context, &device->ranges, sizeof(brick_range) * bricks, "ranges of bricks");
     if (!status && grid->cl_samples) status = samples_adopt(grid, &device->arrays[ARRAY_SAMPLES]);
     if (!status) status = axes_provide(grid);
-    if (!status && device->plan.samples_whole) status = arrays_provide(grid);
+    if (!status && plan->samples_whole) status = arrays_provide(grid);
     if (status) cl->Finish(grid->context->queue); /* running copies read the caller's memory */
     return status;
 }
@@ -143,9 +144,9 @@ word_buffers *slab_words(const run *r, slab_ref ref) {
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
     workspace *work = &r->context->work;
     if (!r->grid->device->missing) return TC_OK;
-    const cl_uint end = r->plan->zeros  ? slab_words_end(r->plan, r->grid, ref.slab_index)
-                        : s->z1 < s->nz ? s->z1 + 1
-                                        : s->nz;
+    const cl_uint end = r->plan->needs.zeros ? slab_words_end(r->plan, r->grid, ref.slab_index)
+                        : s->z1 < s->nz      ? s->z1 + 1
+                                             : s->nz;
     const cl_uint planes = end - s->arrays.cell_z;
     const kernel_argument arguments[] = {ARGUMENT(*s),
                                          ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
@@ -195,7 +196,7 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     s->z1 = slab_end(r->plan, r->grid, slab_index);
     s->results.word_z = slab_words_begin(r->plan, slab_index);
     s->results.range_offset = (uint32_t)(s->results.word_z / BRICK_PLANES * plan_bricks_per_layer(r->plan));
-    s->arrays.cell_z = r->plan->zeros ? s->results.word_z : s->z0 ? s->z0 - 1 : 0;
+    s->arrays.cell_z = r->plan->needs.zeros ? s->results.word_z : s->z0 ? s->z0 - 1 : 0;
     s->arrays.sample_z = slab_samples_begin(r->plan, slab_index);
     s->results.head_offset = slab_index * STATE_WORDS;
     s->results.tiles_offset = r->plan->slab_count * STATE_WORDS + slab_index * TILE_WORDS * r->plan->slab_tiles;
@@ -213,12 +214,12 @@ tc_status slab_store_allocate(run *r) {
     const size_t brick_bytes = sizeof(brick_state);
     slab_store *s = &r->store;
     s->words = malloc(8 * words);
-    s->zeros = r->plan->zeros ? malloc(8 * words) : NULL;
+    s->zeros = r->plan->needs.zeros ? malloc(8 * words) : NULL;
     s->offsets = malloc(8 * words);
     s->triangle_offsets = malloc(2 * words);
     s->bricks = malloc(brick_bytes * bricks);
     s->active = malloc(4 * bricks);
-    if (s->words && (s->zeros || !r->plan->zeros) && s->offsets && s->triangle_offsets && s->bricks && s->active)
+    if (s->words && (s->zeros || !r->plan->needs.zeros) && s->offsets && s->triangle_offsets && s->bricks && s->active)
         return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory to keep the sign words of all slabs");
 }
@@ -262,7 +263,7 @@ static tc_status slab_move(run *r, slab_ref ref, bool save) {
         uint8_t *host;
         uint64_t begin, end, brick_bytes;
     } arrays[] = {{&work->words, constant, r->store.words, begin, end, 8 * BRICK_WORDS},
-                  {&work->words, zeros, r->store.zeros, begin, r->plan->zeros ? end : begin, 8 * BRICK_WORDS},
+                  {&work->words, zeros, r->store.zeros, begin, r->plan->needs.zeros ? end : begin, 8 * BRICK_WORDS},
                   {&work->offsets, 0, r->store.offsets, begin, end, 8 * BRICK_WORDS},
                   {&work->triangle_offsets, 0, r->store.triangle_offsets, own, own_end, 2 * BRICK_WORDS},
                   {&work->bricks, 0, r->store.bricks, begin, end, sizeof(brick_state)},

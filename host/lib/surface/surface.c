@@ -12,8 +12,8 @@ kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options,
 bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options) {
     if (grid->context->options.engine != TC_ENGINE_OPENCL) return false;
     if (grid->complex && !grid->complex->tetrahedron_count) return false;
-    if (grid->complex && options->method != TC_METHOD_TETRA) return false; /* there are none: refused later */
-    return !inside_range_of(grid->type, options->isovalue).uniform;
+    if (grid->complex && (options->method != TC_METHOD_TETRA || options->closed)) return false; /* refused later */
+    return inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed);
 }
 
 tc_status surface_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {

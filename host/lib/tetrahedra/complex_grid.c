@@ -10,9 +10,14 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
-    if (options->closed)
+    if (options->closed && options->method != TC_METHOD_TETRA)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "surfaces are closed on structured grids only, not on grids of tetrahedra");
+                               "method %s does not close surfaces of grids of tetrahedra: use method tetra",
+                               tc_method_name(options->method));
+    if (options->closed && grid->context->options.engine != TC_ENGINE_REFERENCE)
+        return (tc_status)fail(TC_ERROR_DEVICE,
+                               "kernels close surfaces of structured grids only: use the reference engine for grids of "
+                               "tetrahedra");
     if (options->method == TC_METHOD_TETRA) return TC_OK;
     if (options->method != TC_METHOD_HYBRID)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "method %s is for structured grids only, not for grids of tetrahedra",
@@ -29,8 +34,9 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
     return TC_OK;
 }
 
-static bool surface_possible(const tc_grid *grid, double isovalue) {
-    return grid->complex->tetrahedron_count && !inside_range_of(grid->type, isovalue).uniform;
+static bool surface_possible(const tc_grid *grid, const tc_extract_options *options) {
+    return grid->complex->tetrahedron_count &&
+           inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed);
 }
 
 /* Ends a call on the device. After a failure the state of the workspace is undefined. */
@@ -43,21 +49,21 @@ static tc_status device_end(tc_context *context, tc_status status) {
 
 tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
     tc_status status = complex_request_check(grid, options);
-    if (status || !surface_possible(grid, options->isovalue)) return status;
+    if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_count(grid, options, counts);
     return device_end(grid->context, complex_device_count(grid, options->isovalue, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = complex_request_check(grid, options);
-    if (status || !surface_possible(grid, options->isovalue)) return status;
+    if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_extract(grid, options, mesh);
     return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
 }
 
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
     tc_status status = complex_request_check(grid, options);
-    if (status || !surface_possible(grid, options->isovalue)) return status;
+    if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_carry(grid, options, c, vertex_count);
     return complex_device_carry(grid, options->isovalue, c, vertex_count);

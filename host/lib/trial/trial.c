@@ -142,7 +142,8 @@ static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind ki
         how[n] = (tc_extract_options){.struct_size = sizeof how[n],
                                       .isovalue = v->isovalue + (n ? 0.3 : 0),
                                       .method = kind.method,
-                                      .normals = channel_in(kind.made, CHANNEL_NORMALS)};
+                                      .normals = channel_in(kind.made, CHANNEL_NORMALS),
+                                      .closed = kind.closed};
     }
     if (!status) status = reference_make(v, how, meshes);
     if (!status) status = device_try(context, v, how, kind.emits, meshes);

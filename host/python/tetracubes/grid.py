@@ -97,10 +97,12 @@ class GridBase:
             raise ValueError("the grid is closed")
         self._context.call(function, self._handle, *arguments)
 
-    def count(self, level: float, *, method: str = "tetra", snap: float | None = None) -> Counts:
+    def count(self, level: float, *, method: str = "tetra", snap: float | None = None, normals: bool = False,
+              closed: bool = False) -> Counts:
         """The sizes of the surface that ``extract`` would make, as Counts; makes none."""
         counts = tc_counts()
-        self._call(tc.tc_count, ctypes.byref(extract_options(level, method, snap)), ctypes.byref(counts))
+        how = extract_options(level, method, snap, normals, closed)
+        self._call(tc.tc_count, ctypes.byref(how), ctypes.byref(counts))
         return Counts(counts.vertex_count, counts.triangle_count, counts.active_cell_count, counts.mesh_bytes)
 
     def extract(self, level: float, *, method: str = "tetra", snap: float | None = None, normals: bool = False,

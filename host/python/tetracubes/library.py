@@ -134,6 +134,29 @@ class tc_mesh_data(_Sized):
                 ("origin", c_double * 3)]
 
 
+class tc_planes(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("first", c_int64), ("count", c_int64), ("samples", c_void_p),
+                ("blanked_samples", c_void_p), ("blanked_cells", c_void_p)]
+
+
+class tc_mesh_piece(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("surface", c_size_t), ("first_vertex", c_uint64),
+                ("first_triangle", c_uint64), ("mesh", POINTER(tc_mesh_data)), ("grid", c_void_p),
+                ("first_plane", c_int64), ("plane_count", c_int64)]
+
+
+tc_read_planes = CFUNCTYPE(c_int, c_void_p, POINTER(tc_planes))
+tc_take_counts = CFUNCTYPE(c_int, c_void_p, POINTER(tc_counts))
+tc_take_piece = CFUNCTYPE(c_int, c_void_p, POINTER(tc_mesh_piece))
+
+
+class tc_stream_options(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("grid", POINTER(tc_grid_options)),
+                ("surfaces", POINTER(tc_extract_options)), ("surface_count", c_size_t),
+                ("max_memory_bytes", c_uint64), ("read", tc_read_planes), ("counted", tc_take_counts),
+                ("take", tc_take_piece), ("user", c_void_p), ("owned", c_int64 * 2)]
+
+
 class tc_field(_Sized):
     _fields_ = [("struct_size", c_size_t), ("type", c_int), ("components", c_int), ("values", c_void_p)]
 
@@ -196,6 +219,11 @@ FUNCTIONS = {
     "tc_extract_options_init": (None, POINTER(tc_extract_options)),
     "tc_count": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts)),
     "tc_extract": (_STATUS, c_void_p, POINTER(tc_extract_options), _OUT),
+    "tc_seam_size": (c_uint64, c_void_p),
+    "tc_count_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts), c_void_p, c_uint64),
+    "tc_extract_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), c_void_p, c_uint64, _OUT),
+    "tc_stream_options_init": (None, POINTER(tc_stream_options)),
+    "tc_stream": (_STATUS, c_void_p, POINTER(tc_stream_options)),
     "tc_mesh_get": (_STATUS, c_void_p, POINTER(tc_mesh_data)),
     "tc_mesh_destroy": (None, c_void_p),
     "tc_interpolate_field": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_field), c_void_p, c_uint64),
@@ -211,11 +239,20 @@ FUNCTIONS = {
     "tc_context_tuning_save": (_STATUS, c_void_p),
 }
 
-# The tool's writers and its hash: mesh_files.c beside this package.
+class view_angles(Structure):
+    """Where a picture is looked at from, in degrees (view.h)."""
+
+    _fields_ = [("azimuth", c_double), ("elevation", c_double)]
+
+
+# The tool's writers, its hash and its pictures: mesh_files.c beside this package.
 FILE_FUNCTIONS = {
     "mesh_files_hash": (c_uint64, POINTER(tc_mesh_data)),
     "mesh_files_save": (_STATUS, c_char_p, c_char_p, POINTER(tc_mesh_data), c_int, POINTER(c_char_p), POINTER(c_int),
                         POINTER(c_void_p), POINTER(c_int)),
+    "mesh_files_view": (c_char_p, c_int, POINTER(view_angles)),
+    "mesh_files_draw": (_STATUS, POINTER(tc_mesh_data), view_angles, c_int, c_int, c_void_p),
+    "mesh_files_save_picture": (_STATUS, c_char_p, c_int, c_int, c_void_p),
     "mesh_files_message": (c_char_p,),
 }
 

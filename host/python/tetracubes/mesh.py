@@ -3,14 +3,49 @@ from __future__ import annotations
 
 import ctypes
 import os
+import tempfile
 import warnings
 from typing import Any
 
 import numpy as np
 
-from .library import files, tc_mesh_data
+from .library import files, tc_mesh_data, view_angles
 
-_USAGE = 2  # of exit_status.h
+_USAGE, _NO_MEMORY_FOR = 2, "out of memory"  # of exit_status.h; how the tool's sentences on memory begin
+_SIDES = 16, 8192  # pixels, of picture.h
+
+
+def _check(status):
+    """Raises what a status of the writers means."""
+    if status:
+        text = files.mesh_files_message().decode(errors="replace").replace("--format", "format=")
+        error = ValueError if status == _USAGE else MemoryError if text.startswith(_NO_MEMORY_FOR) else OSError
+        raise error(text)
+
+
+def _views():
+    """Angles of views by their names; None: where none is chosen."""
+    found, angles = {}, view_angles()
+    while (name := files.mesh_files_view(len(found), ctypes.byref(angles))) is not None:
+        found[name.decode()] = view_angles(angles.azimuth, angles.elevation)
+    return {**found, None: angles}
+
+
+_VIEWS = _views()
+
+
+def _angles(view):
+    if view is None or isinstance(view, str):
+        if view not in _VIEWS:
+            raise ValueError(f"view is {view!r}, not one of {', '.join(filter(None, _VIEWS))}")
+        return _VIEWS[view]
+    try:
+        azimuth, elevation = map(float, view)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"view is {view!r}, neither a name nor azimuth and elevation in degrees") from error
+    if not (abs(azimuth) <= 360 and abs(elevation) <= 90):
+        raise ValueError(f"view is {view!r}: azimuth goes to 360 degrees, elevation to 90")
+    return view_angles(azimuth, elevation)
 
 
 class Mesh:
@@ -74,11 +109,15 @@ class Mesh:
         return data, arrays
 
     def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin
-        """Writes the mesh: .ply, .vtp, .stl or .obj, with normals and values where the format has them.
+        """Writes the mesh: .ply, .vtp, .stl, .obj, .off, .glb or .npz, with normals and values where the format has them;
+        or a picture of it: .png, as of ``preview``.
 
         The bytes are the tool's: coordinates are x, y, z in world space. An older file stays whole until the new one is
         complete. format: "ply", ..., whatever path ends in.
         """
+        if format is None and os.fsdecode(path).lower().endswith(".png"):
+            self.preview(path)
+            return
         data, _arrays = self._data()
         count = len(self.values)
         values = [np.ascontiguousarray(array, np.float32) for array in self.values.values()]
@@ -86,14 +125,45 @@ class Mesh:
         components = (ctypes.c_int * count)(*[array[:1].size if array.ndim > 1 else 1 for array in values])
         places = (ctypes.c_void_p * count)(*[array.ctypes.data for array in values])
         is_relative = ctypes.c_int()
-        status = files.mesh_files_save(os.fsencode(path), None if format is None else format.encode(),
-                                       ctypes.byref(data), count, names, components, places, ctypes.byref(is_relative))
-        if status:
-            text = files.mesh_files_message().decode(errors="replace")
-            raise ValueError(text) if status == _USAGE else OSError(text)
+        _check(files.mesh_files_save(os.fsencode(path), None if format is None else format.encode(), ctypes.byref(data),
+                                     count, names, components, places, ctypes.byref(is_relative)))
         if is_relative.value:
             warnings.warn(f"{os.fspath(path)} has float32 coordinates, relative to {', '.join(map(str, self.origin))}",
                           RuntimeWarning, stacklevel=2)
+
+    def picture(self, view: str | tuple[float, float] | None = None,
+                size: tuple[int, int] = (1024, 768)) -> np.ndarray:
+        """The mesh as an image, uint8 (height, width, 3), sRGB: sides towards the lower values blue, others ochre.
+
+        view: "iso", "front", "back", "left", "right", "top", "bottom", or azimuth and elevation in degrees. From the
+        front, which is along +y, x runs to the right and z up.
+        size: width and height, 16 to 8192 pixels each.
+        """
+        angles = _angles(view)
+        width, height = (int(side) for side in size)
+        if not _SIDES[0] <= min(width, height) <= max(width, height) <= _SIDES[1]:
+            raise ValueError(f"size is {size!r}: width and height are from {_SIDES[0]} to {_SIDES[1]} pixels")
+        pixels = np.full((height, width, 3), 255, np.uint8)
+        data, _arrays = self._data()
+        _check(files.mesh_files_draw(ctypes.byref(data), angles, width, height, pixels.ctypes.data))
+        return pixels
+
+    def preview(self, path: str | os.PathLike, view: str | tuple[float, float] | None = None,
+                size: tuple[int, int] = (1024, 768)) -> None:
+        """Writes ``picture`` as PNG; the pixels are those of the tool's --preview."""
+        pixels = self.picture(view, size)
+        _check(files.mesh_files_save_picture(os.fsencode(path), pixels.shape[1], pixels.shape[0], pixels.ctypes.data))
+
+    def _repr_png_(self):
+        """The picture that a notebook shows; None where the package was built without PNG."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mesh.png")
+            try:
+                self.preview(path, size=(640, 480))
+            except ValueError:
+                return None
+            with open(path, "rb") as file:
+                return file.read()
 
     # Other packages name coordinates x, y, z, and so do files: there the order is always that.
 

@@ -16,6 +16,7 @@ enum { NOTICES_MOST = 64 };
 typedef struct dataset_memory {
     struct dataset_memory *next;
     void *memory;
+    size_t mapped; /* bytes of a mapped file; 0: from samples_allocate */
 } dataset_memory;
 
 void *dataset_allocate(dataset *d, uint64_t bytes) {
@@ -38,9 +39,33 @@ int dataset_keep(dataset *d, void *memory) {
         samples_free(memory);
         return fail(STATUS_FAILED, "no memory for the list of the input's arrays");
     }
-    *entry = (dataset_memory){d->memory, memory};
+    *entry = (dataset_memory){d->memory, memory, 0};
     d->memory = entry;
     return 0;
+}
+
+/* All memory of the other one, its mapped file too. */
+static int take_memory(dataset *to, dataset *from) {
+    if (from->mapping) {
+        dataset_memory *entry = malloc(sizeof *entry);
+        if (!entry) return fail(STATUS_FAILED, "no memory for the list of the input's arrays");
+        *entry = (dataset_memory){from->memory, from->mapping, from->mapping_bytes};
+        from->memory = entry;
+        from->mapping = NULL;
+        from->mapping_bytes = 0;
+    }
+    dataset_memory **end = &from->memory;
+    while (*end) end = &(*end)->next;
+    *end = to->memory;
+    to->memory = from->memory;
+    from->memory = NULL;
+    return 0;
+}
+
+void dataset_set_units(dataset *d, const char *text) {
+    int is_plain = *text && strlen(text) < sizeof d->units;
+    for (const char *at = text; *at; at++) is_plain &= *at > ' ' && *at < 127 && !strchr("\"'=<>&\\", *at);
+    if (is_plain) snprintf(d->units, sizeof d->units, "%s", text);
 }
 
 char *dataset_text(dataset *d, const char *text) {
@@ -123,10 +148,44 @@ int dataset_leave_out(dataset *d, const char *name, const char *format, ...) {
     return 0;
 }
 
+static int has_notice(const dataset *d, const char *text) {
+    for (int n = 0; n < d->notice_count; n++)
+        if (strcmp(d->notices[n], text) == 0) return 1;
+    return 0;
+}
+
+/* The notices of arrays that are left out come with these. */
+int dataset_notices_of(dataset *to, const dataset *from) {
+    for (int n = 0; n < from->absent_count; n++)
+        if (dataset_leave_out(to, from->absent[n].name, "%s", from->absent[n].reason)) return STATUS_FAILED;
+    for (int n = 0; n < from->notice_count; n++)
+        if (!has_notice(to, from->notices[n])) dataset_notice(to, "%s", from->notices[n]);
+    return 0;
+}
+
+int dataset_absorb(dataset *to, dataset *from) {
+    if (dataset_notices_of(to, from)) return STATUS_FAILED;
+    for (size_t n = 0; n < from->files.count; n++)
+        if (file_list_add(&to->files, from->files.files[n])) return STATUS_FAILED;
+    for (int n = 0; n < from->block_count; n++) {
+        dataset_block *added = NULL;
+        if (dataset_block_add(to, &added)) return STATUS_FAILED;
+        *added = from->blocks[n];
+        from->blocks[n].fields = NULL; /* they are the other one's now */
+        from->blocks[n].field_count = 0;
+    }
+    if (take_memory(to, from)) return STATUS_FAILED;
+    dataset_release(from);
+    return 0;
+}
+
 void dataset_release(dataset *d) {
     for (dataset_memory *entry = d->memory, *next; entry; entry = next) {
         next = entry->next;
-        samples_free(entry->memory);
+        if (entry->mapped)
+            mapping_close(&(mapping){.bytes = entry->memory, .size = entry->mapped});
+        else
+            samples_free(entry->memory);
         free(entry);
     }
     for (int n = 0; n < d->block_count; n++) free(d->blocks[n].fields);

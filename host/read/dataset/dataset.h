@@ -17,6 +17,7 @@ typedef struct dataset_field {
     int components;   /* values per tuple: 1 for a scalar */
     tc_type type;     /* f64 where the file has 64-bit integers */
     int is_active;    /* the file's active scalars: taken where none of several fields is chosen */
+    int is_number;    /* global numbers: points or cells of several pieces with the same number are one */
     int is_rounded;   /* no double holds some of these integers: the nearest stands for them */
     int is_scaled;    /* f64, made of stored values by a slope and an intercept that have the precision of f32 */
     const void *values;
@@ -33,6 +34,12 @@ typedef struct coordinates {
 } coordinates;
 
 static inline double coordinate_at(coordinates c, int64_t n) { return c.f64 ? c.f64[n] : (double)c.f32[n]; }
+
+/* Bits of vtkGhostType, which blanked_cells has of VTK's files: the cell is another piece's, too; it is hidden. */
+enum { CELL_IS_DUPLICATE = 1, CELL_IS_HIDDEN = 32, GHOST_CELL = CELL_IS_DUPLICATE | CELL_IS_HIDDEN };
+
+/* Of points it is hidden; there is no more to know. */
+enum { POINT_IS_HIDDEN = 2 };
 
 enum block_kind { BLOCK_UNIFORM, BLOCK_RECTILINEAR, BLOCK_CURVILINEAR, BLOCK_UNSTRUCTURED };
 
@@ -76,6 +83,8 @@ typedef struct dataset {
     int block_count;
     char format[24]; /* "NRRD", "VTK legacy", "VTK XML", "Plot3D", ... */
     char space[64];  /* the file's name of its world space, or "" */
+    char world[8];   /* where the axes of this space point, in letters as RAS and LPS; "" where the file does not say */
+    char units[16];  /* of coordinates, as "mm"; "" where the file does not say */
 
     char **notices;                /* what the user should know about how the file was read: dataset_notice */
     int notice_count, notice_lost; /* lost: there was no memory for one */
@@ -107,6 +116,15 @@ int dataset_map(dataset *d, const char *path, struct mapping *m);
 /* Takes over memory from samples_allocate: it lives as long as the dataset, or is freed at once where this fails. 0 or
  * STATUS_FAILED. */
 int dataset_keep(dataset *d, void *memory);
+
+/* Takes over the blocks, files and memory of another dataset and what is to be told of it, which is told once; of
+ * notices_of that alone. *from is then empty. 0 or STATUS_FAILED, and both are to be released. */
+int dataset_absorb(dataset *to, dataset *from);
+int dataset_notices_of(dataset *to, const dataset *from);
+
+/* Sets the units, unless the text is none that can stand in a header: printed characters without blanks, quotation
+ * marks and '='. */
+void dataset_set_units(dataset *d, const char *text);
 
 /* A copy of the text that lives as long as the dataset. */
 char *dataset_text(dataset *d, const char *text);

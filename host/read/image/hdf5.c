@@ -39,13 +39,9 @@ int hdf5_read(const read_request *request, const mapping *file, dataset *out) {
     hdf5_file h;
     axes stored;
     layout l;
-    (void)file; /* libhdf5 opens it by its name */
     int status = dataset_image_begin(out);
     if (status) return status;
-    if (mapping_is_stream(request->path) || mapping_is_replaced(request->path))
-        return fail(STATUS_INPUT, "%s: is HDF5 on a stream or packed by gzip; give it as a file, unpacked",
-                    request->path);
-    status = hdf5_open(&h, request->path, request->inside);
+    status = hdf5_open(&h, request->path, file, request->inside);
     if (!status) {
         array_axes_list(h.shape, h.dimension, 0, &stored);
         status = layout_make(h.path, &stored, h.element, request, &l);
@@ -55,6 +51,7 @@ int hdf5_read(const read_request *request, const mapping *file, dataset *out) {
     if (!status) {
         l.swapped = h.is_swapped;
         snprintf(out->format, sizeof out->format, "HDF5");
+        if (h.is_in_um && !request->has_spacing) dataset_set_units(out, "um");
         status = load(request, &h, &stored, &l, out);
     }
     hdf5_close(&h);

@@ -5,6 +5,7 @@
 
 #include "exit_status.h"
 #include "failure.h"
+#include "hdf5_memory.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -21,7 +22,7 @@ static herr_t keep_message(unsigned n, const H5E_error2_t *error, void *user) {
     return 0;
 }
 
-static int fail_by_library(const hdf5_file *h, const char *what) {
+int hdf5_fail(const hdf5_file *h, const char *what) {
     char message[MESSAGE_BYTES] = "";
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_message, message);
     for (char *at = message; *at; at++)
@@ -71,11 +72,12 @@ static int find_only(const hdf5_file *h, char name[NAME_BYTES]) {
     found_names f = {.count = 0};
     f.list[0] = '\0';
     if (H5Ovisit(h->file, H5_INDEX_NAME, H5_ITER_NATIVE, note_dataset, &f) < 0)
-        return fail_by_library(h, "its list of datasets cannot be read");
+        return hdf5_fail(h, "its list of datasets cannot be read");
     if (!f.count) return fail(STATUS_INPUT, "%s: holds no dataset of numbers with three axes or more", h->path);
     if (f.count > 1)
         return fail(STATUS_USAGE, "%s: holds %d datasets: name one behind a colon, as in %s:/%s, of: %s%s", h->path,
-                    f.count, h->path, f.only, f.list, f.count > NAMES_MOST ? ", ..." : "");
+                    f.count, mapping_is_standard_input(h->path) ? "/dev/stdin" : h->path, f.only, f.list,
+                    f.count > NAMES_MOST ? ", ..." : "");
     snprintf(name, NAME_BYTES, "%s", f.only);
     return 0;
 }
@@ -90,6 +92,17 @@ static herr_t refuse_file(const char *parent, const char *group, const char *fil
     return -1;
 }
 
+hid_t hdf5_open_group(const hdf5_file *h, const char *name) {
+    int is_elsewhere = 0;
+    const hid_t access = H5Pcreate(H5P_GROUP_ACCESS);
+    const int is_safe = access >= 0 && H5Pset_elink_cb(access, refuse_file, &is_elsewhere) >= 0;
+    const hid_t group = is_safe ? H5Gopen2(h->file, name, access) : -1;
+    if (access >= 0) H5Pclose(access);
+    return group;
+}
+
+int hdf5_has(hid_t group, const char *name) { return H5Lexists(group, name, H5P_DEFAULT) > 0; }
+
 static int open_dataset(hdf5_file *h, const char *name) {
     int is_elsewhere = 0;
     const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
@@ -99,7 +112,7 @@ static int open_dataset(hdf5_file *h, const char *name) {
     if (is_elsewhere) return fail(STATUS_INPUT, "%s: '%.100s' is a link to another file: name that one", h->path, name);
     char what[NAME_BYTES + 40];
     snprintf(what, sizeof what, "has no dataset '%.*s'", NAME_BYTES, name);
-    return h->dataset >= 0 ? 0 : fail_by_library(h, what);
+    return h->dataset >= 0 ? 0 : hdf5_fail(h, what);
 }
 
 static int read_shape(hdf5_file *h) {
@@ -176,14 +189,18 @@ static int read_storage(hdf5_file *h) {
     h->layout = stored;
     h->stored_bytes = H5Dget_storage_size(h->dataset);
     h->start = start != HADDR_UNDEF ? start : 0;
-    if (stored != H5D_LAYOUT_ERROR && h->stored_bytes && (stored != H5D_CONTIGUOUS || start != HADDR_UNDEF)) return 0;
+    if (stored == H5D_LAYOUT_ERROR || (stored == H5D_CONTIGUOUS && start == HADDR_UNDEF)) h->stored_bytes = 0;
+    return 0;
+}
+
+static int check_stored(const hdf5_file *h) {
+    if (h->stored_bytes) return 0;
     return fail(STATUS_INPUT, "%s: its dataset was made, but no samples were written", h->path);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- place */
 
-/* An attribute of so many numbers. Returns 0, and leaves the values, where there is none. */
-static int read_numbers(hid_t object, const char *name, double *values, int count) {
+int hdf5_read_numbers(hid_t object, const char *name, double *values, int count) {
     double own[9];
     if (H5Aexists(object, name) <= 0) return 0;
     const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), space = attribute < 0 ? -1 : H5Aget_space(attribute);
@@ -195,16 +212,32 @@ static int read_numbers(hid_t object, const char *name, double *values, int coun
     return is_read;
 }
 
+void hdf5_read_text(hid_t object, const char *name, char text[HDF5_TEXT_BYTES]) {
+    text[0] = '\0';
+    if (H5Aexists(object, name) <= 0) return;
+    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = attribute < 0 ? -1 : H5Aget_type(attribute);
+    const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
+    const size_t bytes = type < 0 ? 0 : H5Tget_size(type);
+    if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && bytes < HDF5_TEXT_BYTES &&
+        space >= 0 && H5Sget_simple_extent_npoints(space) == 1) {
+        memset(text, 0, HDF5_TEXT_BYTES);
+        if (H5Aread(attribute, type, text) < 0) text[0] = '\0';
+    }
+    if (space >= 0) H5Sclose(space);
+    if (type >= 0) H5Tclose(type);
+    if (attribute >= 0) H5Aclose(attribute);
+}
+
 /* The image that VTK has written, by the attributes of its group; the origin is that of index 0, 0, 0 of the extent. */
 static void read_place_of_vtk(hdf5_file *h) {
     double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0}, extent[6] = {0};
     double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const hid_t group = H5Gopen2(h->file, "/VTKHDF", H5P_DEFAULT);
+    const hid_t group = hdf5_open_group(h, "/VTKHDF");
     if (group < 0) return;
-    read_numbers(group, "Spacing", spacing, 3);
-    read_numbers(group, "Origin", origin, 3);
-    read_numbers(group, "Direction", direction, 9);
-    read_numbers(group, "WholeExtent", extent, 6);
+    hdf5_read_numbers(group, "Spacing", spacing, 3);
+    hdf5_read_numbers(group, "Origin", origin, 3);
+    hdf5_read_numbers(group, "Direction", direction, 9);
+    hdf5_read_numbers(group, "WholeExtent", extent, 6);
     H5Gclose(group);
     for (int row = 0; row < 3; row++) {
         h->matrix[row][3] = origin[row];
@@ -220,7 +253,7 @@ static int read_place(hdf5_file *h) {
     double sizes[3] = {1, 1, 1};
     char name[NAME_BYTES] = "";
     H5Iget_name(h->dataset, name, sizeof name);
-    read_numbers(h->dataset, "element_size_um", sizes, 3);
+    h->is_in_um = hdf5_read_numbers(h->dataset, "element_size_um", sizes, 3);
     for (int axis = 0; axis < 3; axis++) h->matrix[axis][axis] = sizes[2 - axis] > 0 ? sizes[2 - axis] : 1;
     if (strncmp(name, "/VTKHDF/CellData/", 17) == 0)
         return fail(STATUS_INPUT, "%s: '%s' has values of cells; of VTKHDF, those of the points of images are read",
@@ -229,23 +262,31 @@ static int read_place(hdf5_file *h) {
     return 0;
 }
 
-int hdf5_open(hdf5_file *h, const char *path, const char *name) {
-    char only[NAME_BYTES];
-    int status = 0;
+int hdf5_open_file(hdf5_file *h, const char *path, const mapping *file) {
     *h = (hdf5_file){.path = path, .file = -1, .dataset = -1};
     H5Eget_auto2(H5E_DEFAULT, &h->report, &h->report_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    H5Pset_file_locking(access, 0, 1); /* file systems of networks may have no locks */
-    h->file = H5Fopen(path, H5F_ACC_RDONLY, access);
-    H5Pclose(access);
-    if (h->file < 0) return fail_by_library(h, "cannot be opened as HDF5; it is damaged or cut");
-    if (!name && !(status = find_only(h, only))) name = only;
-    if (!status) status = open_dataset(h, name);
+    const hid_t access = hdf5_memory_access(file->bytes, file->size, -1, NULL);
+    if (access >= 0) h->file = H5Fopen(path, H5F_ACC_RDONLY, access);
+    if (access >= 0) H5Pclose(access);
+    return h->file < 0 ? hdf5_fail(h, "cannot be opened as HDF5; it is damaged or cut") : 0;
+}
+
+int hdf5_open_array(hdf5_file *h, const char *name) {
+    if (h->dataset >= 0) H5Dclose(h->dataset);
+    h->dataset = -1;
+    int status = open_dataset(h, name);
     if (!status) status = read_shape(h);
     if (!status) status = read_type(h);
-    if (!status) status = read_storage(h);
+    return status ? status : read_storage(h);
+}
+
+int hdf5_open(hdf5_file *h, const char *path, const mapping *file, const char *name) {
+    char only[NAME_BYTES];
+    int status = hdf5_open_file(h, path, file);
+    if (!status && !name && !(status = find_only(h, only))) name = only;
+    if (!status) status = hdf5_open_array(h, name);
+    if (!status) status = check_stored(h);
     return status ? status : read_place(h);
 }
 
@@ -253,7 +294,7 @@ int hdf5_load(const hdf5_file *h, void *to) {
     if (h->layout == H5D_CHUNKED) return hdf5_load_chunks(h, to);
     const hid_t type = H5Dget_type(h->dataset);
     const int is_read = type >= 0 && H5Dread(h->dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) >= 0;
-    const int status = is_read ? 0 : fail_by_library(h, "its samples cannot be read; it is damaged or cut");
+    const int status = is_read ? 0 : hdf5_fail(h, "its samples cannot be read; it is damaged or cut");
     if (type >= 0) H5Tclose(type);
     return status;
 }

@@ -37,7 +37,7 @@ typedef struct meta_header {
     int64_t sizes[MAX_DIMENSION];
     int64_t channels, header_size;
     number_list size, spacing, element_size, offset, direction;
-    char orientation[16];
+    char orientation[16], units[16];
     source from;
     uint32_t seen;     /* a bit per key that was met */
     char repeated[32]; /* a key that was met twice, or "" */
@@ -126,6 +126,7 @@ static int parse_geometry(meta_header *h, const char *key, const char *value) {
         return parse_list(h, key, "TransformMatrix", value, &h->direction);
     if (!strcasecmp(key, "AnatomicalOrientation") && strcmp(value, "???"))
         snprintf(h->orientation, sizeof h->orientation, "%s", value);
+    if (!strcasecmp(key, "DistanceUnits") && strcmp(value, "?")) snprintf(h->units, sizeof h->units, "%s", value);
     return 0;
 }
 
@@ -361,6 +362,8 @@ int metaimage_read(const read_request *request, const mapping *file, dataset *ou
     l.swapped = !h.is_text && h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
     snprintf(out->format, sizeof out->format, "MetaImage");
     if (*h.orientation) snprintf(out->space, sizeof out->space, "anatomical orientation %s", h.orientation);
+    if (*h.orientation) snprintf(out->world, sizeof out->world, "LPS"); /* ITK's, whatever way the image lies in it */
+    if (!request->has_spacing) dataset_set_units(out, h.units);
     status = source_load(request, &h.from, &l, out);
 cleanup:
     data_names_release(&h.from.files);

@@ -39,7 +39,7 @@ typedef struct nifti_header {
     int datatype, intent;
     double vox_offset;
     double slope, intercept;
-    int qform_code, sform_code;
+    int qform_code, sform_code, units;
     double quatern[3], qoffset[3];
     double sform[3][4];
     union {
@@ -86,6 +86,7 @@ static void take_v1(nifti_header *h) {
     h->intent = r->intent_code;
     h->qform_code = r->qform_code;
     h->sform_code = r->sform_code;
+    h->units = r->xyzt_units;
     const float quatern[] = {r->quatern_b, r->quatern_c, r->quatern_d};
     const float qoffset[] = {r->qoffset_x, r->qoffset_y, r->qoffset_z};
     const float *const rows[] = {r->srow_x, r->srow_y, r->srow_z};
@@ -109,6 +110,7 @@ static void take_v2(nifti_header *h) {
     h->intent = r->intent_code;
     h->qform_code = r->qform_code;
     h->sform_code = r->sform_code;
+    h->units = r->xyzt_units;
     const double quatern[] = {r->quatern_b, r->quatern_c, r->quatern_d};
     const double qoffset[] = {r->qoffset_x, r->qoffset_y, r->qoffset_z};
     const double *const rows[] = {r->srow_x, r->srow_y, r->srow_z};
@@ -224,6 +226,13 @@ static const char *space_name(int code) {
     return code >= 0 && code < (int)(sizeof names / sizeof *names) ? names[code] : "unknown";
 }
 
+static const char *units_name(int units) {
+    static const char *const names[] = {
+        [NIFTI_UNITS_METER] = "m", [NIFTI_UNITS_MM] = "mm", [NIFTI_UNITS_MICRON] = "um"};
+    const int of_space = units & 7;
+    return of_space && of_space <= NIFTI_UNITS_MICRON ? names[of_space] : "";
+}
+
 /* The voxel sizes that the matrix is made of; those that are none become 1, and a qform has none below 0. */
 static void take_voxel_sizes(const nifti_header *h, double sizes[3], dataset *out) {
     int is_changed = 0;
@@ -269,6 +278,8 @@ static int fill_matrix(nifti_header *h, dataset *out) {
     if (h->sform_code > 0 && !is_sform)
         dataset_notice(out, "its sform does not span space, the %s is taken", code > 0 ? "qform" : "voxel size");
     snprintf(out->space, sizeof out->space, "%s", code > 0 ? space_name(code) : "voxel size only");
+    if (code > 0) snprintf(out->world, sizeof out->world, "RAS");
+    if (!h->request->has_spacing && !h->is_analyze) dataset_set_units(out, units_name(h->units));
     return world_place(h->request, h->path, out->blocks->matrix);
 }
 

@@ -135,6 +135,7 @@ enum field {
     FIELD_LINE_SKIP,
     FIELD_BYTE_SKIP,
     FIELD_SPACE,
+    FIELD_UNITS,
     FIELD_ORIGIN,
     FIELD_PER_AXIS, /* this and the following have values for each axis, or mean some of them */
     FIELD_SIZES,
@@ -156,6 +157,7 @@ static enum field field_of(const char *name) {
         [FIELD_LINE_SKIP] = "|line skip|lineskip|",
         [FIELD_BYTE_SKIP] = "|byte skip|byteskip|",
         [FIELD_SPACE] = "|space|",
+        [FIELD_UNITS] = "|space units|spaceunits|units|",
         [FIELD_ORIGIN] = "|space origin|spaceorigin|",
         [FIELD_SIZES] = "|sizes|",
         [FIELD_SPACINGS] = "|spacings|",
@@ -191,6 +193,9 @@ static int parse_field(nrrd_header *h, header_text *text, const char *name, char
         return parse_skip(h, value, name, INT64_MIN, &h->from.byte_skip);
     case FIELD_SPACE:
         snprintf(h->space, sizeof h->space, "%s", value);
+        return 0;
+    case FIELD_UNITS:
+        nrrd_units(h, value);
         return 0;
     case FIELD_ORIGIN:
         h->has_origin = 1;
@@ -302,7 +307,7 @@ int nrrd_read(const read_request *request, const mapping *file, dataset *out) {
         goto cleanup;
     l.swapped = h.from.encoding != ENCODING_TEXT && h.endian && h.endian != __BYTE_ORDER__;
     snprintf(out->format, sizeof out->format, "NRRD");
-    snprintf(out->space, sizeof out->space, "%s", h.space);
+    nrrd_name_world(&h, out);
     status = source_load(request, &h.from, &l, out);
 cleanup:
     data_names_release(&h.from.files);

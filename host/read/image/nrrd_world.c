@@ -14,6 +14,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -160,4 +161,29 @@ int nrrd_matrix(const nrrd_header *h, const axes *a, dataset *out) {
         dataset_notice(out, "the space origin is not known (NaN), it is taken for 0");
     for (; space < 3; space++) complete_matrix(out->blocks->matrix, space);
     return world_place(h->request, h->path, out->blocks->matrix);
+}
+
+void nrrd_units(nrrd_header *h, const char *text) {
+    char first[sizeof h->units] = "";
+    for (const char *at = strchr(text, '"'); at; at = strchr(at + 1, '"')) {
+        const size_t length = strcspn(++at, "\"");
+        if (length >= sizeof first || (length && *first && (strncmp(first, at, length) != 0 || first[length]))) return;
+        if (length) snprintf(first, sizeof first, "%.*s", (int)length, at);
+        at += length;
+        if (!*at) break;
+    }
+    snprintf(h->units, sizeof h->units, "%s", first);
+}
+
+void nrrd_name_world(const nrrd_header *h, dataset *out) {
+    static const struct {
+        const char *world, *names;
+    } spaces[] = {{"RAS", "|right-anterior-superior|RAS|right-anterior-superior-time|RAST|"},
+                  {"LAS", "|left-anterior-superior|LAS|left-anterior-superior-time|LAST|"},
+                  {"LPS", "|left-posterior-superior|LPS|left-posterior-superior-time|LPST|"}};
+    snprintf(out->space, sizeof out->space, "%s", h->space);
+    for (size_t n = 0; n < sizeof spaces / sizeof *spaces; n++)
+        if (*h->space && names_have(spaces[n].names, h->space))
+            snprintf(out->world, sizeof out->world, "%s", spaces[n].world);
+    if (!h->request->has_spacing) dataset_set_units(out, h->units);
 }

@@ -26,7 +26,7 @@ typedef struct nrrd_header {
     double directions[MAX_AXES][3]; /* NaN: none */
     double origin[3];               /* NaN: not known */
     int has_sizes, has_spacings, has_mins, has_maxs, has_kinds, has_directions, has_origin;
-    char space[64];
+    char space[64], units[16];
     uint32_t seen;     /* a bit per field that was met */
     char repeated[32]; /* the name of a field that was met twice, or "" */
 } nrrd_header;
@@ -37,6 +37,12 @@ int nrrd_vectors(const nrrd_header *h, const char *text, const char *field, doub
 
 /* Where no direction is known, the header counts as one without directions; a notice says so. */
 void nrrd_settle_directions(nrrd_header *h, dataset *out);
+
+/* Takes the units that all axes of "space units" or "units" have that have one. */
+void nrrd_units(nrrd_header *h, const char *text);
+
+/* Names the world space, and where its axes point, if the header says so. */
+void nrrd_name_world(const nrrd_header *h, dataset *out);
 
 /* Which axes are of space, components and frames. */
 void nrrd_axes(const nrrd_header *h, axes *out);

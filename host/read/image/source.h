@@ -10,7 +10,7 @@
 #include "dataset/dataset.h"
 #include "dataset/layout.h"
 #include "file/unpack.h"
-#include "image/data_names.h"
+#include "dataset/data_names.h"
 
 enum { SKIP_FROM_END = -1 }; /* SKIP_FROM_END - n: n bytes follow the data */
 

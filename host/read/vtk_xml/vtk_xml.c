@@ -7,6 +7,7 @@
  */
 #include "vtk_xml/vtk_xml.h"
 
+#include "dataset/array_memory.h"
 #include "dataset/layout.h"
 #include "dataset/part.h"
 #include "dataset/world.h"
@@ -19,24 +20,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bits of vtkGhostType (vtkDataSetAttributes.h). */
-enum { HIDDEN_POINT = 2, DUPLICATE_CELL = 1, HIDDEN_CELL = 32 };
-
 /* --------------------------------------------------------------------------------------------------------- geometry */
 
-static int set_matrix(const xml_reader *r, dataset_block *block) {
-    const xml_document *doc = &r->doc;
-    const double *d = doc->direction;
-    double matrix[3][4];
-    for (int a = 0; a < 3 && !r->request->has_spacing; a++)
-        if (d[a] == 0 && d[3 + a] == 0 && d[6 + a] == 0) return world_no_direction(doc->path, "Direction", a + 1);
+int vtk_xml_matrix(const read_request *request, const double origin[3], const double spacing[3],
+                   const double direction[9], double matrix[3][4]) {
+    const double *d = direction;
+    for (int a = 0; a < 3 && !request->has_spacing; a++)
+        if (d[a] == 0 && d[3 + a] == 0 && d[6 + a] == 0) return world_no_direction(request->path, "Direction", a + 1);
     for (int row = 0; row < 3; row++) {
-        for (int a = 0; a < 3; a++) matrix[row][a] = d[3 * row + a] * doc->spacing[a];
-        matrix[row][3] = doc->origin[row];
+        for (int a = 0; a < 3; a++) matrix[row][a] = d[3 * row + a] * spacing[a];
+        matrix[row][3] = origin[row];
     }
-    int status = world_place(r->request, doc->path, matrix);
-    memcpy(block->matrix, matrix, sizeof matrix);
-    return status;
+    return world_place(request, request->path, matrix);
 }
 
 static int load_axes(xml_reader *r, const xml_piece *piece, dataset_block *block) {
@@ -76,8 +71,8 @@ static int is_ghost_array(const xml_reader *r, const xml_array *array) {
 
 static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, dataset_block *block) {
     int on_cells = array->section == SECTION_CELL_DATA, any = 0;
-    int64_t bits = on_cells ? DUPLICATE_CELL | HIDDEN_CELL : HIDDEN_POINT;
-    if (strcmp(r->doc.names + array->name, "vtkGhostLevels") == 0) bits = on_cells ? UINT8_MAX : 0;
+    const int is_level = strcmp(r->doc.names + array->name, "vtkGhostLevels") == 0;
+    const int64_t bits = is_level ? on_cells ? UINT8_MAX : 0 : on_cells ? GHOST_CELL : POINT_IS_HIDDEN;
     const unsigned char *stored = NULL;
     void *owned;
     uint8_t *blanked = NULL;
@@ -86,10 +81,10 @@ static int load_blanked(xml_reader *r, const xml_array *array, uint64_t count, d
     for (uint64_t i = 0; i < count && !status; i++) {
         int64_t flags;
         vtk_xml_to_integers(&flags, stored + i * element_bytes(array->element), 1, array->element);
-        blanked[i] = (flags & bits) != 0;
+        blanked[i] = is_level ? (flags & bits) != 0 : (uint8_t)(flags & bits); /* any level: a duplicate */
         any |= blanked[i];
     }
-    free(owned);
+    samples_free(owned);
     if (status || !any) return status;
     *(on_cells ? &block->blanked_cells : &block->blanked_points) = blanked;
     return 0;
@@ -106,7 +101,7 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     for (uint64_t n = 0; n < count && !status; n++)
         bits[n] = is_text ? stored[n] != 0 : stored[n / 8] >> (7 - n % 8) & 1;
     *values = bits;
-    free(owned);
+    samples_free(owned);
     return status;
 }
 
@@ -131,6 +126,7 @@ static int load_field(xml_reader *r, const xml_array *array, uint64_t tuples, co
                                    .on_cells = array->section == SECTION_CELL_DATA,
                                    .components = (int)array->components,
                                    .is_active = array->is_active,
+                                   .is_number = array->is_number,
                                    .type = element_sample_type(array->element)};
     if (__builtin_mul_overflow(tuples, (uint64_t)array->components, &count)) count = UINT64_MAX;
     if (wide) {
@@ -181,7 +177,8 @@ static int load_block(xml_reader *r, const xml_piece *piece, const char *names) 
     memcpy(block->dims, piece->dims, sizeof block->dims);
     memcpy(block->first, piece->first, sizeof block->first);
     int status = 0;
-    if (block->kind == BLOCK_UNIFORM) status = set_matrix(r, block);
+    if (block->kind == BLOCK_UNIFORM)
+        status = vtk_xml_matrix(r->request, r->doc.origin, r->doc.spacing, r->doc.direction, block->matrix);
     if (block->kind == BLOCK_RECTILINEAR) status = load_axes(r, piece, block);
     if (block->kind == BLOCK_CURVILINEAR || block->kind == BLOCK_UNSTRUCTURED) status = load_points(r, piece, block);
     if (block->kind == BLOCK_UNSTRUCTURED && !status) status = vtk_xml_load_cells(r, piece, block);
@@ -196,25 +193,30 @@ static int load_blocks(xml_reader *r) {
     if (doc->name_bytes) memcpy(names, doc->names, doc->name_bytes);
     for (size_t i = 0; i < doc->piece_count && !status; i++)
         if (doc->pieces[i].point_count) status = load_block(r, &doc->pieces[i], names);
-    if (!status && !r->out->block_count)
-        status = fail(STATUS_INPUT, "%s: holds no points: none of its %zu pieces has any", doc->path, doc->piece_count);
+    return status;
+}
+
+int vtk_xml_read_piece(const read_request *request, mapping *own, dataset *out) {
+    xml_reader r = {.request = request, .out = out};
+    int status = vtk_xml_parse(request->path, own, &r.doc);
+    if (!status) status = load_blocks(&r);
+    vtk_xml_release(&r.doc);
+    if (!status && r.uses_file) {
+        out->mapping = (void *)(uintptr_t)own->bytes;
+        out->mapping_bytes = own->size;
+    } else {
+        mapping_close(own);
+    }
+    if (!status) snprintf(out->format, sizeof out->format, "VTK XML");
     return status;
 }
 
 int vtk_xml_read(const read_request *request, const mapping *file, dataset *out) {
-    xml_reader r = {.request = request, .out = out};
     mapping own; /* the caller closes its own; this one lives as long as values in it are used */
     (void)file;
     int status = dataset_map(out, request->path, &own);
-    if (!status) status = vtk_xml_parse(request->path, &own, &r.doc);
-    if (!status) status = load_blocks(&r);
-    vtk_xml_release(&r.doc);
-    if (!status && r.uses_file) {
-        out->mapping = (void *)(uintptr_t)own.bytes;
-        out->mapping_bytes = own.size;
-    } else {
-        mapping_close(&own);
-    }
-    if (!status) snprintf(out->format, sizeof out->format, "VTK XML");
+    if (!status) status = vtk_xml_read_piece(request, &own, out);
+    if (!status && !out->block_count)
+        status = fail(STATUS_INPUT, "%s: holds no points: none of its pieces has any", request->path);
     return status;
 }

@@ -1,5 +1,6 @@
 #include "vtk_xml/vtk_xml_cells.h"
 
+#include "dataset/array_memory.h"
 #include "dataset/cell_faces.h"
 #include "exit_status.h"
 #include "failure.h"
@@ -25,7 +26,7 @@ static int load_cell_types(xml_reader *r, const xml_array *array, uint64_t count
                           r->doc.path, i, type);
     }
     block->cell_types = types;
-    free(owned);
+    samples_free(owned);
     return status;
 }
 

@@ -42,6 +42,7 @@ typedef struct header_parser {
     int depth, in_grid, in_piece, in_array;
     enum xml_section section;
     char scalars[256];         /* the name of its active scalars; "": none */
+    char numbers[256];         /* likewise of its global numbers */
     const unsigned char *text; /* where the text of the array begins that is being parsed */
     int status, has_ended;
 } header_parser;
@@ -125,8 +126,10 @@ static int refuse_type(const xml_document *doc, const char *type) {
     if (strcmp(type, "PolyData") == 0)
         return fail(STATUS_INPUT, "%s: holds PolyData, a surface, which has no isosurfaces; of VTK XML, %s are read",
                     doc->path, read);
-    if (type[0] == 'P' || strstr(type, "MultiBlock") || strstr(type, "Collection"))
-        return fail(STATUS_INPUT, "%s: is a list of other files (%.40s); name one of those: of VTK XML, %s are read",
+    if (type[0] == 'P' || strstr(type, "Collection") || strstr(type, "MultiBlock") || strstr(type, "Partitioned"))
+        return fail(STATUS_INPUT,
+                    "%s: is a list of other files (%.40s); name one of those: of VTK XML, %s are read, of lists those "
+                    "of their pieces (.pvti, .pvtr, .pvts, .pvtu) and of blocks (.vtm)",
                     doc->path, type, read);
     return fail(STATUS_INPUT, "%s: holds %.40s, which cannot be read; of VTK XML, %s are", doc->path, type, read);
 }
@@ -199,9 +202,8 @@ static enum xml_section find_section(const char *name) {
 }
 
 /* A name that is longer than any sensible one is taken for none. */
-static void note_scalars(header_parser *p, const char *name) {
-    const int is_there = name && strlen(name) < sizeof p->scalars;
-    snprintf(p->scalars, sizeof p->scalars, "%s", is_there ? name : "");
+static void note_name(char noted[256], const char *name) {
+    snprintf(noted, 256, "%s", name && strlen(name) < 256 ? name : "");
 }
 
 static int find_element_type(const char *type) {
@@ -233,6 +235,7 @@ static int begin_array(header_parser *p, const char **attributes) {
     xml_array *array = &arrays[doc->array_count++];
     *array = (xml_array){.section = p->section, .element = find_element_type(type), .components = 1};
     array->is_active = *p->scalars && name && strcmp(name, p->scalars) == 0;
+    array->is_number = *p->numbers && name && strcmp(name, p->numbers) == 0;
     array->is_bits = type && strcmp(type, "Bit") == 0;
     snprintf(array->type, sizeof array->type, "%s", type ? type : "");
     doc->pieces[doc->piece_count - 1].array_count++;
@@ -313,7 +316,8 @@ static void start_element(void *user, const char *name, const char **attributes)
         p->status = begin_piece(p, attributes);
     } else if (p->depth == LEVEL_SECTION && p->in_piece) {
         p->section = find_section(name);
-        note_scalars(p, attribute(attributes, "Scalars"));
+        note_name(p->scalars, attribute(attributes, "Scalars"));
+        note_name(p->numbers, attribute(attributes, "GlobalIds"));
     } else if (p->depth == LEVEL_ARRAY && p->section &&
                (strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0)) {
         p->status = begin_array(p, attributes);

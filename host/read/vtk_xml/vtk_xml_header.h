@@ -32,6 +32,7 @@ typedef struct xml_array {
     char type[24];      /* as the file names it */
     int64_t components; /* at least 1 */
     int is_active;      /* the section's Scalars */
+    int is_number;      /* the section's GlobalIds */
     enum xml_format format;
     uint64_t offset;                      /* appended: from the first byte of the appended data */
     const unsigned char *text, *text_end; /* inline: without white space around it; both NULL: none */

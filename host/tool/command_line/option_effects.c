@@ -20,7 +20,11 @@ typedef struct situation {
 
 static int has_no_output(const situation *s) { return !s->o->output; }
 
-static int has_no_output_nor_reference(const situation *s) { return !s->o->output && !s->o->verify; }
+static int has_no_file(const situation *s) { return !s->o->output && !s->o->preview; }
+
+static int has_no_preview(const situation *s) { return !s->o->preview; }
+
+static int has_no_file_nor_reference(const situation *s) { return has_no_file(s) && !s->o->verify; }
 
 static int has_no_mesh(const situation *s) { return s->o->count; }
 
@@ -53,6 +57,12 @@ static int has_cells(const situation *s) {
     return 0;
 }
 
+static int has_only_cells(const situation *s) {
+    for (int n = 0; n < s->d->block_count; n++)
+        if (s->d->blocks[n].kind != BLOCK_UNSTRUCTURED) return 0;
+    return s->d->block_count > 0;
+}
+
 static int has_world_range(const situation *s) { return options_given(s->o, "--roi-world"); }
 
 static int is_everything(const situation *s) {
@@ -62,6 +72,8 @@ static int is_everything(const situation *s) {
 static int has_no_cells(const situation *s) { return !has_cells(s); }
 
 static int is_snap_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_SNAP; }
+
+static int is_whole_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_HYBRID; }
 
 static int is_not_snap(const situation *s) { return s->o->method != TC_METHOD_SNAP; }
 
@@ -89,6 +101,7 @@ typedef struct effect {
 
 static const effect table[] = {
     {COMMAND_EXTRACT, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--output, or --count"},
+    {COMMAND_EXTRACT, "--preview", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--preview, or --count"},
     {COMMAND_EXTRACT, "--verify", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--verify, or --count"},
     {COMMAND_EXTRACT, "--check", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--check, or --count"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--normals, or --count"},
@@ -107,13 +120,19 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--part", BEFORE_READING, has_no_output, REFUSED, "--part writes a file: give -o FILE"},
     {COMMAND_EXTRACT, "--format", BEFORE_READING, makes_part, REFUSED, PART_OPTION("--format")},
     {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, makes_part, REFUSED, PART_OPTION("--origin-at")},
-    {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_output, REFUSED, "--blocks names files: give -o FILE"},
+    {COMMAND_EXTRACT, "--blocks", BEFORE_READING, has_no_file, REFUSED,
+     "--blocks names files: give -o FILE or --preview FILE"},
+    {COMMAND_EXTRACT, "--view", BEFORE_READING, has_no_preview, REFUSED, "--view is of a picture: give --preview FILE"},
+    {COMMAND_EXTRACT | COMMAND_INFO, "--preview-size", BEFORE_READING, has_no_preview, REFUSED,
+     "--preview-size is of a picture: give --preview FILE"},
+    {COMMAND_INFO, "--iso", BEFORE_READING, has_no_preview, REFUSED,
+     "--iso is for the isolines of a picture: give --preview FILE"},
     {COMMAND_EXTRACT, "--format", BEFORE_READING, has_no_output, REFUSED,
      "--format is that of the mesh's file: give -o FILE, or -o - for standard output"},
     {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, has_no_output, REFUSED,
      "--origin-at is for the coordinates in the mesh's file: give -o FILE"},
-    {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_output_nor_reference, TOLD,
-     "--normals has no effect without -o FILE, nor --verify"},
+    {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_file_nor_reference, TOLD,
+     "--normals has no effect without -o FILE, nor --preview FILE, nor --verify"},
     {COMMAND_EXTRACT, "--soup", BEFORE_READING, has_no_output, TOLD,
      "--soup has no effect without -o FILE: the report is of shared vertices"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
@@ -146,8 +165,8 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--normals", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --normals are made of structured grids only"},
-    {COMMAND_EXTRACT, "--closed", AFTER_READING, has_cells, REFUSED,
-     "is unstructured: --closed closes surfaces of structured grids only"},
+    {COMMAND_EXTRACT, "--closed", AFTER_READING, is_whole_of_cells, REFUSED,
+     "is unstructured: --closed closes surfaces of --method tetra only"},
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
      "is unstructured: --method snap is for structured grids only"},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
@@ -159,6 +178,9 @@ static const effect table[] = {
      "is structured: it has no cells that --skip-unsupported could leave out"},
     {COMMAND_TETRAHEDRALIZE, "--nodata", AFTER_READING, has_no_field, REFUSED, "--nodata" NO_FIELD},
     {COMMAND_TETRAHEDRALIZE, "--component", AFTER_READING, has_no_field, REFUSED, "--component" NO_FIELD},
+    {COMMAND_INFO, "--preview", AFTER_READING, has_only_cells, REFUSED,
+     "is unstructured: --preview of info shows slices of structured grids only; extract --preview shows surfaces"},
+    {COMMAND_INFO, "--preview", AFTER_READING, has_no_field, REFUSED, "--preview" NO_FIELD},
     {COMMAND_INFO, "--nodata", AFTER_READING, has_no_field, TOLD, "--nodata" NO_FIELD},
     {COMMAND_INFO, "--mask", AFTER_READING, has_no_field, TOLD, "--mask" NO_FIELD},
     {COMMAND_INFO, "--component", AFTER_READING, has_no_field, TOLD, "--component" NO_FIELD},

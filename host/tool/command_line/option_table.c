@@ -22,6 +22,8 @@ static const char *format_choices(int n) {
     return names[n];
 }
 
+static const char *view_choices(int n) { return view_name(n); }
+
 static const char *method_choices(int n) { return tc_method_name((tc_method)n); }
 
 static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
@@ -34,11 +36,13 @@ static const char *type_choices(int n) { return tc_type_name((tc_type)n); }
 const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_EXTRACT, VALUE_ISOVALUES, IN(isovalues), NULL,
      "isovalue, or several with commas between: samples >= V are inside"},
+    {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
+     "of --preview: isolines to draw, of one value or of several"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb or .npz (left out: only\n"
-     "the report); with several isovalues, % in FILE stands for the isovalue as\n"
-     "typed; - is standard output (give --format): the report then goes to\n"
-     "standard error"},
+     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
+     "out: only the report); with several isovalues, % in FILE stands for the\n"
+     "isovalue as typed; - is standard output (give --format): the report then\n"
+     "goes to standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
@@ -49,15 +53,28 @@ const option option_table[] = {
     {"--format", NULL, "F", COMMAND_JOIN, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp or stl, whatever FILE ends in"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb or npz, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
+    {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
+     "picture of the surface to write, as PNG; also without -o; with several\n"
+     "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
+     "outer side, which the lower values are on; ochre the inner one"},
+    {"--preview", NULL, "FILE", COMMAND_INFO, VALUE_TEXT, IN(preview), NULL,
+     "picture to write, as PNG: three slices through the middle of a structured\n"
+     "grid, with the isolines of --iso"},
+    {"--view", NULL, "VIEW", COMMAND_EXTRACT, VALUE_VIEW, IN(view), view_choices,
+     "of --preview: iso, front, back, left, right, top or bottom, or azimuth and\n"
+     "elevation in degrees (default: 30,25): seen from the front, along +y, x runs\n"
+     "to the right and z up; the azimuth turns the viewer to the right"},
+    {"--preview-size", NULL, "W,H", COMMAND_EXTRACT | COMMAND_INFO, VALUE_PIXELS, IN(preview_size), NULL,
+     "of --preview: pixels, 16 to 8192 each (default: 1024,768)"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
      "field to contour, of data with several, see 'tetracubes info' (default:\n"
      "the file's active scalars, if it has such); values of cells are averaged\n"
      "to the points between them; point:NAME and cell:NAME choose where both\n"
      "have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
-     "other fields, interpolated onto the vertices (PLY, VTP, NPZ); a name that\n"
-     "the file needs itself, as Normals, gets _ behind"},
+     "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
+     "name that the file needs itself, as Normals, gets _ behind"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},
@@ -87,8 +104,8 @@ const option option_table[] = {
     {"--closed", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(closed), NULL,
      "close the surface where it ends, at the grid's border and beside missing\n"
      "cells, by the inside part of the faces there: the mesh then bounds the\n"
-     "volume of samples >= V; each block by itself; structured grids only,\n"
-     "by --engine reference, or auto"},
+     "volume of samples >= V; each block by itself. Of unstructured grids with\n"
+     "--method tetra, by --engine reference, or auto"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
@@ -101,8 +118,8 @@ const option option_table[] = {
      "never another result"},
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
-     "it is done where it would not (one structured grid; to PLY, VTP and STL;\n"
-     "not with --check, --verify, --soup, --drop-degenerate)"},
+     "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
+     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --preview)"},
     {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(piece), NULL,
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
      "join' makes the mesh of all N, which other processes may have made; of what\n"

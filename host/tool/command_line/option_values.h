@@ -7,6 +7,7 @@
 #define OPTION_VALUES_H
 
 #include "dataset/request.h"
+#include "view.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -43,6 +44,9 @@ typedef struct options {
     size_t isovalue_count;
     const char *output; /* NULL where not given, as all texts */
     const char *format;
+    const char *preview;     /* a picture */
+    view_angles view;        /* of the surface in it */
+    int64_t preview_size[2]; /* pixels */
     const char *device;
     int engine;  /* a tc_engine, or ENGINE_AUTO */
     int method;  /* a tc_method */

@@ -67,6 +67,8 @@ int options_parse(enum command_bit command, const char *name, int argc, char **a
                    .frame = -1,
                    .snap = -1,
                    .type = -1,
+                   .view = VIEW_DEFAULT,
+                   .preview_size = {1024, 768},
                    .spacing = {1.0, 1.0, 1.0}};
     int only_operands = 0;
     o->operands = calloc((size_t)argc + 1, sizeof *o->operands);

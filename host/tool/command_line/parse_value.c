@@ -3,6 +3,7 @@
 #include "dataset/request.h"
 #include "exit_status.h"
 #include "failure.h"
+#include "picture.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -179,6 +180,44 @@ static int parse_piece(const option *spec, const char *text, int64_t out[2]) {
     return 0;
 }
 
+/* A name, or azimuth and elevation. */
+static int parse_view(const option *spec, const char *text, view_angles *out) {
+    const char *at = text;
+    for (int n = 0; view_name(n); n++) {
+        if (strcmp(text, view_name(n)) != 0) continue;
+        *out = view_named(n);
+        return 0;
+    }
+    at = skip_blanks(at);
+    int good = take_real(&at, &out->azimuth);
+    at = skip_blanks(at);
+    good = good && *at == ',';
+    at = skip_blanks(at + good);
+    good = good && take_real(&at, &out->elevation) && !*skip_blanks(at);
+    if (good && fabs(out->azimuth) <= 360 && fabs(out->elevation) <= 90) return 0;
+    return fail(
+        STATUS_USAGE,
+        "%s: '%s' is neither iso, front, back, left, right, top or bottom, nor azimuth,elevation in degrees, as "
+        "in 30,20, up to 360 and 90",
+        spec->name, text);
+}
+
+static int parse_pixels(const option *spec, const char *text, int64_t out[2]) {
+    const char *at = text;
+    for (int n = 0; n < 2; n++) {
+        uint64_t count = 0;
+        at = skip_blanks(at);
+        int good = take_whole(&at, &count) && count >= PICTURE_SIDE_LEAST && count <= PICTURE_SIDE_MOST;
+        at = skip_blanks(at);
+        if (!good || *at != (n ? '\0' : ','))
+            return fail(STATUS_USAGE, "%s: '%s' is not a width and a height of %d to %d pixels, as in 1024,768",
+                        spec->name, text, PICTURE_SIDE_LEAST, PICTURE_SIDE_MOST);
+        out[n] = (int64_t)count;
+        at++;
+    }
+    return 0;
+}
+
 /* Bytes: a whole number, then K, M, G or T, with iB or B after it if one likes. */
 static int parse_size(const option *spec, const char *text, uint64_t *out) {
     static const char units[] = "KMGT";
@@ -262,6 +301,10 @@ int parse_value(const option *spec, const char *text, options *o) {
         return parse_step(spec, text, place);
     case VALUE_PIECE:
         return parse_piece(spec, text, place);
+    case VALUE_VIEW:
+        return parse_view(spec, text, place);
+    case VALUE_PIXELS:
+        return parse_pixels(spec, text, place);
     }
     return fail(STATUS_USAGE, "%s: not understood", spec->name);
 }

@@ -186,6 +186,7 @@ static void surface_text(const surface_report *s, const char *cells) {
     if (s->has_topology) shapes_text(&s->shapes);
     if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
     if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
+    if (s->preview) printf("  preview     %s\n", output_is_dash(s->preview) ? "standard output" : s->preview);
 }
 
 static void piece_text(const extract_report *r) {

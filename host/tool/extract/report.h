@@ -45,7 +45,8 @@ typedef struct surface_report {
     int is_relative;                             /* the file holds coordinates relative to the mesh's origin */
     int has_verdict;
     int verified;
-    char *path; /* of the file, or files, written, or NULL; from malloc */
+    char *path;    /* of the file, or files, written, or NULL; from malloc */
+    char *preview; /* the same of pictures */
 } surface_report;
 
 typedef struct extract_report {

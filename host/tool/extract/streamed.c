@@ -59,6 +59,7 @@ static const char *obstacle(const stream_input *in) {
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
     if (o->separate_blocks && in->team) return "--blocks separate names files of blocks";
     if (o->soup && (o->piece[1] || in->team)) return "--soup needs the whole mesh";
+    if (o->preview) return "--preview draws the whole mesh";
     return NULL;
 }
 
@@ -137,7 +138,7 @@ static int count_together(stream_job *j) {
     team_surfaces_count(t, j->surfaces->report, j->shared, j->count);
     j->is_counted = 1;
     for (size_t n = 0; n < j->count && j->in->o->output && !status; n++) {
-        char *path = surface_files_describe(j->in->o, j->surfaces[n].report->iso, 1);
+        char *path = surface_files_describe(j->in->o, j->in->o->output, j->surfaces[n].report->iso, 1);
         status = team_surface_open(t, path, &j->shared[n]);
         free(path);
     }
@@ -167,12 +168,12 @@ static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *wh
                           .triangle_count = whole->triangle_count,
                           .has_origin = to->report->piece_count > 0};
     memcpy(header.origin, whole->origin, sizeof header.origin);
-    header.surface = part_surface_make(j->in->o, j->in->field, j->in->carried, &j->grid, &j->how[to - j->surfaces],
-                                       j->samples, j->blanked_samples);
+    header.surface = part_surface_make(j->in->o, j->in->data, j->in->field, j->in->carried, &j->grid,
+                                       &j->how[to - j->surfaces], j->samples, j->blanked_samples);
     int status = header.surface ? 0 : STATUS_FAILED;
     if (!status)
-        status = surface_files_open_pieces(j->in->o, to->report->iso, whole, &header, NULL, j->in->carried, &j->files,
-                                           &to->file);
+        status = surface_files_open_pieces(j->in->o, j->in->data, to->report->iso, whole, &header, NULL, j->in->carried,
+                                           &j->files, &to->file);
     part_header_release(&header);
     return status;
 }
@@ -192,7 +193,8 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     if (!j->in->o->output || to->file) return 0;
     if (j->in->o->piece[1]) return open_part(j, to, &whole);
     const output_shared *shared = j->in->team ? &j->shared[to - j->surfaces].shared : NULL;
-    return surface_files_open_pieces(j->in->o, s->iso, &whole, NULL, shared, j->in->carried, &j->files, &to->file);
+    return surface_files_open_pieces(j->in->o, j->in->data, s->iso, &whole, NULL, shared, j->in->carried, &j->files,
+                                     &to->file);
 }
 
 static void add_bounds(surface_report *s, const tc_mesh_data *m) {
@@ -334,7 +336,8 @@ static int publish(stream_job *j, int status) {
         if (!status && !to->report->piece_count && writes_frame(j, to)) status = open_file(j, to, zero);
         const int closed = surface_files_close_pieces(to->file, status);
         if (!status) status = closed;
-        if (!status && j->in->o->output) to->report->path = surface_files_describe(j->in->o, to->report->iso, 1);
+        if (!status && j->in->o->output)
+            to->report->path = surface_files_describe(j->in->o, j->in->o->output, to->report->iso, 1);
         to->report->write_ms += now_ms() - begin_ms;
     }
     if (j->is_counted) return publish_together(j, status);

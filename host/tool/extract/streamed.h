@@ -1,8 +1,8 @@
 /*
  * streamed.h - surfaces that do not fit into memory: made window by window (tc_stream), written piece by piece
  *
- * Their files are those that one process with enough memory writes, byte for byte. Of one structured block;
- * what needs the whole mesh at once (--check, --verify, --soup, --drop-degenerate, formats that are written in one go)
+ * Their files are those that one process with enough memory writes, byte for byte. Of one structured block; what needs
+ * the whole mesh at once (--check, --verify, --soup, --drop-degenerate, --preview, formats that are written in one go)
  * is made in memory, or not at all.
  */
 #ifndef STREAMED_H

@@ -24,14 +24,14 @@ static const char *ending_of(const char *path) {
 }
 
 /* The file of one isovalue and block, from malloc: with several isovalues every % stands for the isovalue as typed. */
-static char *file_name(const options *o, const typed_isovalue *iso, int block) {
-    const char *stand_in = o->isovalue_count > 1 ? iso->text : "%", *ending = ending_of(o->output);
+static char *file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block) {
+    const char *stand_in = o->isovalue_count > 1 ? iso->text : "%", *ending = ending_of(pattern);
     char suffix[24] = "";
     if (block != ALL_BLOCKS) snprintf(suffix, sizeof suffix, "_b%d", block);
     size_t bytes = strlen(suffix) + 1;
-    for (const char *c = o->output; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
+    for (const char *c = pattern; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
     char *path = malloc(bytes), *at = path;
-    for (const char *c = o->output; path; c++) {
+    for (const char *c = pattern; path; c++) {
         if (c == ending) at = stpcpy(at, suffix);
         if (!*c) break;
         at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
@@ -43,17 +43,21 @@ static char *file_name(const options *o, const typed_isovalue *iso, int block) {
     return path;
 }
 
+char *surface_file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block) {
+    return file_name(o, pattern, iso, o->separate_blocks ? block : ALL_BLOCKS);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- usage */
 
-static int check_names(const options *o) {
+static int check_names(const options *o, const char *option, const char *pattern) {
     struct stat there;
-    if (o->separate_blocks && output_is_dash(o->output))
-        return fail(STATUS_USAGE, "--blocks separate writes several files: -o - is one stream; name files");
-    if (o->separate_blocks && stat(o->output, &there) == 0 && !S_ISREG(there.st_mode))
-        return fail(STATUS_USAGE, "--blocks separate writes several files: %s is no file; name files", o->output);
-    if (o->isovalue_count > 1 && !strchr(o->output, '%'))
-        return fail(STATUS_USAGE, "-o %s: with several isovalues the name needs a %%, which stands for the isovalue",
-                    o->output);
+    if (o->separate_blocks && output_is_dash(pattern))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: %s - is one stream; name files", option);
+    if (o->separate_blocks && stat(pattern, &there) == 0 && !S_ISREG(there.st_mode))
+        return fail(STATUS_USAGE, "--blocks separate writes several files: %s is no file; name files", pattern);
+    if (o->isovalue_count > 1 && !strchr(pattern, '%'))
+        return fail(STATUS_USAGE, "%s %s: with several isovalues the name needs a %%, which stands for the isovalue",
+                    option, pattern);
     for (size_t a = 0; a < o->isovalue_count; a++)
         for (size_t b = 0; b < a; b++)
             if (strcmp(o->isovalues[a].text, o->isovalues[b].text) == 0)
@@ -63,16 +67,24 @@ static int check_names(const options *o) {
 }
 
 /* The files of an isovalue; before the input is read, that of the first block alone. */
-static int check_files(const options *o, const dataset *d, const typed_isovalue *iso) {
+static int check_files(const options *o, const dataset *d, const char *option, const char *pattern,
+                       const typed_isovalue *iso) {
     const int first = o->separate_blocks ? 0 : ALL_BLOCKS;
     const int end = o->separate_blocks && d ? d->block_count : first + 1;
     int status = 0;
     for (int block = first; block < end && !status; block++) {
-        char *path = file_name(o, iso, block);
-        status = path ? input_overwrite_check(o, d, path) : STATUS_FAILED;
+        char *path = file_name(o, pattern, iso, block);
+        status = path ? input_overwrite_check(o, d, option, path) : STATUS_FAILED;
         if (!status) status = output_check(path);
         free(path);
     }
+    return status;
+}
+
+int surface_names_check(const options *o, const dataset *d, const char *option, const char *pattern) {
+    int status = check_names(o, option, pattern);
+    for (size_t n = 0; n < o->isovalue_count && !status; n++)
+        status = check_files(o, d, option, pattern, &o->isovalues[n]);
     return status;
 }
 
@@ -81,12 +93,10 @@ int surface_files_check(const options *o, const dataset *d) {
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (!o->output) return 0;
-    int status = check_names(o);
-    if (!status && o->piece[1] && !output_is_file(o->output))
+    if (o->piece[1] && !output_is_file(o->output))
         return fail(STATUS_USAGE, "-o %s: a part is written at many places of a file: name a file", o->output);
-    if (!status && !o->piece[1]) status = mesh_write_check(o->output, &how);
-    for (size_t n = 0; n < o->isovalue_count && !status; n++) status = check_files(o, d, &o->isovalues[n]);
-    return status;
+    int status = o->piece[1] ? 0 : mesh_write_check(o->output, &how);
+    return status ? status : surface_names_check(o, d, "-o", o->output);
 }
 
 /* ------------------------------------------------------------------------------------------------------- precision */
@@ -129,19 +139,21 @@ void surface_files_tell_precision(const options *o, int block_count, const surfa
 
 /* --------------------------------------------------------------------------------------------------------- writing */
 
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group) {
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group) {
     mesh_write_options how = write_options(o, mesh);
+    how.world = d->world;
+    how.units = d->units;
     how.fields = fields->fields;
     how.field_count = fields->count;
     how.group = group;
-    char *path = file_name(o, iso, o->separate_blocks ? block : ALL_BLOCKS);
+    char *path = surface_file_name(o, o->output, iso, block);
     int status = path ? mesh_write(path, &mesh->mesh, &how) : STATUS_FAILED;
     free(path);
     return status;
 }
 
-int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
                               const part_header *part, const output_shared *shared, const carried_fields *fields,
                               output_group *group, piece_file **file) {
     piece_file *p = calloc(1, sizeof *p);
@@ -150,10 +162,12 @@ int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const
     p->how = (mesh_write_options){.format = o->format,
                                   .fields = fields->fields,
                                   .field_count = fields->count,
+                                  .world = d->world,
+                                  .units = d->units,
                                   .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
                                   .group = shared ? NULL : group,
                                   .shared = shared};
-    p->path = file_name(o, iso, ALL_BLOCKS);
+    p->path = surface_file_name(o, o->output, iso, 0);
     int status = p->path ? 0 : STATUS_FAILED;
     if (!status && part)
         status = part_file_open(p->path, part, group, &p->part);
@@ -188,9 +202,9 @@ int surface_files_close_pieces(piece_file *p, int status) {
 }
 
 /* "out_b0.ply to out_b2.ply" */
-char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count) {
-    if (!o->separate_blocks) return file_name(o, iso, ALL_BLOCKS);
-    char *first = file_name(o, iso, 0), *last = file_name(o, iso, block_count - 1), *text = NULL;
+char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count) {
+    if (!o->separate_blocks) return file_name(o, pattern, iso, ALL_BLOCKS);
+    char *first = file_name(o, pattern, iso, 0), *last = file_name(o, pattern, iso, block_count - 1), *text = NULL;
     if (block_count < 2) {
         free(last);
         return first;

@@ -17,6 +17,13 @@
  * where a file cannot be written. d is NULL before the input is read: then less is known of it. */
 int surface_files_check(const options *o, const dataset *d);
 
+/* The same of the names alone that a pattern makes: that of -o, or of another option that writes files beside. */
+int surface_names_check(const options *o, const dataset *d, const char *option, const char *pattern);
+
+/* The pattern's file of an isovalue and, with --blocks separate, of a block; from malloc, NULL with its failure's text
+ * without memory. */
+char *surface_file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block);
+
 /* Adds to s where the numbers in the mesh's file will be coarse. Returns STATUS_USAGE where coordinates are beyond
  * float32 and the file has nothing larger. */
 int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
@@ -30,10 +37,10 @@ void surface_files_tell_relative(const double *origin, int is_own);
  * (precision.h). */
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
 
-/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file waits in
- * the group. */
-int surface_files_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                        const carried_fields *fields, output_group *group);
+/* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file says in
+ * which space and units the input's coordinates are, and waits in the group. */
+int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
+                        const result_mesh *mesh, const carried_fields *fields, output_group *group);
 
 /* The file of a surface whose pieces come one after the other (mesh_file). It waits in the group when it is closed. */
 typedef struct piece_file {
@@ -45,7 +52,7 @@ typedef struct piece_file {
 
 /* whole: as for mesh_file_open. part: NULL, or what the file of --part begins with. shared: NULL, or the file that a
  * team writes, which does not wait in the group. *file is to be closed. Returns 0 or a status. */
-int surface_files_open_pieces(const options *o, const typed_isovalue *iso, const tc_mesh_data *whole,
+int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
                               const part_header *part, const output_shared *shared, const carried_fields *fields,
                               output_group *group, piece_file **file);
 
@@ -56,7 +63,7 @@ int surface_files_add_piece(piece_file *file, uint64_t first_vertex, uint64_t fi
 /* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
 int surface_files_close_pieces(piece_file *file, int status);
 
-/* Names the files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
-char *surface_files_describe(const options *o, const typed_isovalue *iso, int block_count);
+/* Names the pattern's files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
+char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count);
 
 #endif

@@ -159,7 +159,9 @@ static void cells_text(const dataset_block *b) {
 void describe_place_text(const dataset *d, const dataset_block *b) {
     printf("spacing      ");
     for (int axis = 0; axis < 3; axis++) printf(" %s", shortest_number(describe_spacing(b, axis)).text);
-    printf("\nworld space   %s\n", d->space[0] ? d->space : "not named");
+    printf("\nworld space   %s", d->space[0] ? d->space : "not named");
+    if (d->world[0] && !strstr(d->space, d->world)) printf(" (%s)", d->world);
+    printf("%s%s\n", d->units[0] ? ", in " : "", d->units);
     for (int r = 0; r < 3; r++)
         printf("%s%s i + %s j + %s k + %s\n", r ? "              " : "index->world  ",
                shortest_number(b->matrix[r][0]).text, shortest_number(b->matrix[r][1]).text,

@@ -122,19 +122,20 @@ sample_array *input_samples(const dataset *d, const scalar *field) {
     return arrays;
 }
 
-int input_overwrite_check(const options *o, const dataset *d, const char *path) {
+int input_overwrite_check(const options *o, const dataset *d, const char *option, const char *path) {
     struct stat in, out;
     if (output_is_dash(path)) return 0;
     for (int n = 0; n < o->operand_count; n++) {
         if (stat(o->operands[n], &in) || stat(path, &out)) continue;
         if (in.st_dev == out.st_dev && in.st_ino == out.st_ino && S_ISREG(in.st_mode))
-            return fail(STATUS_USAGE, "-o %s is the input itself: name another file", path);
+            return fail(STATUS_USAGE, "%s %s is the input itself: name another file", option, path);
     }
     if (o->mask && !stat(o->mask, &in) && !stat(path, &out) && in.st_dev == out.st_dev && in.st_ino == out.st_ino &&
         S_ISREG(in.st_mode))
-        return fail(STATUS_USAGE, "-o %s is the mask itself: name another file", path);
+        return fail(STATUS_USAGE, "%s %s is the mask itself: name another file", option, path);
     if (d && file_list_has(&d->files, path))
-        return fail(STATUS_USAGE, "-o %s is a file that the input names, read as part of it: name another file", path);
+        return fail(STATUS_USAGE, "%s %s is a file that the input names, read as part of it: name another file", option,
+                    path);
     return 0;
 }
 

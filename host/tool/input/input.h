@@ -31,9 +31,9 @@ void input_tell_rounded(const char *name);
 /* The notice that a field of cells was averaged. */
 void input_tell_average(const dataset *d, const char *name);
 
-/* STATUS_USAGE where path, the output, is one of the inputs or a file that the dataset was read from: it must not
- * replace what it is made from. d is NULL before the inputs are read. */
-int input_overwrite_check(const options *o, const dataset *d, const char *path);
+/* STATUS_USAGE where path, the output that the option names, is one of the inputs or a file that the dataset was read
+ * from: it must not replace what it is made from. d is NULL before the inputs are read. */
+int input_overwrite_check(const options *o, const dataset *d, const char *option, const char *path);
 
 /* *has: whether input_select can succeed: a field is named, or there is just one and nothing to choose in it. For
  * commands that can do without a field. Returns 0 or STATUS_FAILED. */

@@ -44,6 +44,7 @@ static tc_status extract_trial(const trial *t, tc_context *context, const selfte
     tc_extract_options_init(&how);
     how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, selftest_exponent(t)) : t->isovalue;
     how.normals = t->normals;
+    how.closed = t->closed;
     how.method = t->method;
     data->struct_size = sizeof *data;
     tc_status status = selftest_grid_create(v, context, grid);
@@ -100,10 +101,10 @@ static void name_trial(const trial *t, const launch *l, char *name, size_t bytes
                              [CHANGE_HUGE] = "huge",
                              [CHANGE_MIDPOINTS] = "midpoints"};
     const char *kinds[] = {"", ", rectilinear", ", curvilinear", ", tetrahedra"};
-    length += snprintf(name + length, bytes - (size_t)length, "%s%s%s%s%s%s%s%s", t->change ? ", " : "",
+    length += snprintf(name + length, bytes - (size_t)length, "%s%s%s%s%s%s%s%s%s", t->change ? ", " : "",
                        t->change ? changes[t->change] : "", kinds[t->kind], t->method ? ", " : "",
                        t->method ? tc_method_name(t->method) : "", t->normals ? ", normals" : "",
-                       t->mirrored ? ", mirrored" : "", t->has_nodata ? ", nodata" : "");
+                       t->closed ? ", closed" : "", t->mirrored ? ", mirrored" : "", t->has_nodata ? ", nodata" : "");
     for (size_t n = 0; n < sizeof given / sizeof *given; n++)
         if (given[n].value)
             length += snprintf(name + length, bytes - (size_t)length, ", %s %" PRIu64, given[n].what, given[n].value);

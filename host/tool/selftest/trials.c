@@ -103,6 +103,14 @@ static const trial snapped[] = {
     {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 0, .method = TC_METHOD_SNAP, .change = CHANGE_HUGE},
 };
 
+static const trial closed[] = {
+    {.field = "full", .dims = {20, 20, 20}, .type = TC_F32, .isovalue = 127.5, .closed = 1, .is_known = 1, .vertices = 2168, .triangles = 4332},
+    {.field = "gyroid", .dims = {130, 21, 18}, .type = TC_F32, .isovalue = 127.5, .closed = 1},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 127.5, .closed = 1, .change = CHANGE_MISSING, .normals = 1},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 127.5, .closed = 1, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {67, 13, 11}, .type = TC_U8, .isovalue = 128, .closed = 1, .method = TC_METHOD_SNAP, .change = CHANGE_STEPS, .has_nodata = 1, .nodata = 64},
+};
+
 static const trial coordinates[] = {
     {.field = "gyroid", .dims = {67, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_RECTILINEAR, .normals = 1},
     {.field = "gyroid", .dims = {67, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_CURVILINEAR, .normals = 1},
@@ -186,6 +194,7 @@ const trial_group trial_groups[] = {
     GROUP("matrices", "mirrored and sheared grids", matrices, standard, 0, 1, 1),
     GROUP("hybrid", "the hybrid method", hybrids, standard, 0, 1, 1),
     GROUP("snap", "the method snap", snapped, standard, 0, 3, 1),
+    GROUP("closed", "closed surfaces", closed, standard, 0, 2, 1),
     GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0, 2, 1),
     GROUP("complexes", "unstructured grids", complexes, standard, 0, 1, 1),
     GROUP("scan", "the scan and its fallback", scanned, chained, 0, 1, 3),

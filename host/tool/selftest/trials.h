@@ -28,7 +28,7 @@ typedef struct trial {
     trial_change change;
     trial_kind kind;
     tc_method method;
-    int normals, mirrored; /* mirrored: a left-handed matrix, with spacing and shear */
+    int normals, closed, mirrored; /* mirrored: a left-handed matrix, with spacing and shear */
     int has_nodata;
     double nodata;
     int64_t first[3];

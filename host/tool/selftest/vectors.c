@@ -31,6 +31,8 @@ static int parse_options(vector *v) {
             v->seed = strtoull(at + 5, &end, 10);
         } else if (strcmp(at, "tetrahedra") == 0) {
             v->is_complex = 1;
+        } else if (strcmp(at, "closed") == 0) {
+            v->is_closed = 1;
         } else {
             return 0;
         }
@@ -161,6 +163,7 @@ int vector_try(const vector *v, tc_context *device, char *text, size_t bytes) {
     tc_extract_options_init(&how);
     how.isovalue = v->isovalue;
     how.method = v->method;
+    how.closed = v->is_closed;
     if (!status) {
         tc_status made = v->is_complex ? tc_tetrahedralize_grid(&from.grid, &from.complex) : TC_OK;
         if (!made) made = selftest_grid_create(&from, device, &grid);

@@ -14,6 +14,7 @@ typedef struct vector {
     double isovalue;
     tc_method method;
     int is_complex; /* cut into tetrahedra, and extracted as an unstructured grid */
+    int is_closed;
     int has_nodata;
     double nodata;
     uint64_t seed, vertices, triangles, hash;

@@ -22,9 +22,10 @@ HEAD = """\
 # FIELD: of `tetracubes generate --help`. Sample i of n along an axis lies at 2 i / (n - 1) - 1, computed in double; f32
 # rounds to nearest, integers truncate toward zero and saturate. METHOD: tetra (five tetrahedra per cube), hybrid or snap
 # (threshold 0.5). OPTIONS: - or, with commas between: nodata=V: samples equal to V are missing; seed=S of noise, else 0;
-# tetrahedra: the grid cut into tetrahedra and extracted as an unstructured one. Positions are in index space: sample
-# (i, j, k) lies at i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices, then the uint32 indices of
-# all triangles, both little-endian, in the order that kernels/README.md describes; 16 hexadecimal digits.
+# tetrahedra: the grid cut into tetrahedra and extracted as an unstructured one; closed: closed at the border. Positions
+# are in index space: sample (i, j, k) lies at i, j, k. HASH: XXH64, seed 0, of the float32 positions of all vertices,
+# then the uint32 indices of all triangles, both little-endian, in the order that kernels/README.md describes; 16
+# hexadecimal digits.
 """
 TYPES = ["u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"]
 
@@ -51,6 +52,11 @@ def cases():
     yield "gyroid", (67, 33, 20), "i16", "127.5", "tetra", "nodata=100"
     yield "gyroid", (67, 33, 20), "u8", "127.5", "hybrid", "nodata=100"
     yield "gyroid", (67, 33, 20), "u8", "127.5", "snap", "nodata=100"
+    for method in ("tetra", "hybrid", "snap"):
+        yield "gyroid", (130, 33, 20), "u8", "127.5", method, "closed"
+        yield "noise", (67, 13, 11), "f32", "127.5", method, "seed=13,closed"
+        yield "gyroid", (67, 33, 20), "u8", "127.5", method, "nodata=100,closed"
+    yield "full", (20, 20, 20), "f32", "127.5", "tetra", "closed"
     for name in ("u8", "i16", "f32", "f64"):
         yield "gyroid", (30, 20, 13), name, "127.5", "tetra", "tetrahedra"
     for field in ("sphere", "torus", "gyroid", "marschner-lobb", "tangle"):
@@ -85,6 +91,8 @@ def line(tool, folder, case):
         source, how = cut, []
     if "nodata" in given:
         how += ["--nodata", given["nodata"]]
+    if "closed" in given:
+        how += ["--closed"]
     surface = json.loads(run(tool, "extract", source, *how, "--iso", iso, "--method", method, "--engine", "reference",
                              "--json", "--quiet"))["surfaces"][0]
     words = [field, *dims, kind, iso, method, options, surface["vertices"], surface["triangles"], surface["hash"]]

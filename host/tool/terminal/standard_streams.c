@@ -27,9 +27,13 @@ static int is_written_to(const char *path, int fd) {
            !is_null_device(&named);
 }
 
-void streams_choose(const char *path) {
-    const int takes_out = path && is_written_to(path, STDOUT_FILENO);
-    const int takes_err = path && is_written_to(path, STDERR_FILENO);
+static int is_one_written_to(const char *path, const char *other, int fd) {
+    return (path && is_written_to(path, fd)) || (other && is_written_to(other, fd));
+}
+
+void streams_choose(const char *path, const char *other) {
+    const int takes_out = is_one_written_to(path, other, STDOUT_FILENO);
+    const int takes_err = is_one_written_to(path, other, STDERR_FILENO);
     original.out = stdout;
     original.err = stderr;
     if (takes_out && takes_err) original.null = fopen("/dev/null", "w");

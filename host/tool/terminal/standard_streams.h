@@ -8,9 +8,9 @@
 #ifndef STANDARD_STREAMS_H
 #define STANDARD_STREAMS_H
 
-/* Sets stdout and stderr for a command that writes the output: "-", or a name, which may lead to what one of them is
- * (/dev/stdout, a FIFO, the file that the shell has opened). NULL: none. */
-void streams_choose(const char *output);
+/* Sets stdout and stderr for a command that writes these two outputs: "-", or a name, which may lead to what one of
+ * them is (/dev/stdout, a FIFO, the file that the shell has opened). NULL: none. */
+void streams_choose(const char *output, const char *other);
 
 /* Sets them back. Failures are then told on standard error in any case: the file is not whole. */
 void streams_restore(void);

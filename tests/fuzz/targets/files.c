@@ -66,7 +66,7 @@ int mapping_open(const char *path, mapping *m) {
     unsigned char *copy = malloc(files.sizes[n]);
     memcpy(copy, files.bytes[n], files.sizes[n]);
     files.mapped[files.mapped_count++] = copy;
-    *m = (mapping){.bytes = copy, .size = files.sizes[n]};
+    *m = (mapping){.bytes = copy, .size = files.sizes[n], .identity = {.inode = (ino_t)n + 1}};
     return 0;
 }
 

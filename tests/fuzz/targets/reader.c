@@ -18,7 +18,9 @@
 #include "image/image.h"
 #include "plot3d/plot3d.h"
 #include "read.h"
+#include "vtk_hdf/vtk_hdf.h"
 #include "vtk_legacy/vtk_legacy.h"
+#include "vtk_parallel/vtk_parallel.h"
 #include "vtk_xml/vtk_xml.h"
 
 #include <math.h>
@@ -26,8 +28,12 @@
 #include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+const char *__lsan_default_suppressions(void);
 
-enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF };
+/* What libhdf5 keeps of files that are damaged is its own. */
+const char *__lsan_default_suppressions(void) { return "leak:libhdf5"; }
+
+enum { RAW, NRRD, METAIMAGE, NIFTI, VTK_LEGACY, VTK_XML, PLOT3D, NPY, TIFF, VTK_PARALLEL, HDF5 };
 
 typedef struct format {
     const char *paths[4];
@@ -44,6 +50,8 @@ static const format formats[] = {
     [PLOT3D] = {{"in/a.xyz", "in/a.g", "in/a.x", "in/a.p3d"}, .read = plot3d_read},
     [NPY] = {{"in/a.npy", "in/a.npy", "in/a.npy", "in/a.npy"}, .read = npy_read},
     [TIFF] = {{"in/a.tif", "in/a.tiff", "in/a.tif", "in/a.tif"}, .read = tiff_read},
+    [VTK_PARALLEL] = {{"in/a.pvti", "in/a.pvtu", "in/a.pvts", "in/a.vtm"}, .read = vtk_parallel_read},
+    [HDF5] = {{"in/a.h5", "in/a.hdf5", "in/a.vtkhdf", "in/a.h5"}, .read = vtk_hdf_read},
 };
 
 /* ------------------------------------------------------------------------------------------------------ after reading

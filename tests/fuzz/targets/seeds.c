@@ -38,9 +38,9 @@ void seed_file(const char *target, const char *name, const void *data, size_t si
 }
 
 static const char *target_of(const char *name) {
-    static const char *const endings[][2] = {{".nrrd", "nrrd"},   {".mha", "metaimage"}, {".vtk", "vtk_legacy"},
-                                             {".vtu", "vtk_xml"}, {".vti", "vtk_xml"},   {".xyz", "plot3d"},
-                                             {".npy", "npy"}};
+    static const char *const endings[][2] = {{".nrrd", "nrrd"},   {".mha", "metaimage"},    {".vtk", "vtk_legacy"},
+                                             {".vtu", "vtk_xml"}, {".vti", "vtk_xml"},      {".xyz", "plot3d"},
+                                             {".npy", "npy"},     {".pvti", "vtk_parallel"}};
     for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
         if (strstr(name, endings[n][0])) return endings[n][1];
     return "raw";
@@ -66,6 +66,7 @@ int main(int argc, char **argv) {
     seeds_images();
     seeds_vtk();
     seeds_plot3d();
+    seeds_hdf5();
     seeds_grids();
     seeds_limits("size", size_cases, sizeof size_cases / sizeof *size_cases);
     seeds_limits("distance", distance_cases, sizeof distance_cases / sizeof *distance_cases);

@@ -15,6 +15,7 @@ void seed_file(const char *target, const char *name, const void *data, size_t si
 
 void seeds_images(void); /* raw, NRRD, MetaImage, NIfTI */
 void seeds_vtk(void);
+void seeds_hdf5(void);
 void seeds_plot3d(void);
 void seeds_grids(void); /* arguments of the library */
 

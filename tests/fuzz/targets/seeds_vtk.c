@@ -191,7 +191,86 @@ static void add_polyhedra(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------- pieces
+ */
+
+/* Half of 5 x 2 x 2 points, with or without a layer of ghosts; a tetrahedron of two that share a face. */
+static bytes piece_file(enum block_kind kind, int piece, int ghosts, int numbered) {
+    static const char *const names[] = {"ImageData", "RectilinearGrid", "StructuredGrid", "UnstructuredGrid"};
+    static const double points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1}, all[] = {0, 1, 2, 3, 4};
+    static const double marks[2][3] = {{0, 0, 1}, {1, 0, 0}}, numbers[2][4] = {{5, 6, 7, 8}, {5, 6, 7, 9}};
+    const vtk_shape shape = {.encoding = AS_TEXT, .header_bytes = 4};
+    vtk_writer w;
+    const int first = piece ? 2 - ghosts : 0, last = piece ? 4 : 2 + ghosts, count = 4 * (last - first + 1);
+    double values[60];
+    for (int i = 0; i < 60; i++) values[i] = i * 29 % 97 * 0.5;
+    vtk_xml_begin(&w, &shape, names[kind]);
+    bytes_text(&w.text, "<%s>", names[kind]);
+    if (kind == BLOCK_UNSTRUCTURED)
+        bytes_text(&w.text, "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">");
+    else
+        bytes_text(&w.text, "<Piece Extent=\"%d %d 0 1 0 1\">", first, last);
+    bytes_text(&w.text, numbered ? "<PointData GlobalIds=\"n\">" : "<PointData>");
+    array_add(&w, TC_F32, "a", 1, all, kind == BLOCK_UNSTRUCTURED ? 4 : 0);
+    if (kind != BLOCK_UNSTRUCTURED) array_add(&w, TC_F32, "b", 1, values, (uint64_t)count);
+    if (numbered) array_add(&w, TC_I32, "n", 1, numbers[piece], 4);
+    bytes_text(&w.text, "</PointData><CellData>");
+    if (ghosts) array_add(&w, TC_U8, "vtkGhostType", 1, marks[piece], kind == BLOCK_UNSTRUCTURED ? 1 : 3);
+    bytes_text(&w.text, "</CellData>");
+    if (kind == BLOCK_RECTILINEAR) {
+        bytes_text(&w.text, "<Coordinates>");
+        array_add(&w, TC_F32, "x", 1, all + first, (uint64_t)(last - first + 1));
+        array_add(&w, TC_F32, "y", 1, all, 2);
+        array_add(&w, TC_F32, "z", 1, all, 2);
+        bytes_text(&w.text, "</Coordinates>");
+    } else if (kind != BLOCK_UNIFORM) {
+        double own[12];
+        memcpy(own, points, sizeof own);
+        if (piece) memcpy(own + 9, points + 12, 3 * sizeof *own);
+        bytes_text(&w.text, "<Points>");
+        array_add(&w, TC_F32, "Points", 3, kind == BLOCK_UNSTRUCTURED ? own : values,
+                  kind == BLOCK_UNSTRUCTURED ? 12 : 3 * (uint64_t)count);
+        bytes_text(&w.text, "</Points>");
+    }
+    if (kind == BLOCK_UNSTRUCTURED) {
+        bytes_text(&w.text, "<Cells>");
+        array_add(&w, TC_I32, "connectivity", 1, all, 4);
+        array_add(&w, TC_I32, "offsets", 1, all + 4, 1);
+        array_add(&w, TC_U8, "types", 1, types + 1, 1);
+        bytes_text(&w.text, "</Cells>");
+    }
+    bytes_text(&w.text, "</Piece></%s>", names[kind]);
+    return vtk_xml_finish(&w);
+}
+
+static void add_pieces(enum block_kind kind, int ghosts, int numbered, int as_blocks) {
+    static const char *const names[] = {"PImageData", "PRectilinearGrid", "PStructuredGrid", "PUnstructuredGrid"};
+    const char *type = as_blocks ? "vtkMultiBlockDataSet" : names[kind];
+    char name[64];
+    bytes index = {0}, second = piece_file(kind, 0, ghosts, numbered), third = piece_file(kind, 1, ghosts, numbered);
+    bytes_text(&index, "<VTKFile type=\"%s\"><%s WholeExtent=\"0 4 0 1 0 1\" GhostLevel=\"%d\">", type, type, ghosts);
+    for (int n = 1; n <= 2; n++)
+        bytes_text(&index,
+                   as_blocks ? "<Block><DataSet index=\"%d\" file=\"%d\"/></Block>"
+                             : "<Piece Extent=\"%d %d 0 1 0 1\" Source=\"%d\"/>",
+                   n == 1 ? (as_blocks ? 1 : 0) : 2 - !as_blocks * ghosts,
+                   as_blocks ? n
+                   : n == 1  ? 2 + ghosts
+                             : 4,
+                   n);
+    bytes_text(&index, "</%s></VTKFile>", type);
+    bytes_text(&second, "\n=FILE=\n");
+    bytes_add(&second, third.data, third.size);
+    snprintf(name, sizeof name, "kind-%d-ghosts-%d-numbered-%d-blocks-%d", (int)kind, ghosts, numbered, as_blocks);
+    seed_file("vtk_parallel", name, index.data, index.size, second.data, second.size, plain);
+    bytes_free(&index);
+    bytes_free(&second);
+    bytes_free(&third);
+}
+
 void seeds_vtk(void) {
+    for (int n = 0; n < 16; n++) add_pieces((enum block_kind)(n & 3), n >> 2 & 1, 0, n >> 3);
+    for (int n = 0; n < 2; n++) add_pieces(BLOCK_UNSTRUCTURED, n, 1, 0);
     add_polyhedra();
     for (int kind = BLOCK_UNIFORM; kind <= BLOCK_UNSTRUCTURED; kind++) {
         for (int n = 0; n < 64; n++) {

@@ -1,5 +1,5 @@
 /* data_names.c - the files that a detached header names; see data_names.h */
-#include "image/data_names.h"
+#include "dataset/data_names.h"
 
 #include "exit_status.h"
 #include "failure.h"

@@ -1,0 +1,21 @@
+/*
+ * surface_preview.h - pictures of surfaces (--preview): their names, checks before any work, drawing
+ *
+ * One for each file that -o writes, named in the same way, or would write: per isovalue, and with --blocks separate per
+ * block.
+ */
+#ifndef SURFACE_PREVIEW_H
+#define SURFACE_PREVIEW_H
+
+#include "output_group.h"
+#include "result_mesh.h"
+
+/* STATUS_USAGE where the names do not fit the other options, or would overwrite an input, or the mesh; STATUS_FAILED
+ * where a file cannot be written. d is NULL before the input is read. */
+int surface_preview_check(const options *o, const dataset *d);
+
+/* Draws the mesh of the isovalue and, with --blocks separate, the block. The file waits in the group. */
+int surface_preview_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
+                          output_group *group);
+
+#endif
