@@ -50,7 +50,10 @@ class RankCase(GridCase):
         self.assertEqual(done.returncode, 0, f"{count} ranks, {arguments}: {done.stdout} {done.stderr}")
         return done
 
-    def compare(self, counts, *arguments, formats=("ply", "vtp", "stl")):
+    def compare(self, counts, *arguments, formats=None):
+        if not formats:
+            has_hdf = "VTKHDF" in self.expect(0, "--version").stdout
+            formats = ("ply", "vtp", "stl", "vtkhdf") if has_hdf else ("ply", "vtp", "stl")
         for ending in formats:
             self.expect(0, "extract", *arguments, "-o", self.path("one." + ending), "--quiet")
             for count in counts:
@@ -70,7 +73,8 @@ class SameBytes(RankCase):
                 self.compare((1, 2, 3, 5, 8), *arguments)
                 self.compare((3, 12), *arguments, "--normals", "--nodata", "3", formats=("ply", "vtp"))
             else:
-                self.compare((3,), *arguments, formats=("ply", "stl"))
+                formats = ("vtkhdf",) if "VTKHDF" in self.expect(0, "--version").stdout and method == "tetra" else ()
+                self.compare((3,), *arguments, formats=("ply", "stl", *formats))
 
     def test_missing_data_and_more_ranks_than_layers(self):
         volume = self.generate("gyroid", "g.nrrd", "21,17,10")

@@ -42,6 +42,8 @@ class JoinCase(GridCase):
 
     def compare(self, counts, *arguments, formats=FORMATS, seed=1):
         chance = random.Random(seed)
+        if formats == FORMATS and "VTKHDF" in self.expect(0, "--version").stdout:
+            formats = (*FORMATS, "vtkhdf")
         wanted = {ending: self.one(ending, *arguments) for ending in formats}
         for count in counts:
             parts = self.parts(count, *arguments)
@@ -107,6 +109,15 @@ class Joined(JoinCase):
             parts = self.parts(2, volume, "--iso", "9", *self.engine(), name=f"c{number}-")
         self.refuses(4, "join", self.path("c0-0.tcpart"), parts[1], "-o", self.path("x.ply"), says="another volume")
 
+    def test_space_and_units(self):
+        """What a file says of its space stands in the files made."""
+        head = b"NRRD0005\ntype: uint8\ndimension: 3\nsizes: 5 5 9\nspace: left-posterior-superior\n" \
+               b"space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n" \
+               b'space units: "mm" "mm" "mm"\nencoding: raw\n\n'
+        volume = self.write("w.nrrd", head + bytes(x * y + 8 * z for x, y, z in lattice((5, 5, 9))))
+        wanted = self.compare((2,), volume, "--iso", "33.5", *self.engine(), formats=("vtp",))
+        self.assertIn(b'Name="SPACE"', wanted["vtp"])
+
     def test_isovalues(self):
         volume = self.generate("sphere", "s.nrrd", "15,14,18")
         isovalues = ("100", "0x1.8p7")
@@ -146,7 +157,7 @@ class OnDevice(Joined):
         self.assertEqual(self.joined("ply", [reference[0], device[1]]), self.one("ply", volume, "--iso", "127.5"))
 
     test_normals_and_missing_data = test_more_parts_than_layers = test_far_from_zero = None
-    test_carried_fields = test_curvilinear = test_isovalues = test_report = None
+    test_carried_fields = test_curvilinear = test_space_and_units = test_isovalues = test_report = None
 
 
 class Refused(JoinCase):
