@@ -22,7 +22,8 @@ import tempfile
 PROCESSORS = ["x86-64", "haswell", "skylake-avx512"]
 SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "classify-u8-snap",
           "emit-u8-tetra-uniform", "emit-f32-snap-curvilinear-missing-normals", "snap-u8", "snap-f64-missing",
-          "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32"]
+          "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32",
+          "whole-f32"]
 
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
@@ -110,7 +111,8 @@ def files_check(jobs, clang):
             seen.setdefault(work_items, set()).update(re.findall(r'#line 1 "(\w+\.cl)"', file.read()))
     for work_items, names in seen.items():
         for name in sorted(names):
-            said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items]],
+            whole = ["-DWHOLE=1"] if name.startswith("whole_") else []
+            said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items], *whole],
                             os.path.join(KERNELS, name))
             if said:
                 wrong.append(f"{name} by itself, {work_items} work-items: {said}")

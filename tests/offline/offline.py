@@ -25,7 +25,7 @@ from targets import KINDS, Lacks, Need, Program, Refused, options_read
 SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybrid", "classify-f32-snap-missing",
           "emit-u8-tetra-uniform", "emit-f32-snap-uniform", "snap-u8", "snap-f64-missing",
           "emit-f32-tetra-uniform", "emit-f32-tetra-uniform-normals", "emit-f32-hybrid-rectilinear-missing-normals",
-          "emit-f64-tetra-curvilinear-missing-normals", "emit-i32-hybrid-uniform", "complex-f32", "complex-f64"]
+          "emit-f64-tetra-curvilinear-missing-normals", "emit-i32-hybrid-uniform", "complex-f32", "complex-f64", "whole-u8", "whole-f32"]
 
 # All work-items of a group: other sizes are compiled in the long tier, as samples.
 OTHER_SIZES = [32, 64, 256]
