@@ -78,6 +78,7 @@ static int case_samples(const bench_options *o, int n, samples *out) {
     int size = n % o->dims_count, type = n / o->dims_count % o->type_count, f = n / o->dims_count / o->type_count;
     int status = o->input ? samples_read(o, out) : samples_describe(o->fields[f], o->dims[size], o->types[type], out);
     if (!status) samples_place(out, o->grid);
+    out->keeps_cells = o->grid == BENCH_HEXAHEDRA && o->method == TC_METHOD_HYBRID;
     return status;
 }
 

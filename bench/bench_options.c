@@ -166,7 +166,8 @@ static const option table[] = {
     {"--grid", "G", take_grid,
      "uniform (the default), rectilinear or curvilinear: the last two move\n"
      "each sample a small step off its uniform position.\n"
-     "tetrahedra, hexahedra: the curvilinear one as an unstructured grid"},
+     "tetrahedra, hexahedra: the curvilinear one as an unstructured grid, whose\n"
+     "hexahedra method hybrid keeps whole"},
     {"--input", "FILE", take_input,
      "a volume file instead of fields; raw ones need --dims and --type"},
     {"--device", "SPEC", take_device,

@@ -5,8 +5,7 @@
 #include "library_status.h"
 #include "measure.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include <sys/mman.h>
 
 /* The cubes of a grid as hexahedra in VTK's order of corners. */
 static void hexahedra_list(const int64_t dims[3], uint8_t *types, int64_t *offsets, int64_t *connectivity) {
@@ -27,24 +26,29 @@ static void hexahedra_list(const int64_t dims[3], uint8_t *types, int64_t *offse
 static int hexahedra_cut(samples *s) {
     const int64_t *dims = s->grid.dims;
     const uint64_t count = (uint64_t)((dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1));
-    uint8_t *types = malloc(count);
-    int64_t *offsets = malloc(8 * (count + 1)), *connectivity = malloc(64 * count);
-    int status = types && offsets && connectivity ? 0 : fail(STATUS_FAILED, "no memory for the hexahedra");
-    if (!status) {
-        hexahedra_list(dims, types, offsets, connectivity);
-        tc_cells cells = {.struct_size = sizeof cells,
-                          .point_count = (uint64_t)(dims[0] * dims[1] * dims[2]),
-                          .points = s->coordinates,
-                          .cell_count = count,
-                          .types = types,
-                          .offsets = offsets,
-                          .connectivity = connectivity};
-        status = library_status(tc_tetrahedralize(&cells, &s->complex));
-    }
-    free(types);
-    free(offsets);
-    free(connectivity);
-    return status;
+    void *types = NULL, *offsets = NULL, *connectivity = NULL;
+    s->cells = (tc_cells){.struct_size = sizeof s->cells, .point_count = (uint64_t)(dims[0] * dims[1] * dims[2])};
+    s->cells.points = s->coordinates, s->cells.cell_count = count;
+    int status = memory_make(count, "hexahedra", &types);
+    s->cells.types = types;
+    if (!status) status = memory_make(8 * (count + 1), "hexahedra", &offsets);
+    s->cells.offsets = offsets;
+    if (!status) status = memory_make(64 * count, "hexahedra", &connectivity);
+    s->cells.connectivity = connectivity;
+    if (status) return status;
+    hexahedra_list(dims, types, offsets, connectivity);
+    return library_status(tc_tetrahedralize(&s->cells, &s->complex));
+}
+
+static void memory_release(const void *memory, uint64_t bytes) {
+    if (memory) munmap((void *)(uintptr_t)memory, bytes);
+}
+
+void complex_release(samples *s) {
+    tc_tetrahedra_release(&s->complex);
+    memory_release(s->cells.types, s->cells.cell_count);
+    memory_release(s->cells.offsets, 8 * (s->cells.cell_count + 1));
+    memory_release(s->cells.connectivity, 64 * s->cells.cell_count);
 }
 
 int complex_make(samples *s) {
@@ -65,5 +69,6 @@ tc_status samples_open(const samples *s, tc_context *context, tc_grid **grid) {
     o.samples = s->grid.samples;
     o.tetrahedron_count = s->complex.tetrahedron_count;
     o.tetrahedra = s->complex.tetrahedra;
+    if (s->keeps_cells) o.source = &s->cells, o.cells = s->complex.cells;
     return tc_tetrahedra_grid_create(context, &o, grid);
 }

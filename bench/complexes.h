@@ -8,6 +8,8 @@
  * cubes as cells of an unstructured grid. Returns 0 or an exit status with its message (failure.h). */
 int complex_make(samples *s);
 
+void complex_release(samples *s);
+
 /* A grid of the samples, structured or not. */
 tc_status samples_open(const samples *s, tc_context *context, tc_grid **grid);
 

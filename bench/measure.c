@@ -135,7 +135,8 @@ static int second_compare(const measurement *m, const case_result *result) {
 }
 
 int measure_verify(const measurement *m, case_result *result) {
-    result->cell_bytes = 16 * m->samples->complex.tetrahedron_count;
+    const samples *s = m->samples;
+    result->cell_bytes = s->keeps_cells ? 64 * s->cells.cell_count : 16 * s->complex.tetrahedron_count;
     int status = surfaces_make(m, result);
     return status ? status : second_compare(m, result);
 }

@@ -8,7 +8,8 @@ ones have turns with ours of their own (beside_ms): they use gigabytes, after wh
 any new mesh anew.
 
   ours    tetracubes-bench --turns: first launch to mesh complete, a new grid and mesh on every repeat (extract_ms)
-  hybrid  the same by --method hybrid, up to 512^3 samples: about as many triangles as the others make
+  hybrid  the same by --method hybrid, up to 512^3 samples: about as many triangles as the others make; also on
+          hexahedra, which are kept whole
   snap    likewise by --method snap: fewer
   vtk     vtkFlyingEdges3D.Update(): a new filter on every repeat; normals, gradients and scalars off; its SMP threads
           are all cores unless --threads says otherwise
@@ -54,6 +55,7 @@ REST = 0.01  # seconds before every turn: the others' threads have gone to sleep
 SLOW_TURNS = [(5000.0, 1), (1000.0, 3)]  # from so many milliseconds on, so many turns
 HALVED_FROM = 1024
 METHODS = ["hybrid", "snap"]  # beside tetra
+WHOLE_METHODS = ["hybrid"]  # of unstructured grids whose cells are no tetrahedra
 METHODS_MOST = 512 ** 3  # samples
 LARGE_PEERS = ("vtk_mc", "skimage", "meshlib")  # which have turns of their own
 MEMORY_FACTOR = 4  # times the samples: the file in the page cache, what the filters make beside it, meshes
@@ -235,8 +237,16 @@ def result_of(case, samples, reports, times, peers):
     for method in set(METHODS) & set(times):
         result[f"{method}_ms"] = spread(times[method])
         result[f"{method}_triangles"] = reports[method]["cases"][0]["triangles"]
-        result[f"{method}_ratio"] = round(statistics.median(times["vtk"]) / statistics.median(times[method]), 3)
+        result[f"{method}_ratio"] = round(statistics.median(times[first]) / statistics.median(times[method]), 3)
+        if f"{method}_second" in times:
+            result[f"{method}_second_ms"] = spread(times[f"{method}_second"])
     return result
+
+
+def methods_of(samples):
+    """Those that are measured beside tetra."""
+    most = METHODS if samples.grid == "uniform" else WHOLE_METHODS if samples.grid == "hexahedra" else []
+    return most if samples.count() <= METHODS_MOST else []
 
 
 def run_case(arguments, case, folder):
@@ -251,7 +261,7 @@ def run_case(arguments, case, folder):
         for key, its in opened.items():
             progress(f"{case.name}: verifying")
             ours[key] = Ours(arguments.bench, its, case.iso, arguments.device, arguments.repeat)
-        for method in METHODS if samples.count() <= METHODS_MOST and case.grid == "uniform" else []:
+        for method in methods_of(samples):
             progress(f"{case.name}: verifying method {method}")
             ours[method] = Ours(arguments.bench, samples, case.iso, arguments.device, arguments.repeat, method)
         peers = peer_filters.filters_of(samples, case.iso)
@@ -284,6 +294,8 @@ def shown_ratio(result, key):
     return f"{median:.1f} ({median / ours['median']:.2f})"
 
 
+FILTERS = {"uniform": "vtkFlyingEdges3D", "hexahedra": "vtkContour3DLinearGrid"}  # beside other methods
+
 COLUMNS = "{:<32} {:>24} {:>18} {:>18} {:>18} {:>18} {:>18} {:>11} {:>11} {:>11}"
 
 
@@ -311,7 +323,11 @@ def print_row(result):
     for method in METHODS:
         if f"{method}_ms" in result:
             print(f"    {method}: {shown(result[f'{method}_ms'])}, {result[f'{method}_triangles']} triangles; "
-                  f"vtkFlyingEdges3D takes {result[f'{method}_ratio']:.2f} times as long", flush=True)
+                  f"{FILTERS[result['grid']]} takes {result[f'{method}_ratio']:.2f} times as long", flush=True)
+        if f"{method}_second_ms" in result:
+            second, vtk_second = result[f"{method}_second_ms"], result["vtk_linear_second_ms"]
+            print(f"    {method}, another isovalue: {shown(second)}, "
+                  f"ratio {vtk_second['median'] / second['median']:.2f}", flush=True)
 
 
 def find_bench():

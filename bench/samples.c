@@ -74,8 +74,7 @@ static int points_make(samples *s) {
     return 0;
 }
 
-/* In huge pages: so does the measurement of bandwidth, and so do the readers and numpy with their arrays. */
-static int memory_make(uint64_t bytes, const char *what, void **out) {
+int memory_make(uint64_t bytes, const char *what, void **out) {
     void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
         return fail(STATUS_FAILED, "no %" PRIu64 " MB of memory for the %s; give smaller --dims", bytes >> 20, what);
@@ -157,7 +156,7 @@ int samples_dump(const samples *s, const char *path) {
 void samples_release(samples *s) {
     if (s->made) munmap(s->made, s->bytes);
     if (s->coordinates) munmap(s->coordinates, s->coordinate_bytes);
-    tc_tetrahedra_release(&s->complex);
+    complex_release(s);
     dataset_release(&s->read);
     *s = (samples){0};
 }

@@ -5,6 +5,8 @@
 #include "bench_options.h"
 #include "dataset/dataset.h"
 
+#include <stdbool.h>
+
 typedef struct samples {
     const field *made_from; /* NULL: a file */
     const char *name;       /* of the field, or of the file without its folders */
@@ -16,6 +18,8 @@ typedef struct samples {
     float *coordinates; /* axes one after the other, or points; page-aligned, or NULL */
     uint64_t coordinate_bytes;
     tc_tetrahedra complex; /* unstructured: the tetrahedra between the points */
+    tc_cells cells;        /* the hexahedra that these were cut from, or none; the arrays are its own */
+    bool keeps_cells;      /* grids are given these: for method hybrid */
 } samples;
 
 /* Describes samples of an analytic field, for samples_make to take the memory for; the matrix is the one that
@@ -29,6 +33,10 @@ void samples_place(samples *s, bench_grid grid);
 
 /* Makes the samples that were described, and the coordinates. Samples of a file exist already. */
 int samples_make(samples *s);
+
+/* Memory to be unmapped, in huge pages: so does the measurement of bandwidth, and so do the readers and numpy with
+ * their arrays. */
+int memory_make(uint64_t bytes, const char *what, void **out);
 
 /* Samples of the file o->input, likewise. */
 int samples_read(const bench_options *o, samples *out);

@@ -87,21 +87,24 @@ def peers_table(peers):
     return table(head, rows)
 
 
-def grid_peer_row(peer):
+def grid_peer_row(peer, method=None):
+    """Ours by the method, tetra where none is named."""
     key, title = next((key, title) for key, title in GRID_PEERS if f"{key}_ms" in peer)
+    start = f"{method}_" if method else ""
+    times, theirs = peer[f"{method}_ms" if method else "extract_ms"], peer[f"{key}_ms"]["median"]
     second = ["", ""]
-    if "second_ms" in peer:
-        median = peer["second_ms"]["median"]
-        theirs = peer[f"{key}_second_ms"]["median"]
-        second = [number(median), f"{number(theirs)} (**{theirs / median:.2f}**)"]
-    return [peer_name(peer), ms(peer["extract_ms"]), title, peer_cell(peer, key), *second, f"{peer['triangles']:,}",
+    if f"{start}second_ms" in peer:
+        median, their_second = peer[f"{start}second_ms"]["median"], peer[f"{key}_second_ms"]["median"]
+        second = [number(median), f"{number(their_second)} (**{their_second / median:.2f}**)"]
+    return [peer_name(peer) + (f", {method}" if method else ""), ms(times), title,
+            f"{number(theirs)} (**{theirs / times['median']:.2f}**)", *second, f"{peer[f'{start}triangles']:,}",
             f"{peer[f'{key}_triangles']:,}"]
 
 
 def grid_peers_table(peers):
     head = ["samples", "Tetracubes, ms", "other", "its, ms", "second isovalue, ms", "other's, ms", "triangles",
             "other's triangles"]
-    return table(head, [grid_peer_row(peer) for peer in peers])
+    return table(head, [grid_peer_row(peer, method) for peer in peers for method in (None, *methods_of([peer]))])
 
 
 def growth_text(peers):

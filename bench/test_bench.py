@@ -113,6 +113,8 @@ def test_grids(made):
     for key in ("vertices", "triangles"):
         expect(tetrahedra[key] == made[key], f"--grid tetrahedra: {key} {tetrahedra[key]}, not {made[key]}")
     expect(hexahedra["triangles"] > made["triangles"], "--grid hexahedra: not six tetrahedra to a cube")
+    whole = cases_of(*case, "--grid", "hexahedra", "--method", "hybrid")["cases"][0]
+    expect(whole["triangles"] < 0.5 * hexahedra["triangles"], "--grid hexahedra --method hybrid: many triangles")
 
 
 def test_second(made):

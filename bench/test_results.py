@@ -94,6 +94,29 @@ def test_partial(folder):
     expect("Beside other filters" not in text, "a table of peers without peers")
 
 
+def test_grid_methods(folder):
+    """An unstructured case that a method beside tetra was measured on has a row for it."""
+    path = sorted(RESULTS.glob("*.json"))[0]
+    result = json.loads(path.read_text())
+    for peer in result["peers"]:
+        if peer.get("grid") == "hexahedra":
+            peer.update({"hybrid_ms": {"median": 10.0, "min": 9.0, "max": 11.0}, "hybrid_triangles": 66296,
+                         "hybrid_second_ms": {"median": 2.0, "min": 1.0, "max": 3.0},
+                         "vtk_linear_ms": {"median": 25.0, "min": 24.0, "max": 26.0},
+                         "vtk_linear_second_ms": {"median": 20.0, "min": 19.0, "max": 21.0}})
+    methods = folder / "methods"
+    methods.mkdir()
+    (methods / path.name).write_text(json.dumps(result))
+    readme, page = folder / "methods.md", folder / "methods-page.md"
+    shutil.copy(SOURCE / "README.md", readme)
+    shutil.copy(SOURCE / "bench" / "README.md", page)
+    done = make_tables(methods, readme, page)
+    expect(done.returncode == 0, f"methods: {done.returncode} {done.stderr}")
+    row = ("| sphere 127³ f32, hexahedra, hybrid | 10.0 (9.0-11.0) | vtkContour3DLinearGrid | 25.0 (**2.50**) | 2.00 | "
+           "20.0 (**10.00**) | 66,296 | 66,296 |")
+    expect(row in page.read_text(), "no row of hexahedra kept whole")
+
+
 def test_failures(folder):
     empty = folder / "empty"
     empty.mkdir()
@@ -125,6 +148,7 @@ def main():
         test_committed(folder)
         test_python(folder)
         test_partial(folder)
+        test_grid_methods(folder)
         test_failures(folder)
         test_plot(folder)
     print(f"{failures} failed")

@@ -1,6 +1,6 @@
 /*
- * complex_classify.cl - kernel 1 of complexes: which tetrahedra are active (complex_count.cl), prefix sums of active
- * tetrahedra and their triangles; then the list of active tetrahedra
+ * complex_classify.cl - kernel 1 of complexes: which items are active (complex_count.cl), prefix sums of active
+ * tetrahedra and their triangles; then the list of active tetrahedra (of cells: whole_list.cl)
  */
 #ifndef COMPLEX_CLASSIFY_CL
 #define COMPLEX_CLASSIFY_CL
@@ -21,15 +21,23 @@ inline_always void cluster_tile_settle(tile_tools tools, uint number, cluster_ar
     }
 }
 
-/* state: head and tiles, cleared. active receives the clusters that have active tetrahedra. */
+#if WHOLE
+#define CELL_ARGUMENTS , global const ulong *begins, global const uchar *codes, global const uchar *shapes
+#define CELL_ARRAYS    , begins + c.begin_offset, codes + c.code_offset, shapes
+#else
+#define CELL_ARGUMENTS
+#define CELL_ARRAYS
+#endif
+
+/* state: head and tiles, cleared. active receives the clusters that have active items. */
 kernel void complex_classify(complex_job c, global const BITS *samples, global const uint *tetrahedra,
                              global brick_range *ranges, global cluster_state *clusters, global uint *active,
-                             global uint *state) {
+                             global uint *state CELL_ARGUMENTS) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
     tile_tools tools = {&c, state + HEAD_WORDS, shared, sums};
     cluster_arrays a = {
-        {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset}, ranges, clusters, active, state};
+        {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset CELL_ARRAYS}, ranges, clusters, active, state};
     cluster_sums found = {0};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
@@ -49,6 +57,15 @@ kernel void complex_classify(complex_job c, global const BITS *samples, global c
     if (found.crossed) atomic_add(&state[HEAD_CROSSED], found.crossed);
     if (found.invalid) atomic_or(&state[HEAD_INVALID], 1u);
 }
+
+/* Fills an array of `count` words; each group fills its part. */
+inline_always void words_fill(global uint *words, uint count, uint value) {
+    uint part = count / (uint)get_num_groups(0) + 1, first = min(part * (uint)get_group_id(0), count);
+    uint end = first + min(part, count - first);
+    for (uint n = first + (uint)get_local_id(0); n < end; n += WORK_ITEMS) words[n] = value;
+}
+
+#if !WHOLE
 
 /* The active tetrahedra of one cluster, in order. */
 inline_always void cluster_list(const complex_job *c, uint n, global const uint *tetrahedra,
@@ -74,13 +91,6 @@ inline_always void active_prefetch(global const cluster_state *clusters, uint n,
         if (patterns & 0xffff) line_prefetch(tetrahedra + (ulong)CLUSTER_POINTS * n + m);
 }
 
-/* Fills an array of `count` words; each group fills its part. */
-inline_always void words_fill(global uint *words, uint count, uint value) {
-    uint part = count / (uint)get_num_groups(0) + 1, first = min(part * (uint)get_group_id(0), count);
-    uint end = first + min(part, count - first);
-    for (uint n = first + (uint)get_local_id(0); n < end; n += WORK_ITEMS) words[n] = value;
-}
-
 /* Lists the active tetrahedra, and clears `table` and `tiles` for the kernels that follow. */
 kernel void complex_list(complex_job c, global const uint *tetrahedra, global const cluster_state *clusters,
                          global const uint *active, global uint *state, global const uchar *cases,
@@ -102,5 +112,7 @@ kernel void complex_list(complex_job c, global const uint *tetrahedra, global co
         }
     }
 }
+
+#endif
 
 #endif

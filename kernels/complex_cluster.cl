@@ -1,7 +1,8 @@
 /*
- * complex_cluster.cl - a cluster of tetrahedra: its range of samples, and where the surface passes through it
+ * complex_cluster.cl - a cluster of tetrahedra or cells: its range of samples, and where the surface passes through it
  *
- * The loops over its points are in complex_cluster_alone.cl and complex_cluster_groups.cl.
+ * The loops over the points of tetrahedra are in complex_cluster_alone.cl and complex_cluster_groups.cl, of cells in
+ * whole_cluster.cl.
  */
 #ifndef COMPLEX_CLUSTER_CL
 #define COMPLEX_CLUSTER_CL
@@ -12,10 +13,22 @@
 
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 
+#if WHOLE
+#define CLUSTER_ITEMS CLUSTER_CELLS
+typedef active_cell active_item;
+#else
+#define CLUSTER_ITEMS CLUSTER_TETRAHEDRA
+typedef active_tetrahedron active_item;
+#endif
+
 /* The arrays of a complex, from their first item on. */
 typedef struct complex_arrays {
     global const BITS *samples;
     global const uint *tetrahedra;
+#if WHOLE
+    global const ulong *begins;
+    global const uchar *codes, *shapes;
+#endif
 } complex_arrays;
 
 typedef struct cluster_report {
@@ -24,7 +37,7 @@ typedef struct cluster_report {
 } cluster_report;
 
 inline_always uint cluster_size(const complex_job *c, uint n) {
-    return min(c->tetrahedron_count - n * CLUSTER_TETRAHEDRA, (uint)CLUSTER_TETRAHEDRA);
+    return min(c->item_count - n * CLUSTER_ITEMS, (uint)CLUSTER_ITEMS);
 }
 
 /* The lowest bit of each nibble: whether any bit of the nibble is set. */
@@ -40,10 +53,14 @@ inline_always cluster_report report_of(ulong inside, ulong missing) {
     return report;
 }
 
+#if WHOLE
+#include "whole_cluster.cl"
+#else
 #if WORK_ITEMS == 1
 #include "complex_cluster_alone.cl"
 #else
 #include "complex_cluster_groups.cl"
+#endif
 #endif
 
 #endif

@@ -6,7 +6,8 @@
 
 #include "complex_cluster.cl"
 
-inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
+inline_always bool cluster_valid(const complex_job *c, uint n, complex_arrays in) {
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     uint largest = 0, count = 4 * cluster_size(c, n);
     if (count == CLUSTER_POINTS) {
         uint16 most = 0;
@@ -33,21 +34,10 @@ inline_always BITS16 cluster_samples(const complex_job *c, uint n, uint part, co
     return vload16(0, samples);
 }
 
-/* The least and the greatest key. Both are reduced in one vector: the greatest is the complement of the complements'
- * least. */
-inline_always brick_range keys_range(BITS16 low, BITS16 high) {
-    PASTE(BITS, 8) low8 = min(low.lo, low.hi), high8 = ~max(high.lo, high.hi);
-    PASTE(BITS, 8) m8 = (PASTE(BITS, 8))(min(low8.lo, low8.hi), min(high8.lo, high8.hi));
-    PASTE(BITS, 4) m4 = min(m8.even, m8.odd);
-    PASTE(BITS, 2) m2 = min(m4.even, m4.odd);
-    brick_range range = {key_upper(m2.x), key_upper((BITS)~m2.y)};
-    return range;
-}
-
 /* Checks the cluster's point numbers first. Where one is invalid, *invalid is set and the range is {0, 0}. */
 inline_always brick_range cluster_range(const complex_job *c, uint n, complex_arrays in, uint *invalid) {
     brick_range range = {0, 0};
-    if (!cluster_valid(c, n, in.tetrahedra + (ulong)CLUSTER_POINTS * n)) {
+    if (!cluster_valid(c, n, in)) {
         *invalid = 1;
         return range;
     }
@@ -72,6 +62,20 @@ inline_always cluster_report cluster_count(const complex_job *c, uint n, complex
     uint size = cluster_size(c, n);
     if (size < CLUSTER_TETRAHEDRA) missing |= ~0ul << 4 * size;
     return report_of(inside, missing);
+}
+
+/* Prefetches the tetrahedra of a cluster. */
+inline_always void points_prefetch(const complex_job *c, uint n, complex_arrays in) {
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
+}
+
+/* Prefetches samples of a cluster whose tetrahedra are in the cache: those of every fourth tetrahedron, as the samples
+ * of the others lie close to them. */
+inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
+    if (cluster_size(c, n) < CLUSTER_TETRAHEDRA) return;
+    for (uint m = 0; m < CLUSTER_POINTS; m += m % 16 < 3 ? 1 : 13)
+        line_prefetch(in.samples + in.tetrahedra[(ulong)CLUSTER_POINTS * n + m]);
 }
 
 #endif

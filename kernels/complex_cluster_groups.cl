@@ -6,7 +6,8 @@
 
 #include "complex_cluster.cl"
 
-inline_always bool cluster_valid(const complex_job *c, uint n, global const uint *points) {
+inline_always bool cluster_valid(const complex_job *c, uint n, complex_arrays in) {
+    global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(c, n);
     uint largest = 0;
 #pragma unroll 4
@@ -19,7 +20,7 @@ inline_always brick_range cluster_range(const complex_job *c, uint n, complex_ar
     global const uint *points = in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(c, n);
     brick_range range = {0, 0};
-    if (!cluster_valid(c, n, points)) {
+    if (!cluster_valid(c, n, in)) {
         *invalid = 1;
         return range;
     }

@@ -1,7 +1,7 @@
 /*
- * complex_count.cl - the first stage of kernel 1 of complexes: which tetrahedra the surface passes through
+ * complex_count.cl - the first stage of kernel 1 of complexes: which items the surface passes through
  *
- * A first visit reads every tetrahedron once and keeps the range of its cluster's samples; later visits read only the
+ * A first visit reads every item once and keeps the range of its cluster's samples; later visits read only the
  * clusters whose range holds the isovalue. The loops over the clusters of a tile are in complex_count_alone.cl and
  * complex_count_groups.cl.
  */
@@ -45,7 +45,7 @@ inline_always void cluster_append(uint n, cluster_arrays a, cluster_sums *sums) 
  * visit cannot use ranges, as another group may not have stored them yet: every valid cluster counts. */
 inline_always bool cluster_mixed(tile_tools tools, uint n, cluster_arrays a, bool recount, cluster_sums *sums) {
     if (tools.c->ranges_known) return range_sign(&tools.c->test, a.ranges[n]) == SIGN_MIXED;
-    if (recount) return cluster_valid(tools.c, n, a.in.tetrahedra + (ulong)CLUSTER_POINTS * n);
+    if (recount) return cluster_valid(tools.c, n, a.in);
     uint invalid = 0;
     brick_range range = cluster_range(tools.c, n, a.in, &invalid);
     a.ranges[n] = range;

@@ -6,14 +6,6 @@
 
 #include "complex_count.cl"
 
-/* Prefetches samples of a cluster whose tetrahedra are in the cache: those of every fourth tetrahedron, as the samples
- * of the others lie close to them. */
-inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
-    if (cluster_size(c, n) < CLUSTER_TETRAHEDRA) return;
-    for (uint m = 0; m < CLUSTER_POINTS; m += m % 16 < 3 ? 1 : 13)
-        line_prefetch(in.samples + in.tetrahedra[(ulong)CLUSTER_POINTS * n + m]);
-}
-
 /* Bit n: range_sign() of ranges[n] is SIGN_MIXED, n from 0 to 15. */
 inline_always uint ranges_mixed(const isovalue_test *test, global const brick_range *ranges) {
     uint16 first = vload16(0, (global const uint *)ranges), second = vload16(1, (global const uint *)ranges);
@@ -25,8 +17,7 @@ inline_always uint ranges_mixed(const isovalue_test *test, global const brick_ra
     return mask_pack(convert_char16(mixed));
 }
 
-/* Bit m: cluster first + m is below `end`, and mixed by its known range. Prefetches the tetrahedra of these clusters.
- */
+/* Bit m: cluster first + m is below `end`, and mixed by its known range. Prefetches the points of these clusters. */
 inline_always ulong mixed_prefetch(tile_tools tools, uint first, uint end, cluster_arrays a) {
     ulong mixed = 0;
     if (first + 64 <= end)
@@ -34,20 +25,19 @@ inline_always ulong mixed_prefetch(tile_tools tools, uint first, uint end, clust
     else
         for (uint m = 0; first + m < end; m++)
             mixed |= (ulong)(range_sign(&tools.c->test, a.ranges[first + m]) == SIGN_MIXED) << m;
-    for (ulong rest = mixed; rest; rest &= rest - 1) {
-        global const uint *points = a.in.tetrahedra + (ulong)CLUSTER_POINTS * (first + lowest_bit(rest));
-        for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(points + m);
-    }
+    for (ulong rest = mixed; rest; rest &= rest - 1) points_prefetch(tools.c, first + lowest_bit(rest), a.in);
     return mixed;
 }
 
-/* Active tetrahedra and triangles of a tile; recount: nothing is stored. */
+/* Active items and triangles of a tile; recount: nothing is stored. */
 inline_always uint2 tile_count(tile_tools tools, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
     uint first = number * tools.c->tile_clusters, end = min(first + tools.c->tile_clusters, tools.c->cluster_count);
     uint2 running = 0;
     if (!tools.c->ranges_known) {
-        for (uint n = first; n < end; n++)
+        for (uint n = first; n < end; n++) {
+            if (WHOLE && n + 8 < end) points_prefetch(tools.c, n + 8, a.in);
             if (cluster_mixed(tools, n, a, recount, sums)) cluster_add(tools, n, false, a, recount, &running, sums);
+        }
         return running;
     }
     ulong next = mixed_prefetch(tools, first, end, a);

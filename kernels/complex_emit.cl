@@ -1,35 +1,20 @@
 /*
- * complex_emit.cl - kernel 2 of complexes: every active tetrahedron makes the vertices that it owns and its triangles
+ * complex_emit.cl - kernel 2 of complexes: every active item makes the vertices that it owns and its triangles
  */
 #ifndef COMPLEX_EMIT_CL
 #define COMPLEX_EMIT_CL
 
-#include "complex_number.cl"
-#include "crossing.cl"
+#include "complex_vertex.cl"
 
-/* The number of the vertex in slot `owner`, whose tetrahedron owns it. */
-inline_always uint vertex_number(const complex_job *c, uint owner, global const active_tetrahedron *active,
-                                 global const uint *tiles) {
-    global const active_tetrahedron *t = active + owner / 4;
-    uint lower = t->owned & ((1u << owner % 4) - 1);
-    return tile_before(tiles, owner / 4 / c->tile_actives, TILE_VERTICES) + t->vertex + (uint)popcount(lower);
-}
-
-/* The vertex on an edge. */
-inline_always void edge_vertex(const complex_job *c, uint2 edge, global const BITS *samples, global const float *points,
-                               global float *out) {
-    float t = crossing(SAMPLE_VALUE(samples[edge.x]), SAMPLE_VALUE(samples[edge.y]), ISOVALUE(&c->test));
-    float3 p0 = vload3(edge.x, points), p1 = vload3(edge.y, points);
-    out[0] = t == 1 ? p1.x : p0.x + t * (p1.x - p0.x);
-    out[1] = t == 1 ? p1.y : p0.y + t * (p1.y - p0.y);
-    out[2] = t == 1 ? p1.z : p0.z + t * (p1.z - p0.z);
-}
+#if WHOLE
+#include "whole_emit.cl"
+#else
 
 /* Prefetches in two stages: the table entries of tetrahedron a; what the entries of a - FETCH_AHEAD / 2 name, and its
  * samples and points. */
-inline_always void tetrahedron_prefetch(const complex_job *c, uint a, global const BITS *samples,
-                                        global const float *points, global const active_tetrahedron *active,
-                                        global const uint *table, global const uint *entries) {
+inline_always void item_prefetch(const complex_job *c, uint a, global const BITS *samples, global const float *points,
+                                 global const active_tetrahedron *active, global const uchar *cases,
+                                 global const uint *table, global const uint *entries) {
     for (uint n = 0; n < 4 && a < c->active_count; n++) line_prefetch(table + entries[4 * a + n]);
     a -= FETCH_AHEAD / 2;
     if (a >= c->active_count) return;
@@ -47,10 +32,10 @@ inline_always uint number_at(uint4 numbers, uint n) {
     return n & 1 ? pair.y : pair.x;
 }
 
-inline_always void tetrahedron_emit(const complex_job *c, uint a, global const BITS *samples,
-                                    global const float *points, global const active_tetrahedron *active,
-                                    global const uchar *cases, global const uint *tiles, global const uint *table,
-                                    global const uint *entries, global float *positions, global uint *triangles) {
+inline_always void item_emit(const complex_job *c, uint a, global const BITS *samples, global const float *points,
+                             global const active_tetrahedron *active, global const uchar *cases,
+                             global const uint *tiles, global const uint *table, global const uint *entries,
+                             global float *positions, global uint *triangles) {
     global const uchar *row = cases + CASE_BYTES * active[a].pattern;
     const uint edges = row[CASE_EDGES];
     uint numbers[4] = {0, 0, 0, 0};
@@ -60,15 +45,17 @@ inline_always void tetrahedron_emit(const complex_job *c, uint a, global const B
         uint owner = table[entries[4 * a + n]];
         numbers[n] = vertex_number(c, owner, active, tiles);
         if (owner == 4 * a + n)
-            edge_vertex(c, edge_points(active, owner, cases), samples, points, positions + 3ul * numbers[n]);
+            edge_vertex(c, edge_points(c, active, owner, cases), samples, points, positions + 3ul * numbers[n]);
     }
     const uint4 all = (uint4)(numbers[0], numbers[1], numbers[2], numbers[3]);
     global uint *out = triangles + 3ul * active[a].triangle;
     for (uint n = 0; n < 3u * row[CASE_TRIANGLES]; n++) out[n] = number_at(all, row[CASE_CORNERS + n]);
 }
 
+#endif
+
 kernel void complex_emit(complex_job c, global const BITS *samples, global const float *points,
-                         global const active_tetrahedron *active, global const uchar *cases, global uint *state,
+                         global const active_item *active, global const uchar *cases, global uint *state,
                          global const uint *tiles, global const uint *table, global const uint *entries,
                          global float *positions, global uint *triangles) {
     local uint shared[4];
@@ -79,9 +66,9 @@ kernel void complex_emit(complex_job c, global const BITS *samples, global const
         for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
             uint a = number * c.tile_actives + start + (uint)get_local_id(0);
             if (WORK_ITEMS == 1 && number < c.active_tiles)
-                tetrahedron_prefetch(&c, a + FETCH_AHEAD, samples, points, active, table, entries);
+                item_prefetch(&c, a + FETCH_AHEAD, samples, points, active, cases, table, entries);
             if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
-                tetrahedron_emit(&c, a, samples, points, active, cases, tiles, table, entries, positions, triangles);
+                item_emit(&c, a, samples, points, active, cases, tiles, table, entries, positions, triangles);
         }
     }
 }

@@ -12,13 +12,33 @@
 
 #include "complex_tile.cl"
 
+#if WHOLE
+#include "whole_edges.cl"
+#else
+
+inline_always uint slot_of(const complex_job *c, uint a, uint n) { return 4 * a + n; }
+inline_always uint slot_item(const complex_job *c, uint slot) { return slot / 4; }
+inline_always uint slot_edge(const complex_job *c, uint slot) { return slot % 4; }
+
 /* The two points of an edge, the lower first. */
-inline_always uint2 edge_points(global const active_tetrahedron *active, uint slot, global const uchar *cases) {
+inline_always uint2 edge_points(const complex_job *c, global const active_tetrahedron *active, uint slot,
+                                global const uchar *cases) {
     global const active_tetrahedron *t = active + slot / 4;
     global const uchar *ends = cases + CASE_BYTES * t->pattern + CASE_ENDS + 2 * (slot % 4);
     uint a = t->points[ends[0]], b = t->points[ends[1]];
     return (uint2)(min(a, b), max(a, b));
 }
+
+inline_always uint edges_of(uint a, global const active_tetrahedron *active, global const uchar *cases) {
+    return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
+}
+
+/* Bit n: edge n is there. */
+inline_always uint own_edges(uint a, global const active_tetrahedron *active, global const uchar *cases) {
+    return (1u << edges_of(a, active, cases)) - 1;
+}
+
+#endif
 
 inline_always uint edge_hash(uint2 edge) {
     uint x = edge.x * 0x9e3779b1u ^ (edge.y + 0x7f4a7c15u) * 0x85ebca6bu;
@@ -27,20 +47,16 @@ inline_always uint edge_hash(uint2 edge) {
     return x ^ x >> 13;
 }
 
-inline_always uint edges_of(uint a, global const active_tetrahedron *active, global const uchar *cases) {
-    return cases[CASE_BYTES * active[a].pattern + CASE_EDGES];
-}
-
 /* Enters an edge; `entry` is where the search begins. Returns the edge's entry. Where none was free within probe_limit,
  * *full is set, and the result means nothing. */
-inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, global const active_tetrahedron *active,
+inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, global const active_item *active,
                               global const uchar *cases, volatile global uint *table, uint *full) {
-    uint2 edge = edge_points(active, slot, cases);
+    uint2 edge = edge_points(c, active, slot, cases);
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
         uint there = table[entry];
         if (there == EDGE_NONE) there = atomic_cmpxchg(&table[entry], EDGE_NONE, slot);
         if (there == EDGE_NONE) return entry;
-        uint2 other = edge_points(active, there, cases);
+        uint2 other = edge_points(c, active, there, cases);
         if (other.x == edge.x && other.y == edge.y) {
             if (slot < there) atomic_min(&table[entry], slot);
             return entry;
@@ -55,6 +71,10 @@ inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, globa
 #include "complex_join_alone.cl"
 #else
 #include "complex_join_groups.cl"
+#endif
+
+#if WHOLE
+#include "whole_cut.cl"
 #endif
 
 #endif

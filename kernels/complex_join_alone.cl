@@ -11,8 +11,8 @@
 enum { RECENT_EDGES = 2048 };
 
 /* A new edge is entered EDGE_WAIT new edges after it was hashed. Prefetch has two stages: its entry in the table at
- * once, and the tetrahedron which that entry names EDGE_WAIT / 2 edges later. */
-enum { EDGE_WAIT = 16, EDGE_QUEUE = 32 };
+ * once, and the item which that entry names EDGE_WAIT / 2 edges later. */
+enum { EDGE_WAIT = 16, EDGE_QUEUE = WHOLE ? 64 : 32 }; /* an item has up to 30 edges, or 4 */
 
 typedef struct edge_work {
     uint2 points[RECENT_EDGES + 1];
@@ -24,38 +24,74 @@ typedef struct edge_work {
 /* This bit marks an edge that has been met before; the other bits are the slot where. */
 #define EDGE_MET 0x80000000u
 
-/* For each edge of tetrahedron a: stores where the search in the table begins, and prefetches that entry. For an edge
- * met lately it stores the slot where that was. Without branches, as which edges are new is hard to predict. The upper
- * 11 bits of the hash choose among the RECENT_EDGES edges met lately. */
+/* For an edge of an item: stores where the search in the table begins, and prefetches that entry. For an edge met
+ * lately it stores the slot where that was. Without branches, as which edges are new is hard to predict. The upper 11
+ * bits of the hash choose among the RECENT_EDGES edges met lately. */
+inline_always void edge_queue(const complex_job *c, uint slot, uint2 edge, uint hash, uint exists,
+                              volatile global uint *table, global uint *entries, edge_work *work) {
+    uint first = hash & c->table_mask & ~EDGE_MET;
+    uint r = exists ? hash >> 21 : RECENT_EDGES, where = work->slots[r];
+    bool met = (work->points[r].x == edge.x) & (work->points[r].y == edge.y) & exists;
+    work->points[r] = edge;
+    work->slots[r] = met ? where : slot;
+    entries[slot] = met ? EDGE_MET | where : first;
+    line_prefetch(table + first);
+    work->queue[work->hashed % EDGE_QUEUE] = slot;
+    work->hashed += exists & !met;
+}
+
+#if WHOLE
+
+inline_always void edges_hash(const complex_job *c, uint a, global const active_cell *active, global const uchar *cases,
+                              volatile global uint *table, global uint *entries, edge_work *work) {
+    for (uint rest = own_edges(a, active, cases); rest; rest &= rest - 1) {
+        const uint n = lowest_bit(rest);
+        const uint2 edge = candidate_points(active + a, n, cases);
+        edge_queue(c, slot_of(c, a, n), edge, edge_hash(edge), 1, table, entries, work);
+    }
+}
+
+/* Of edges met before, entries name the slot whose entry they share: puts that in. */
+inline_always void entries_settle(const complex_job *c, uint a, global const active_cell *active,
+                                  global const uchar *cases, global uint *entries) {
+    for (uint rest = own_edges(a, active, cases); rest; rest &= rest - 1) {
+        const uint slot = slot_of(c, a, lowest_bit(rest)), entry = entries[slot];
+        entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
+    }
+}
+
+#else
+
 inline_always void edges_hash(const complex_job *c, uint a, global const active_tetrahedron *active,
                               global const uchar *cases, volatile global uint *table, global uint *entries,
                               edge_work *work) {
     uint2 edge[4];
-    uint hash[4], edges = edges_of(a, active, cases), hashed = work->hashed;
-    loop_unrolled for (uint n = 0; n < 4; n++) edge[n] = edge_points(active, 4 * a + n, cases),
+    uint hash[4], edges = edges_of(a, active, cases);
+    loop_unrolled for (uint n = 0; n < 4; n++) edge[n] = edge_points(c, active, 4 * a + n, cases),
                                                hash[n] = edge_hash(edge[n]);
-    loop_unrolled for (uint n = 0; n < 4; n++) {
-        uint slot = 4 * a + n, exists = n < edges, first = hash[n] & c->table_mask & ~EDGE_MET;
-        uint r = exists ? hash[n] >> 21 : RECENT_EDGES, where = work->slots[r];
-        bool met = (work->points[r].x == edge[n].x) & (work->points[r].y == edge[n].y) & exists;
-        work->points[r] = edge[n];
-        work->slots[r] = met ? where : slot;
-        entries[slot] = met ? EDGE_MET | where : first;
-        line_prefetch(table + first);
-        work->queue[hashed % EDGE_QUEUE] = slot;
-        hashed += exists & !met;
-    }
-    work->hashed = hashed;
+    loop_unrolled for (uint n = 0; n < 4; n++)
+        edge_queue(c, 4 * a + n, edge[n], hash[n], n < edges, table, entries, work);
 }
 
-/* For queued edges: prefetches the tetrahedra that their table entries name after half of `wait`, and enters the edges
+/* Of edges met before, entries name the slot whose entry they share: puts that in. */
+inline_always void entries_settle(const complex_job *c, uint a, global const active_tetrahedron *active,
+                                  global const uchar *cases, global uint *entries) {
+    for (uint slot = 4 * a; slot < 4 * a + 4; slot++) {
+        uint entry = entries[slot];
+        entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
+    }
+}
+
+#endif
+
+/* For queued edges: prefetches the items that their table entries name after half of `wait`, and enters the edges
  * after all of it. */
-inline_always void edges_enter(const complex_job *c, uint wait, global const active_tetrahedron *active,
+inline_always void edges_enter(const complex_job *c, uint wait, global const active_item *active,
                                global const uchar *cases, volatile global uint *table, global uint *entries,
                                edge_work *work, uint *full) {
     for (; work->asked + wait / 2 < work->hashed; work->asked++) {
         uint there = table[entries[work->queue[work->asked % EDGE_QUEUE]]];
-        line_prefetch(active + (there == EDGE_NONE ? 0 : there / 4));
+        line_prefetch(active + (there == EDGE_NONE ? 0 : slot_item(c, there)));
     }
     for (; work->entered + wait < work->hashed; work->entered++) {
         uint slot = work->queue[work->entered % EDGE_QUEUE];
@@ -63,8 +99,8 @@ inline_always void edges_enter(const complex_job *c, uint wait, global const act
     }
 }
 
-kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
-                         global uint *state, global uint *table, global uint *entries) {
+kernel void complex_join(complex_job c, global const active_item *active, global const uchar *cases, global uint *state,
+                         global uint *table, global uint *entries) {
     local uint shared[4];
     uint number = 0, full = 0;
     edge_work work;
@@ -79,10 +115,7 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
             edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &full);
         }
         edges_enter(&c, 0, active, cases, table, entries, &work, &full);
-        for (uint slot = 4 * first; slot < 4 * (first + count); slot++) {
-            uint entry = entries[slot]; /* of an edge met before: the slot whose entry it shares */
-            entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
-        }
+        for (uint n = 0; n < count; n++) entries_settle(&c, first + n, active, cases, entries);
         if (full) break; /* the host starts again with a larger table */
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);

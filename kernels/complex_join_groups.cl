@@ -6,8 +6,8 @@
 
 #include "complex_join.cl"
 
-kernel void complex_join(complex_job c, global const active_tetrahedron *active, global const uchar *cases,
-                         global uint *state, global uint *table, global uint *entries) {
+kernel void complex_join(complex_job c, global const active_item *active, global const uchar *cases, global uint *state,
+                         global uint *table, global uint *entries) {
     local uint shared[4];
     uint number = 0, full = 0;
     while (number < c.active_tiles) {
@@ -15,9 +15,9 @@ kernel void complex_join(complex_job c, global const active_tetrahedron *active,
         uint first = number * c.tile_actives, count = 0;
         if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
         for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
-            uint a = first + n, edges = edges_of(a, active, cases);
-            for (uint slot = 4 * a; slot < 4 * a + edges; slot++) {
-                uint entry = edge_hash(edge_points(active, slot, cases)) & c.table_mask;
+            for (uint rest = own_edges(first + n, active, cases); rest; rest &= rest - 1) {
+                uint slot = slot_of(&c, first + n, lowest_bit(rest));
+                uint entry = edge_hash(edge_points(&c, active, slot, cases)) & c.table_mask;
                 entries[slot] = edge_enter(&c, slot, entry, active, cases, table, &full);
             }
         }

@@ -1,37 +1,53 @@
 /*
- * complex_number.cl - vertex numbers: vertices that a tetrahedron owns follow those of the tetrahedra before it
+ * complex_number.cl - vertex numbers: vertices that an item owns follow those of the items before it; and first
+ * triangles of cells
  */
 #ifndef COMPLEX_NUMBER_CL
 #define COMPLEX_NUMBER_CL
 
 #include "complex_join.cl"
 
-/* Which vertices tetrahedron a owns: bit n for the vertex on its crossed edge n. */
-inline_always uint owned_edges(uint a, global const active_tetrahedron *active, global const uchar *cases,
-                               global const uint *table, global const uint *entries) {
-    uint owned = 0, edges = edges_of(a, active, cases);
-    for (uint n = 0; n < edges; n++) owned |= (uint)(table[entries[4 * a + n]] == 4 * a + n) << n;
+/* Which vertices item a owns: bit n for the vertex on its crossed edge n. A diagonal that is no edge has no entry. */
+inline_always uint owned_edges(const complex_job *c, uint a, global const active_item *active,
+                               global const uchar *cases, global const uint *table, global const uint *entries) {
+    uint owned = 0, edges = edges_of(a, active, cases), first = slot_of(c, a, 0);
+    for (uint n = 0; n < edges; n++) {
+        const uint entry = entries[first + n];
+        if (WHOLE && entry == EDGE_NONE) continue;
+        owned |= (uint)(table[entry] == first + n) << n;
+    }
     return owned;
 }
 
-/* Counts the vertices of a tile of active tetrahedra; stores numbers and owned edges unless `out` is NULL. */
-inline_always uint2 tile_number(tile_tools tools, uint number, global const active_tetrahedron *active,
+/* Triangles that are counted with the vertices: of cells, as cut faces are known now. */
+inline_always uint triangles_of(uint a, global const active_item *active, global const uchar *cases) {
+#if WHOLE
+    return case_of(active + a, cases)[WHOLE_TRIANGLES];
+#else
+    return 0;
+#endif
+}
+
+/* Counts the vertices of a tile of active items; stores numbers and owned edges unless `out` is NULL. */
+inline_always uint2 tile_number(tile_tools tools, uint number, global const active_item *active,
                                 global const uchar *cases, global const uint *table, global const uint *entries,
-                                global active_tetrahedron *out) {
+                                global active_item *out) {
     uint2 running = 0;
     for (uint start = 0; start < tools.c->tile_actives; start += WORK_ITEMS) {
         uint a = number * tools.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
         bool exists = start + (uint)get_local_id(0) < tools.c->tile_actives && a < tools.c->active_count;
         if (WORK_ITEMS == 1 && a + FETCH_AHEAD < tools.c->active_count)
-            for (uint n = 0; n < 4; n++) line_prefetch(table + entries[4 * (a + FETCH_AHEAD) + n]);
-        if (exists) owned = owned_edges(a, active, cases, table, entries);
-        uint2 before = group_prefix((uint2)((uint)popcount(owned), 0), &running, tools.sums);
+            for (uint n = 0; n < 4; n++) line_prefetch(table + entries[slot_of(tools.c, a + FETCH_AHEAD, n)]);
+        if (exists) owned = owned_edges(tools.c, a, active, cases, table, entries);
+        uint triangles = exists ? triangles_of(a, active, cases) : 0;
+        uint2 before = group_prefix((uint2)((uint)popcount(owned), triangles), &running, tools.sums);
         if (exists && out) out[a].vertex = before.x, out[a].owned = owned;
+        if (WHOLE && exists && out) out[a].triangle = before.y;
     }
     return running;
 }
 
-inline_always void active_tile_settle(tile_tools tools, uint number, global const active_tetrahedron *active,
+inline_always void active_tile_settle(tile_tools tools, uint number, global const active_item *active,
                                       global const uchar *cases, global const uint *table, global const uint *entries,
                                       global uint *head) {
     uint unposted;
@@ -40,20 +56,21 @@ inline_always void active_tile_settle(tile_tools tools, uint number, global cons
         tile_post(tools, unposted, tile_number(tools, unposted, active, cases, table, entries, NULL));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == tools.c->active_tiles)
+    if (get_local_id(0) == 0 && number + 1 == tools.c->active_tiles) {
         head[HEAD_VERTICES] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
+        if (WHOLE) head[HEAD_TRIANGLES] = tile_before(tools.tiles, number + 1, TILE_TRIANGLES);
+    }
 }
 
 /* Numbers the vertices in the order of their owners. `tiles` has to be cleared. */
-kernel void complex_number(complex_job c, global active_tetrahedron *active, global const uchar *cases,
-                           global uint *state, global uint *tiles, global const uint *table,
-                           global const uint *entries) {
+kernel void complex_number(complex_job c, global active_item *active, global const uchar *cases, global uint *state,
+                           global uint *tiles, global const uint *table, global const uint *entries) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
     tile_tools tools = {&c, tiles, shared, sums};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
-    if (WORK_ITEMS == 1 && state[HEAD_FULL]) return; /* entries are incomplete */
+    if ((WORK_ITEMS == 1 || WHOLE) && state[HEAD_FULL]) return; /* entries are incomplete */
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
         if (number < c.active_tiles) {

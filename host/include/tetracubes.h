@@ -582,19 +582,24 @@ TC_API void tc_tetrahedra_grid_options_init(tc_tetrahedra_grid_options *options)
  * *grid is the caller's to destroy, before the context.
  *
  * TC_METHOD_HYBRID keeps cells whole: their vertices lie on their edges, and on the diagonals of faces with five or six
- * corners, but not on those of quadrilaterals. It is for the reference engine so far (TC_ERROR_DEVICE under OpenCL),
- * and for all cells but polyhedra (TC_ERROR_DATA). Cells with a sample that is not finite are left out whole; active
- * cells are cells. Vertices are numbered by the first cell that contains their edge, then by the corners of the edge,
- * the lower first, as VTK numbers those of the shape (a wedge's with 1 and 2, 4 and 5 exchanged).
+ * corners, but not on those of quadrilaterals. It takes all cells but polyhedra (TC_ERROR_DATA). Cells with a sample
+ * that is not finite are left out whole; active cells are cells. Vertices are numbered by the first cell that contains
+ * their edge, then by the corners of the edge, the lower first, as VTK numbers those of the shape (a wedge's with 1 and
+ * 2, 4 and 5 exchanged).
  *
  * With TC_METHOD_TETRA active cells are tetrahedra. Vertices are numbered by the first tetrahedron that contains their
  * edge, then by edge (01 02 03 12 13 23); triangles follow their tetrahedra. Vertices go from the lower to the higher
  * point number. Where the device cannot hold all tetrahedra and their surface, they are processed in slabs, runs of
  * tetrahedra; the bytes are the same.
  *
+ * Cells are those of the tetrahedra, or TC_ERROR_DATA: the reference engine compares all of them, kernels at least
+ * those that the surface passes through. They read the arrays of the source where they are, if the device works in the
+ * host's memory and `cells` rises and has every solid cell; otherwise, and in slabs, the host gathers the cells at
+ * first, which takes time and up to 49 bytes per cell.
+ *
  * TC_ERROR_LIMIT for more than 2^32 - 1 points or tetrahedra; TC_ERROR_DEVICE for u32, i32 and f64 samples on a device
  * without fp64. Found when tetrahedra are first read, by tc_count or tc_extract: TC_ERROR_DATA for a point number out
- * of range; TC_ERROR_MEMORY, with how much would do, where not even 16 tetrahedra fit. */
+ * of range; TC_ERROR_MEMORY, with how much would do, where not even 16 tetrahedra, or 8 cells, fit. */
 TC_API tc_status tc_tetrahedra_grid_create(tc_context *context, const tc_tetrahedra_grid_options *options,
                                            tc_grid **grid);
 

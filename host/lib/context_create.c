@@ -9,6 +9,7 @@
 #include "opencl/program.h"
 #include "base/structs.h"
 #include "opencl/vetting.h"
+#include "tetrahedra/whole_cases.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,6 +144,7 @@ void tc_context_destroy(tc_context *context) {
         programs_release(context);
         objects_release(context);
     }
+    whole_cases_release(context->whole_cases);
     free(context);
 }
 

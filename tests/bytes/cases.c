@@ -1,6 +1,5 @@
 #include "cases.h"
 
-#include "complex.h"
 #include "random.h"
 #include "samples.h"
 
@@ -75,6 +74,14 @@ const bytes_case cases[] = {
     {CASE_COMPLEX, TC_I32, TC_METHOD_TETRA, 0, 0, false},
     {CASE_COMPLEX, TC_F32, TC_METHOD_TETRA, CASE_MISSING, 3, true},
     {CASE_COMPLEX, TC_F64, TC_METHOD_TETRA, CASE_MISSING, 1, false},
+    {CASE_COMPLEX, TC_U8, TC_METHOD_HYBRID, 0, 3, true},
+    {CASE_COMPLEX, TC_I8, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_COMPLEX, TC_U16, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_COMPLEX, TC_I16, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_COMPLEX, TC_U32, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_COMPLEX, TC_I32, TC_METHOD_HYBRID, 0, 0, false},
+    {CASE_COMPLEX, TC_F32, TC_METHOD_HYBRID, CASE_MISSING, 3, true},
+    {CASE_COMPLEX, TC_F64, TC_METHOD_HYBRID, CASE_MISSING, 1, false},
 };
 
 const int case_count = sizeof cases / sizeof *cases;
@@ -189,28 +196,28 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
 /* ------------------------------------------------------------------------------------------------------- complexes */
 
 static void complex_fill(const bytes_case *c, bool small, case_data *data) {
-    cell_list list = mixed_block_make(small ? 3 : 9, random_u64());
-    tc_cells cells = cell_list_view(&list);
+    data->list = mixed_block_make(small ? 3 : 9, random_u64());
+    data->cells = cell_list_view(&data->list);
+    const cell_list list = data->list;
     tc_tetrahedra_grid_options *o = &data->complex;
     data->split.struct_size = sizeof data->split;
-    if (tc_tetrahedralize(&cells, &data->split)) {
+    if (tc_tetrahedralize(&data->cells, &data->split)) {
         printf("cells are not cut: %s\n", tc_message());
         exit(EXIT_FAILURE);
     }
     tc_tetrahedra_grid_options_init(o);
     o->point_count = list.point_count;
-    o->points = data->points = list.points;
+    o->points = list.points;
     o->type = c->type;
     o->samples = data->samples = memory_get((size_t)list.point_count * tc_type_bytes(c->type));
     o->tetrahedron_count = data->split.tetrahedron_count;
     o->tetrahedra = data->split.tetrahedra;
+    if (c->method == TC_METHOD_HYBRID) o->source = &data->cells, o->cells = data->split.cells;
     for (uint64_t n = 0; n < list.point_count; n++) {
         const float *p = list.points + 3 * n;
         sample_set(data->samples, c->type, (int64_t)n,
                    sample_value(c, 5 * (double)p[0], 3 * (double)p[1], (double)p[2]));
     }
-    list.points = NULL;
-    cell_list_free(&list);
 }
 
 void case_fill(const bytes_case *c, bool small, case_data *data) {
@@ -225,6 +232,7 @@ void case_fill(const bytes_case *c, bool small, case_data *data) {
 
 void case_free(case_data *data) {
     tc_tetrahedra_release(&data->split);
+    cell_list_free(&data->list);
     free(data->points);
     free(data->samples);
     for (int axis = 0; axis < 3; axis++) free(data->axes[axis]);

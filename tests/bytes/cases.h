@@ -6,6 +6,7 @@
 #ifndef CASES_H
 #define CASES_H
 
+#include "complex.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>
@@ -24,7 +25,7 @@ typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_
 typedef struct bytes_case {
     case_kind kind;
     tc_type type;
-    tc_method method; /* tetra, of complexes */
+    tc_method method; /* tetra or hybrid, of complexes */
     unsigned flags;
     unsigned groups; /* bit n: is extracted by groups of 32 << n work-items, too */
     bool sampled;    /* is one of the few that are tried where time is short */
@@ -41,7 +42,9 @@ typedef struct case_data {
     tc_grid_options grid;
     tc_tetrahedra_grid_options complex;
     tc_extract_options how;
-    tc_tetrahedra split; /* what complex borrows from */
+    tc_tetrahedra split; /* what complex borrows from, as from the next two */
+    cell_list list;
+    tc_cells cells;
     float *points;
     void *samples;
     float *axes[3];

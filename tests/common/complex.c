@@ -374,3 +374,40 @@ complex_facts complex_facts_of(const tc_tetrahedra *complex, const float *points
     free(faces);
     return facts;
 }
+
+void cell_list_collapse(cell_list *list) {
+    static const int wedge[8] = {0, 1, 2, 2, 3, 4, 5, 5}, pyramid[8] = {0, 1, 2, 3, 4, 4, 4, 4};
+    static const int tetrahedron[8] = {0, 1, 2, 2, 3, 3, 3, 3};
+    int64_t *all = memory_get(64 * list->cell_count), *to = all, *starts = memory_get(8 * (list->cell_count + 1));
+    for (uint64_t c = 0; c < list->cell_count; c++) {
+        const int64_t *points = list->connectivity + list->offsets[c];
+        const int type = list->types[c], corners = (int)(list->offsets[c + 1] - list->offsets[c]);
+        const int *as = type == 13 ? wedge : type == 14 ? pyramid : type == 10 ? tetrahedron : NULL;
+        if (random_below(2)) as = NULL;
+        const int count = as ? 8 : corners;
+        for (int n = 0; n < count; n++) to[n] = points[as ? as[n] : n];
+        if (as) list->types[c] = 12;
+        starts[c] = to - all;
+        to += count;
+    }
+    starts[list->cell_count] = to - all;
+    memcpy(list->offsets, starts, 8 * (list->cell_count + 1));
+    free(starts);
+    free(list->connectivity);
+    list->connectivity = all;
+}
+
+void cell_list_drop_polyhedra(cell_list *list) {
+    uint64_t kept = 0;
+    int64_t end = 0;
+    for (uint64_t c = 0; c < list->cell_count; c++) {
+        if (list->types[c] == 42) continue;
+        const int64_t first = list->offsets[c], count = list->offsets[c + 1] - first;
+        memmove(list->connectivity + end, list->connectivity + first, (size_t)count * sizeof(int64_t));
+        list->types[kept] = list->types[c];
+        list->offsets[kept++] = end;
+        end += count;
+    }
+    list->offsets[kept] = end;
+    list->cell_count = kept;
+}

@@ -47,6 +47,12 @@ cell_list kelvin_block_make(uint32_t size, uint64_t seed);
  * prisms with wedges, or pairs of hexahedra. */
 cell_list honeycomb_make(uint32_t size, uint64_t seed);
 
+/* About half the wedges, pyramids and tetrahedra as hexahedra of which corners are one point: what solvers write. */
+void cell_list_collapse(cell_list *list);
+
+/* Leaves out the polyhedra. */
+void cell_list_drop_polyhedra(cell_list *list);
+
 typedef struct complex_facts {
     uint64_t boundary_faces; /* of one tetrahedron */
     uint64_t bad_faces;      /* of three or more, or passed by two in the same direction */

@@ -45,6 +45,9 @@ static const scenario scenarios[] = {
     {.name = "complex", .flow = FLOW_COMPLEX},
     {.name = "complex, copied buffers", .flow = FLOW_COMPLEX, .always_copy = true},
     {.name = "complex, slabs", .flow = FLOW_COMPLEX, .slabs = true},
+    {.name = "whole cells", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID},
+    {.name = "whole cells, copied buffers", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID, .always_copy = true},
+    {.name = "whole cells, slabs", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID, .slabs = true},
     {.name = "count and emit", .flow = FLOW_EMIT},
     {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
     {.name = "reference, missing samples",
@@ -68,7 +71,8 @@ static char problem[1500];
 static uint8_t bytes[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
-static tc_tetrahedra complex;
+static tc_tetrahedra complex, of_cells;
+static tc_cells cells; /* of method hybrid */
 static tc_mesh *expected[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
 static cl_command_queue their_queue;
@@ -96,6 +100,31 @@ static void input_make(void) {
         for (int n = 0; n < NX; n++) axes[axis][n] = (float)(n + 0.01 * n * n);
 }
 
+/* The cubes as hexahedra, every third as wedges, whose sides are cut differently: some faces of hexahedra are cut. */
+static tc_status cells_make(void) {
+    enum { CUBES = (NX - 1) * (NY - 1) * (NZ - 1) };
+    static uint8_t types[2 * CUBES];
+    static int64_t offsets[2 * CUBES + 1], corners[12 * CUBES];
+    static const int hexahedron[8] = {0, 1, 3, 2, 4, 5, 7, 6}, wedges[2][6] = {{0, 3, 1, 4, 7, 5}, {0, 2, 3, 4, 6, 7}};
+    cells = (tc_cells){.struct_size = sizeof cells, .point_count = SAMPLES, .points = points};
+    cells.types = types, cells.offsets = offsets, cells.connectivity = corners;
+    for (int n = 0; n < CUBES; n++) {
+        const int x = n % (NX - 1), y = n / (NX - 1) % (NY - 1), z = n / (NX - 1) / (NY - 1),
+                  first = (z * NY + y) * NX + x;
+        const int count = n % 3 == 0 ? 6 : 8;
+        for (int part = 0; part < (count == 6 ? 2 : 1); part++) {
+            const int *order = count == 6 ? wedges[part] : hexahedron;
+            int64_t *out = corners + offsets[cells.cell_count];
+            for (int c = 0; c < count; c++)
+                out[c] = first + (order[c] & 1) + NX * (order[c] >> 1 & 1) + NX * NY * (order[c] >> 2);
+            types[cells.cell_count] = count == 6 ? 13 : 12;
+            offsets[++cells.cell_count] = out - corners + count;
+        }
+    }
+    of_cells.struct_size = sizeof of_cells;
+    return tc_tetrahedralize(&cells, &of_cells);
+}
+
 static void grid_describe(const scenario *s, tc_grid_options *o) {
     tc_grid_options_init(o);
     o->dims[0] = NX;
@@ -107,15 +136,17 @@ static void grid_describe(const scenario *s, tc_grid_options *o) {
     for (int axis = 0; axis < 3 && s->coordinates == RECTILINEAR; axis++) o->axes[axis] = axes[axis];
 }
 
-static tc_tetrahedra_grid_options complex_describe(void) {
+static tc_tetrahedra_grid_options complex_describe(const scenario *s) {
+    const tc_tetrahedra *cut = s->method == TC_METHOD_HYBRID ? &of_cells : &complex;
     tc_tetrahedra_grid_options o;
     tc_tetrahedra_grid_options_init(&o);
     o.point_count = SAMPLES;
     o.points = points;
     o.type = TC_U8;
     o.samples = bytes;
-    o.tetrahedron_count = complex.tetrahedron_count;
-    o.tetrahedra = complex.tetrahedra;
+    o.tetrahedron_count = cut->tetrahedron_count;
+    o.tetrahedra = cut->tetrahedra;
+    if (cut == &of_cells) o.source = &cells, o.cells = cut->cells;
     return o;
 }
 
@@ -195,7 +226,7 @@ static tc_status grid_run(int index, trial *t, tc_context *context) {
 }
 
 static tc_status complex_run(int index, trial *t, tc_context *context) {
-    const tc_tetrahedra_grid_options options = complex_describe();
+    const tc_tetrahedra_grid_options options = complex_describe(&scenarios[index]);
     tc_grid *grid = NULL;
     tc_status status;
     if (TRIED(t, tc_tetrahedra_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
@@ -366,7 +397,7 @@ static tc_status reference_extract_all(tc_context *reference) {
     for (int index = 0; index < SCENARIOS && !status; index++) {
         const scenario *s = &scenarios[index];
         tc_grid_options options;
-        const tc_tetrahedra_grid_options complex_options = complex_describe();
+        const tc_tetrahedra_grid_options complex_options = complex_describe(s);
         tc_grid *grid = NULL;
         if (s->flow == FLOW_DEVICES) continue;
         grid_describe(s, &options);
@@ -411,6 +442,7 @@ bool scenarios_prepare(void) {
     options.engine = TC_ENGINE_REFERENCE;
     tc_status status = tc_context_create(&options, &reference);
     if (!status) status = tc_tetrahedralize_grid(&grid, &complex);
+    if (!status) status = cells_make();
     if (!status) status = reference_extract_all(reference);
     tc_context_destroy(reference);
     if (status || !theirs_make()) return false;
@@ -424,6 +456,7 @@ void scenarios_release(void) {
     for (int index = 0; index < SCENARIOS; index++)
         for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
     tc_tetrahedra_release(&complex);
+    tc_tetrahedra_release(&of_cells);
     folder_remove();
     for (int n = 0; n < 3; n++)
         if (buffers[n]) clReleaseMemObject(buffers[n]);

@@ -111,6 +111,10 @@ TESTS = {
     "test_complex, u8": test("surface/test_complex", "*u8*, context [12]", device=True),
     "test_complex, scattered": test("surface/test_complex", "scattered*, context 1", device=True),
     "test_complex, refusals": test("surface/test_complex", "refusals", device=True),
+    "test_whole, alone": test("surface/test_whole", "alone", device=True),
+    "test_whole, refusals": test("surface/test_whole", "refusals", device=True),
+    "test_whole, orders": test("surface/test_whole", "orders", device=True),
+    "test_whole, slabs": test("surface/test_whole", "slabs", device=True),
     "test_complex, f32": test("surface/test_complex", "*f32*, context 1", device=True),
     "test_memory, missing in slabs": test("layer/test_memory", "slabs, missing samples", device=True),
     "test_memory, starved groups": test("layer/test_memory", "starved groups", device=True),
@@ -134,6 +138,7 @@ REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvili
              "test_hybrid, reference", "test_random, u8", "test_random, f32 with normals"]
 DEVICE = ["test_random, u8", "test_rare, one sample"]
 SNAPPED = ["test_snap, u8"]
+WHOLE = ["test_whole, alone", "test_whole, refusals", "test_whole, orders", "test_whole, slabs"]
 READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
 LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
@@ -206,6 +211,8 @@ FILES = {
     "host/read/": READERS,
     "host/common/far.h": ["test_far, reference"],
     "host/common/stored_types.c": READERS,
+    "host/lib/tetrahedra/whole": WHOLE,
+    "kernels/whole": WHOLE,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
     "kernels/snap": SNAPPED,
     "kernels/regular_alone.cl": SNAPPED,

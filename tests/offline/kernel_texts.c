@@ -261,9 +261,11 @@ static void complex_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++) {
         const kernel_kind kind = {.grid = KIND_COMPLEX, .type = (tc_type)type};
+        if (!device_makes_vertices(context, kind.type)) continue;
         snprintf(name, sizeof name, "complex-%s", type_names[type]);
-        if (device_makes_vertices(context, kind.type))
-            status_check(program_get(context, PROGRAM_COMPLEX, kind, &found));
+        status_check(program_get(context, PROGRAM_COMPLEX, kind, &found));
+        snprintf(name, sizeof name, "whole-%s", type_names[type]);
+        status_check(program_get(context, PROGRAM_WHOLE, kind, &found));
     }
 }
 

@@ -25,7 +25,8 @@ SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybri
           "emit-f32-hybrid-rectilinear-missing-normals", "emit-f64-tetra-curvilinear-missing-normals", "complex-f32",
           "classify-u8-tetra-closed", "classify-f32-snap-missing-closed", "emit-f32-tetra-uniform-closed",
           "emit-f32-snap-curvilinear-missing-normals-closed",
-          "emit-f32-hybrid-rectilinear-missing-normals-closed"]
+          "emit-f32-hybrid-rectilinear-missing-normals-closed",
+          "whole-f32"]
 
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals-closed"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
@@ -113,7 +114,8 @@ def files_check(jobs, clang):
             seen.setdefault(work_items, set()).update(re.findall(r'#line 1 "(\w+\.cl)"', file.read()))
     for work_items, names in seen.items():
         for name in sorted(names):
-            said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items]],
+            whole = ["-DWHOLE=1"] if name.startswith("whole_") else []
+            said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items], *whole],
                             os.path.join(KERNELS, name))
             if said:
                 wrong.append(f"{name} by itself, {work_items} work-items: {said}")

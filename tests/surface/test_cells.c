@@ -329,43 +329,6 @@ static bool mesh_extract(const subject *s, const tc_cells *cells, tc_method meth
 /* ------------------------------------------------------------------------------------------------------------- grids
  */
 
-/* Cells as hexahedra of which corners are one point: what solvers write for simpler cells. */
-static void cells_collapse(cell_list *list) {
-    static const int wedge[8] = {0, 1, 2, 2, 3, 4, 5, 5}, pyramid[8] = {0, 1, 2, 3, 4, 4, 4, 4};
-    static const int tetrahedron[8] = {0, 1, 2, 2, 3, 3, 3, 3};
-    int64_t *all = memory_get(64 * list->cell_count), *to = all;
-    for (uint64_t c = 0; c < list->cell_count; c++) {
-        const int64_t *points = list->connectivity + list->offsets[c];
-        const int type = list->types[c], corners = shape_of(type)->corners;
-        const int *as = type == 13 ? wedge : type == 14 ? pyramid : type == 10 ? tetrahedron : NULL;
-        if (random_below(2)) as = NULL;
-        const int count = as ? 8 : corners;
-        for (int n = 0; n < count; n++) to[n] = points[as ? as[n] : n];
-        if (as) list->types[c] = 12;
-        list->offsets[c] = to - all;
-        to += count;
-    }
-    list->offsets[list->cell_count] = to - all;
-    free(list->connectivity);
-    list->connectivity = all;
-}
-
-/* Leaves out the polyhedra, which method hybrid does not take. */
-static void polyhedra_remove(cell_list *list) {
-    uint64_t kept = 0;
-    int64_t end = 0;
-    for (uint64_t c = 0; c < list->cell_count; c++) {
-        if (list->types[c] == 42) continue;
-        const int64_t first = list->offsets[c], count = list->offsets[c + 1] - first;
-        memmove(list->connectivity + end, list->connectivity + first, (size_t)count * sizeof(int64_t));
-        list->types[kept] = list->types[c];
-        list->offsets[kept++] = end;
-        end += count;
-    }
-    list->offsets[kept] = end;
-    list->cell_count = kept;
-}
-
 static void values_choose(const cell_list *list, float *values, int kind) {
     float middle[3] = {0, 0, 0};
     for (uint64_t n = 0; n < 3 * list->point_count; n++) middle[n % 3] += list->points[n] / (float)list->point_count;
@@ -402,8 +365,8 @@ static void run(uint64_t seed) {
     const bool prisms = random_below(4) == 0, collapsed = !prisms && random_below(3) == 0;
     const uint64_t block_seed = random_u64();
     cell_list list = prisms ? honeycomb_make(size, block_seed) : mixed_block_make(size, block_seed);
-    if (prisms) polyhedra_remove(&list);
-    if (collapsed) cells_collapse(&list);
+    if (prisms) cell_list_drop_polyhedra(&list);
+    if (collapsed) cell_list_collapse(&list);
     snprintf(name, sizeof name, "seed %" PRIu64 ": %s of %u, kind %d%s", seed, prisms ? "prisms" : "mixed block", size,
              kind, collapsed ? ", collapsed" : "");
     grid_check(&list, kind, !prisms, name);
@@ -568,14 +531,6 @@ static void test_refusals(void) {
     o.source = &prisms, o.cells = of_prisms.cells;
     EXPECT_REFUSED(try_hybrid(reference, &o), TC_ERROR_DATA, "polyhedra");
     EXPECT(strstr(tc_message(), "polyhedron") && strstr(tc_message(), "tetra"), "%s", tc_message());
-    if (device_exists()) {
-        tc_context_options options;
-        tc_context_options_init(&options);
-        tc_context *device = context_open(&options);
-        EXPECT_REFUSED(try_hybrid(device, &o), TC_ERROR_DEVICE, "a device");
-        EXPECT(strstr(tc_message(), "reference engine"), "%s", tc_message());
-        tc_context_destroy(device);
-    }
     tc_tetrahedra_release(&complex);
     tc_tetrahedra_release(&of_prisms);
     free(values);

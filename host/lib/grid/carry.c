@@ -56,13 +56,9 @@ static void interpolate(const double *from, const double *to, const float *t, ui
     }
 }
 
-void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batch *batch) {
-    const tc_field *f = c->field;
-    if (!batch->count) return;
-    const int components = f->components;
-    const uint64_t room = batch->vertex < c->room ? c->room - batch->vertex : 0;
-    const uint32_t count = batch->count < room ? batch->count : (uint32_t)room;
-    float *out = c->out + batch->vertex * (uint64_t)components, t[BATCH_EDGES], a32[BATCH_EDGES], b32[BATCH_EDGES];
+/* Of the first `count` edges. */
+static void edges_cross(const tc_grid *grid, double isovalue, const edge_batch *batch, uint32_t count, float *t) {
+    float a32[BATCH_EDGES], b32[BATCH_EDGES];
     double a[BATCH_EDGES], b[BATCH_EDGES];
     if (type_is_wide(grid->type)) {
         gather_f64(grid->type, grid->samples, 1, 0, batch->low, count, a);
@@ -74,6 +70,21 @@ void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batc
         crossings_f32(a32, b32, (float)isovalue, count, t);
     }
     for (uint32_t n = 0; n < count && batch->has_places; n++) t[n] = batch->low[n] == batch->high[n] ? 0 : t[n];
+}
+
+void carry_crossings(const tc_grid *grid, double isovalue, const edge_batch *batch, float t[BATCH_EDGES]) {
+    edges_cross(grid, isovalue, batch, batch->count, t);
+}
+
+void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batch *batch) {
+    const tc_field *f = c->field;
+    if (!batch->count) return;
+    const int components = f->components;
+    const uint64_t room = batch->vertex < c->room ? c->room - batch->vertex : 0;
+    const uint32_t count = batch->count < room ? batch->count : (uint32_t)room;
+    float *out = c->out + batch->vertex * (uint64_t)components, t[BATCH_EDGES], a32[BATCH_EDGES];
+    double a[BATCH_EDGES], b[BATCH_EDGES];
+    edges_cross(grid, isovalue, batch, count, t);
     for (int n = 0; n < components; n++) {
         gather_f64(f->type, f->values, components, n, batch->low, count, a);
         gather_f64(f->type, f->values, components, n, batch->high, count, b);

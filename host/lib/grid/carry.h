@@ -27,6 +27,9 @@ typedef struct edge_batch {
     int64_t low[BATCH_EDGES], high[BATCH_EDGES]; /* the samples at the ends, the lower number first */
 } edge_batch;
 
+/* Where the isovalue lies on each edge of the batch. */
+void carry_crossings(const tc_grid *grid, double isovalue, const edge_batch *batch, float t[BATCH_EDGES]);
+
 /* Carries the field to the vertices of the batch that there is room for; it is then empty, and what comes next follows
  * it. */
 void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batch *batch);

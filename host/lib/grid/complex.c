@@ -92,6 +92,6 @@ tc_status complex_point_fail(const complex_grid *c) {
     return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the grid was made");
 }
 
-kernel_kind complex_kind(const tc_grid *grid, bool emits) {
-    return (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type, .emits = emits};
+kernel_kind complex_kind(const tc_grid *grid, tc_method method, bool emits) {
+    return (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type, .method = method, .emits = emits};
 }

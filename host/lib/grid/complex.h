@@ -43,12 +43,17 @@ typedef struct complex_grid {
     complex_part part;
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
     double classified_isovalue;  /* where context->classified_grid is this grid */
-    surface_size size;           /* of the surface there */
-    bool carries;                /* a field was carried to a surface of the complex */
+    tc_method classified_method;
+    surface_size size;         /* of the surface there */
+    struct whole_cells *whole; /* cells as method hybrid takes them; NULL: not asked for yet */
+    bool carries;              /* a field was carried to a surface of the complex */
 } complex_grid;
 
-/* The kind of its kernels: one program, tried with emission or without. */
-kernel_kind complex_kind(const tc_grid *grid, bool emits);
+/* The kind of its kernels: one program for each method, tried with emission or without. */
+kernel_kind complex_kind(const tc_grid *grid, tc_method method, bool emits);
+
+/* Whether there are kernels for the method; hybrid needs the cells. */
+bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options);
 
 /* As tc_count, tc_extract and tc_interpolate_field; the struct of options is complete. share: of the whole call, for
  * progress. */
@@ -85,9 +90,14 @@ void complex_device_destroy(tc_grid *grid);
 tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
 tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
 
+/* The same by method hybrid (whole_device.c). */
+tc_status whole_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
+tc_status whole_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+tc_status whole_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+
 /* True where this surface was the last to be counted or extracted, which complex_device_carry needs. That carries a
  * field to the *vertex_count vertices; to none where the caller's room is for another number (complex_carry.c). */
-bool complex_is_classified(const tc_grid *grid, double isovalue);
+bool complex_is_classified(const tc_grid *grid, const tc_extract_options *options);
 tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
 /* The same by the scalar reference (reference_complex.c). */

@@ -52,6 +52,7 @@ enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, 
 typedef struct complex_buffers {
     device_buffer clusters, active_clusters, state, cases;
     device_buffer active, entries, table, tiles;
+    device_buffer whole_cases; /* method hybrid */
 } complex_buffers;
 
 /* All buffers of kernels except arrays that the grid keeps whole on the device. The second window is used where copies
@@ -90,6 +91,8 @@ struct tc_context {
     const struct tc_grid *counted_grid;    /* whose counts the workspace holds since tc_count; NULL: none */
     const struct tc_grid *classified_grid; /* whose surface it holds, counted or extracted; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
+    struct whole_cases *whole_cases; /* of method hybrid on complexes (whole_cases.h) */
+    uint64_t whole_case_bytes;       /* of them, in the workspace */
 };
 
 /* Records "WHAT on DEVICE failed: CL_...", as opencl_fail does. */

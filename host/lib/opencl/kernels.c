@@ -27,10 +27,11 @@ tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out) {
     return status;
 }
 
-tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[COMPLEX_KERNELS]) {
+tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[WHOLE_KERNELS]) {
+    const bool whole = kind.method == TC_METHOD_HYBRID;
     const program *p;
-    tc_status status = vetted_program_get(context, PROGRAM_COMPLEX, kind, &p);
-    for (int n = 0; n < COMPLEX_KERNELS && !status; n++) out[n] = kernel_of(p, n);
+    tc_status status = vetted_program_get(context, whole ? PROGRAM_WHOLE : PROGRAM_COMPLEX, kind, &p);
+    for (int n = 0; n < (whole ? WHOLE_KERNELS : COMPLEX_KERNELS) && !status; n++) out[n] = kernel_of(p, n);
     return status;
 }
 

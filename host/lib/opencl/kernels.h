@@ -23,8 +23,8 @@ typedef struct kernels {
 /* Of structured grids: kernel 1, and kernel 2 too where the kind emits. */
 tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out);
 
-/* Of complexes: all of them, in the order of complex_job.h. */
-tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[COMPLEX_KERNELS]);
+/* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID. */
+tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[WHOLE_KERNELS]);
 
 typedef struct kernel_argument {
     size_t bytes;

@@ -7,7 +7,14 @@
 #include "opencl/context.h"
 
 /* Each is built from a list of sources of its own, in either variant (variant.h). */
-typedef enum program_name { PROGRAM_CLASSIFY, PROGRAM_EMIT, PROGRAM_SNAP, PROGRAM_COMPLEX, PROGRAM_COUNT } program_name;
+typedef enum program_name {
+    PROGRAM_CLASSIFY,
+    PROGRAM_EMIT,
+    PROGRAM_SNAP,
+    PROGRAM_COMPLEX,
+    PROGRAM_WHOLE,
+    PROGRAM_COUNT
+} program_name;
 
 /* Where the program of kernel 1 has more than that kernel: cells_mark, where samples may be missing. */
 enum { KERNEL_CELLS = 1 };

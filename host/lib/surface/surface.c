@@ -6,13 +6,13 @@
 #include "structured/structured.h"
 
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
-    return grid->complex ? complex_kind(grid, emits) : structured_kind(grid, options, emits);
+    return grid->complex ? complex_kind(grid, options->method, emits) : structured_kind(grid, options, emits);
 }
 
 bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options) {
     if (grid->context->options.engine != TC_ENGINE_OPENCL) return false;
     if (grid->complex && !grid->complex->tetrahedron_count) return false;
-    if (grid->complex && (options->method != TC_METHOD_TETRA || options->closed)) return false; /* refused later */
+    if (grid->complex && !complex_has_kernels(grid, options)) return false; /* refused later */
     return inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed);
 }
 
@@ -28,7 +28,7 @@ tc_status surface_extract(tc_grid *grid, const tc_extract_options *options, tc_m
 
 bool surface_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     if (!surface_needs_kernels(grid, options)) return true;
-    return grid->complex ? complex_is_classified(grid, options->isovalue) : structured_is_classified(grid, options);
+    return grid->complex ? complex_is_classified(grid, options) : structured_is_classified(grid, options);
 }
 
 void surface_keep_results(tc_grid *grid) {

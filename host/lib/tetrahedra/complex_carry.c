@@ -1,9 +1,9 @@
 /*
- * Fields carried to the vertices of a complex. The numbered active tetrahedra in the workspace name the crossed edges
+ * Fields carried to the vertices of a complex. The numbered active items in the workspace name the crossed edges
  * that they own, in the order of their vertices. For a complex in slabs the host has joined the edges; it keeps them
  * after the first field has been carried. Threads of the host process shares of tetrahedra or of edges.
  */
-#include "tetrahedra/complex_run.h"
+#include "tetrahedra/whole_run.h"
 
 #include "failure.h"
 #include "grid/carry.h"
@@ -17,9 +17,11 @@ typedef struct carry_job {
     const tc_grid *grid;
     const carry *carry;
     double isovalue;
-    const uint64_t *edges; /* of all vertices, where slabs have been joined; else: */
-    const active_tetrahedron *active;
+    const uint64_t *edges;            /* of all vertices, where slabs have been joined; else: */
+    const active_tetrahedron *active; /* by method tetra */
+    const active_cell *cells;         /* by method hybrid */
     const uint32_t *tiles;
+    const uint8_t *whole_cases;
     surface_size size;
     uint8_t cases[16][CASE_BYTES];
     _Atomic uint64_t next; /* tile, or share of edges */
@@ -38,18 +40,34 @@ static void edge_add(carry_job *j, uint32_t low, uint32_t high, edge_batch *batc
     batch->high[batch->count++] = high;
 }
 
+static void points_add(carry_job *j, uint32_t p, uint32_t q, edge_batch *batch) {
+    edge_add(j, p < q ? p : q, p < q ? q : p, batch);
+}
+
+static void tetrahedron_carry(carry_job *j, const active_tetrahedron *a, edge_batch *batch) {
+    for (uint32_t rest = a->owned & 15; rest; rest &= rest - 1) {
+        const uint8_t *ends = j->cases[a->pattern & 15] + CASE_ENDS + 2 * __builtin_ctz(rest);
+        points_add(j, a->points[ends[0]], a->points[ends[1]], batch);
+    }
+}
+
+static void cell_carry(carry_job *j, const active_cell *a, edge_batch *batch) {
+    const uint8_t *ends = whole_case_at(j->whole_cases, a->pattern) + WHOLE_ENDS;
+    for (uint32_t rest = a->owned; rest; rest &= rest - 1) {
+        const uint8_t pair = ends[__builtin_ctz(rest)];
+        points_add(j, a->points[pair & 15], a->points[pair >> 4], batch);
+    }
+}
+
 static void tile_carry(carry_job *j, uint64_t tile, edge_batch *batch) {
     const uint64_t first = tile * j->size.tile_actives, end = first + j->size.tile_actives;
     const uint64_t vertex = tile ? j->tiles[TILE_WORDS * (tile - 1) + TILE_VERTICES] & SCAN_VALUE : 0;
     batch->vertex = vertex;
-    for (uint64_t n = first; n < end && n < j->size.active_count; n++) {
-        const active_tetrahedron *a = &j->active[n];
-        for (uint32_t rest = a->owned & 15; rest; rest &= rest - 1) {
-            const uint8_t *ends = j->cases[a->pattern & 15] + CASE_ENDS + 2 * __builtin_ctz(rest);
-            const uint32_t p = a->points[ends[0]], q = a->points[ends[1]];
-            edge_add(j, p < q ? p : q, p < q ? q : p, batch);
-        }
-    }
+    for (uint64_t n = first; n < end && n < j->size.active_count; n++)
+        if (j->cells)
+            cell_carry(j, &j->cells[n], batch);
+        else
+            tetrahedron_carry(j, &j->active[n], batch);
     j->vertices += batch->vertex + batch->count - vertex;
     carry_batch(j->carry, j->grid, j->isovalue, batch);
 }
@@ -89,14 +107,18 @@ static tc_status job_run(carry_job *j, uint64_t share_count) {
 }
 
 /* The results of a complex that the device has whole, while they are mapped. */
-static tc_status workspace_carry(carry_job *j) {
+static tc_status workspace_carry(carry_job *j, bool whole) {
     tc_context *context = j->grid->context;
     const complex_buffers *w = &context->work.complex;
     const uint64_t tile_count = (j->size.active_count + j->size.tile_actives - 1ull) / j->size.tile_actives;
     const void *active = NULL, *tiles = NULL;
-    tc_status status = buffer_map(context, &w->active, sizeof *j->active * j->size.active_count, &active);
+    const size_t item_bytes = whole ? sizeof *j->cells : sizeof *j->active;
+    tc_status status = buffer_map(context, &w->active, item_bytes * j->size.active_count, &active);
     if (!status) status = buffer_map(context, &w->tiles, 4ull * TILE_WORDS * tile_count, &tiles);
-    j->active = active;
+    if (whole)
+        j->cells = active;
+    else
+        j->active = active;
     j->tiles = tiles;
     if (!status) status = job_run(j, tile_count);
     tc_status ended = buffer_unmap(context, &w->active, active);
@@ -105,19 +127,35 @@ static tc_status workspace_carry(carry_job *j) {
     return status ? status : ended;
 }
 
-bool complex_is_classified(const tc_grid *grid, double isovalue) {
+bool complex_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     const complex_grid *c = grid->complex;
-    return grid->context->classified_grid == grid && c->classified_isovalue == isovalue &&
-           (!c->slabs || c->slabs->edges.edges || !c->size.vertex_count);
+    const bool whole = options->method == TC_METHOD_HYBRID;
+    const bool is_cut = whole ? c->whole && c->whole->is_cut : c->slabs != NULL;
+    if (grid->context->classified_grid != grid || c->classified_isovalue != options->isovalue ||
+        c->classified_method != options->method)
+        return false;
+    return !is_cut || !c->size.vertex_count || (whole ? c->whole->edges.edges : c->slabs->edges.edges);
+}
+
+static tc_status surface_carry_to(carry_job *j, const edge_numbers *edges, bool whole, uint64_t *vertex_count) {
+    *vertex_count = j->size.vertex_count;
+    if (j->carry->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller compares the two */
+    if (!edges) return workspace_carry(j, whole);
+    j->edges = edges->edges;
+    return job_run(j, (*vertex_count + SHARE_EDGES - 1) / SHARE_EDGES);
 }
 
 tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
     const struct complex_slabs *slabs = grid->complex->slabs;
     carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
-    *vertex_count = j.size.vertex_count;
-    if (c->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller compares the two */
     complex_cases(j.cases);
-    if (!slabs) return workspace_carry(&j);
-    j.edges = slabs->edges.edges;
-    return job_run(&j, (*vertex_count + SHARE_EDGES - 1) / SHARE_EDGES);
+    return surface_carry_to(&j, slabs ? &slabs->edges : NULL, false, vertex_count);
+}
+
+tc_status whole_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+    const struct whole_cells *w = grid->complex->whole;
+    carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
+    uint64_t bytes;
+    if (grid->context->whole_cases) j.whole_cases = whole_cases_bytes(grid->context->whole_cases, &bytes);
+    return surface_carry_to(&j, w->is_cut ? &w->edges : NULL, true, vertex_count);
 }

@@ -2,7 +2,7 @@
  * Complexes on a device: whole where the device has room (count, allocate the mesh, emit); else slab by slab
  * (complex_slabs.c), from then on always.
  */
-#include "tetrahedra/complex_run.h"
+#include "tetrahedra/whole_run.h"
 
 #include "failure.h"
 
@@ -17,6 +17,13 @@ tc_status complex_device_create(tc_grid *grid) {
                                context->info.name, tc_type_name(grid->type));
     if (context->options.max_memory_bytes) workspace_release(context); /* what another grid has left */
     if (!complex_fits(grid)) return complex_cut(grid);
+    return c->has_cells ? TC_OK : complex_arrays_provide(grid); /* by method hybrid they may not be needed */
+}
+
+tc_status complex_arrays_provide(tc_grid *grid) {
+    complex_grid *c = grid->complex;
+    if (c->part.tetrahedra.memory && c->part.points.memory) return TC_OK;
+    c->part.ranges_known = false;
     tc_status status = part_tetrahedra_provide(grid, c->tetrahedra, c->tetrahedron_count);
     return status ? status : part_points_provide(grid, c->points, grid->samples, c->point_count);
 }
@@ -26,6 +33,7 @@ void complex_device_destroy(tc_grid *grid) {
     if (grid->context->workspace_grid == grid) grid->context->workspace_grid = NULL;
     part_tetrahedra_release(grid);
     part_points_release(grid);
+    whole_cells_release(grid);
     if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
     if (slabs) free(slabs->ranges);
     if (slabs) edge_numbers_release(&slabs->edges);
@@ -53,7 +61,7 @@ static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, dou
 }
 
 static void whole_note(const complex_run *r, double isovalue) {
-    complex_classified_note(r->grid, isovalue,
+    complex_classified_note(r->grid, isovalue, TC_METHOD_TETRA,
                             (surface_size){r->head[HEAD_VERTICES], r->job.active_count, r->job.tile_actives});
 }
 
@@ -100,14 +108,15 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
     return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
-static tc_status emit(complex_run *r, tc_mesh *mesh) {
+tc_status surface_mesh_emit(complex_run *r, tc_mesh *mesh,
+                            tc_status emit(complex_run *, const device_buffer *, const device_buffer *)) {
     mesh_buffers *m = &r->context->work.mesh[0];
     const uint64_t vertex_bytes = mesh->vertex_count * CHANNEL_BYTES;
     const uint64_t triangle_bytes = mesh->triangle_count * TRIANGLE_BYTES;
     tc_status status =
         mesh_open(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
-    if (!status) status = surface_emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
+    if (!status) status = emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
     if (!status)
         status = mesh_close(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes);
@@ -122,7 +131,7 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     tc_status status = whole_count(&r, grid, isovalue, 0.8);
     double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
-    if (!status && r.head[HEAD_TRIANGLES]) status = emit(&r, mesh);
+    if (!status && r.head[HEAD_TRIANGLES]) status = surface_mesh_emit(&r, mesh, surface_emit);
     if (r.too_large) {
         status = cut_later(&r);
         return status ? status : complex_slabs_extract(grid, isovalue, 0.8, mesh);

@@ -5,7 +5,7 @@
 
 #include "failure.h"
 
-/* TC_ERROR_ARGUMENT for what complexes cannot do, TC_ERROR_DEVICE for what only the reference can. */
+/* TC_ERROR_ARGUMENT for what complexes cannot do. */
 static tc_status complex_request_check(const tc_grid *grid, const tc_extract_options *options) {
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
@@ -26,13 +26,15 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "the grid of tetrahedra was made without cells, which method hybrid keeps whole: give "
                                "source and cells, or use TC_METHOD_TETRA");
-    if (grid->context->options.engine != TC_ENGINE_REFERENCE)
-        return (tc_status)fail(
-            TC_ERROR_DEVICE,
-            "kernels do not keep cells whole, as method hybrid does: use the reference engine, or method "
-            "tetra");
     return TC_OK;
 }
+
+bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options) {
+    if (options->closed) return false;
+    return options->method == TC_METHOD_TETRA || (options->method == TC_METHOD_HYBRID && grid->complex->has_cells);
+}
+
+static bool is_whole(const tc_extract_options *options) { return options->method == TC_METHOD_HYBRID; }
 
 static bool surface_possible(const tc_grid *grid, const tc_extract_options *options) {
     return grid->complex->tetrahedron_count &&
@@ -51,14 +53,16 @@ tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_count(grid, options, counts);
-    return device_end(grid->context, complex_device_count(grid, options->isovalue, share, counts));
+    return device_end(grid->context, is_whole(options) ? whole_device_count(grid, options->isovalue, share, counts)
+                                                       : complex_device_count(grid, options->isovalue, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_extract(grid, options, mesh);
-    return device_end(grid->context, complex_device_extract(grid, options->isovalue, mesh));
+    return device_end(grid->context, is_whole(options) ? whole_device_extract(grid, options->isovalue, mesh)
+                                                       : complex_device_extract(grid, options->isovalue, mesh));
 }
 
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
@@ -66,5 +70,6 @@ tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const 
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_carry(grid, options, c, vertex_count);
-    return complex_device_carry(grid, options->isovalue, c, vertex_count);
+    return is_whole(options) ? whole_device_carry(grid, options->isovalue, c, vertex_count)
+                             : complex_device_carry(grid, options->isovalue, c, vertex_count);
 }

@@ -35,6 +35,9 @@ uint32_t complex_tile_actives(const tc_grid *grid);
 /* Whether kernel 1 can run over the complex whole. */
 bool complex_fits(const tc_grid *grid);
 
+/* Brings the arrays of a complex that is not cut to the device, where they are not there. */
+tc_status complex_arrays_provide(tc_grid *grid);
+
 /* Cuts the complex, which is not cut yet. TC_ERROR_MEMORY, with what would be needed, where the least slab is too
  * large: nothing has changed then. */
 tc_status complex_cut(tc_grid *grid);
@@ -47,6 +50,10 @@ tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uin
 tc_status part_points_provide(tc_grid *grid, const float *points, const void *samples, uint32_t count);
 void part_tetrahedra_release(tc_grid *grid); /* with their ranges */
 void part_points_release(tc_grid *grid);
+
+/* Uses an array in place, from its page boundary on, or copies it. *offset in items. */
+tc_status part_array_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
+                             size_t item_bytes, uint64_t *offset, const char *name);
 
 /* Points of a slab on their own. */
 typedef struct local_points {
@@ -74,10 +81,11 @@ typedef struct complex_run {
     complex_part *part;
     tc_context *context;
     complex_buffers *work;
-    sized_kernel kernels[COMPLEX_KERNELS];
+    sized_kernel kernels[WHOLE_KERNELS];
     isovalue_test test;
     complex_job job;
     uint32_t head[HEAD_WORDS];
+    bool is_cut;     /* into slabs, which fit */
     bool too_large;  /* the surface of a complex that is not cut does not fit */
     double start_ms; /* kernels are built by then */
 } complex_run;
@@ -93,7 +101,22 @@ tc_status surface_number(complex_run *r);
 tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
 
 /* Notes that the workspace, or the slabs, know this surface. */
-void complex_classified_note(tc_grid *grid, double isovalue, surface_size size);
+void complex_classified_note(tc_grid *grid, double isovalue, tc_method method, surface_size size);
+
+/* What both methods begin a run with: kernels, and the workspace. */
+tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue, tc_method method);
+
+/* Parts of a run: fills a buffer from byte `first` on; reads the head back; the table of edges, whose entries are a
+ * power of two. */
+tc_status surface_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
+                       uint64_t bytes);
+tc_status surface_head_read(complex_run *r);
+tc_status surface_table_reserve(complex_run *r, uint64_t entries);
+tc_status surface_clusters_reserve(complex_run *r);
+
+/* Emits the surface of a complex that is on the device whole into a mesh of the host. */
+tc_status surface_mesh_emit(complex_run *r, tc_mesh *mesh,
+                            tc_status emit(complex_run *, const device_buffer *, const device_buffer *));
 
 /* Reserves a buffer whose size depends on the surface. Where it does not fit and the complex is not cut into slabs yet:
  * TC_ERROR_MEMORY, and too_large is set. */

@@ -187,7 +187,7 @@ static tc_status slabs_classify(slabs_run *t, double before, double after) {
 
 /* Keeps the joined edges, from which fields are carried. */
 static void edges_keep(slabs_run *t, double isovalue, uint64_t vertex_count) {
-    complex_classified_note(t->r.grid, isovalue, (surface_size){.vertex_count = vertex_count});
+    complex_classified_note(t->r.grid, isovalue, TC_METHOD_TETRA, (surface_size){.vertex_count = vertex_count});
     if (!t->r.complex->carries) return;
     t->slabs->edges = t->edges;
     t->edges = (edge_numbers){0};

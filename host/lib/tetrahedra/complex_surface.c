@@ -4,7 +4,7 @@
  * The host waits twice: for the number of active tetrahedra, which lists and the table of edges are sized by, and for
  * that of the vertices. Everything but the part itself is proportional to the surface.
  */
-#include "tetrahedra/complex_run.h"
+#include "tetrahedra/whole_run.h"
 
 #include "failure.h"
 #include "grid/tables.h"
@@ -16,7 +16,7 @@
 bool surface_fits(complex_run *r, uint64_t bytes) {
     const tc_context *context = r->context;
     const uint64_t budget = context_budget(context);
-    if (r->complex->slabs) return true; /* slabs are cut to fit */
+    if (r->is_cut) return true; /* slabs are cut to fit */
     if (bytes > context->info.max_buffer_bytes || context->device_bytes > budget ||
         bytes > budget - context->device_bytes)
         r->too_large = true;
@@ -63,14 +63,14 @@ static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
 
 /* --------------------------------------------------------------------------------------------------------- commands */
 
-static tc_status buffer_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
-                             uint64_t bytes) {
+tc_status surface_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
+                       uint64_t bytes) {
     cl_int error =
         cl->EnqueueFillBuffer(r->context->queue, buffer->memory, &value, sizeof value, first, bytes, 0, NULL, NULL);
     return error ? context_fail(r->context, "clearing a buffer", error) : TC_OK;
 }
 
-static tc_status head_read(complex_run *r) {
+tc_status surface_head_read(complex_run *r) {
     cl_int error = cl->EnqueueReadBuffer(r->context->queue, r->work->state.memory, CL_TRUE, 0, sizeof r->head, r->head,
                                          0, NULL, NULL);
     return error ? context_fail(r->context, "reading totals", error) : TC_OK;
@@ -87,50 +87,59 @@ static void part_describe(complex_run *r) {
                            .point_offset = part->point_offset,
                            .tetrahedron_offset = part->tetrahedron_offset,
                            .point_count = part->point_count,
-                           .tetrahedron_count = part->tetrahedron_count,
+                           .item_count = part->tetrahedron_count,
                            .cluster_count = complex_cluster_count(part->tetrahedron_count),
                            .tile_clusters = complex_tile_clusters(r->grid),
                            .tile_actives = complex_tile_actives(r->grid)};
     r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
 }
 
-tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
+tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue, tc_method method) {
     tc_context *context = grid->context;
-    *r = (complex_run){.grid = grid, .complex = grid->complex, .part = &grid->complex->part, .context = context};
     r->work = &context->work.complex;
     r->test = isovalue_test_of(inside_range_of(grid->type, isovalue), isovalue);
     context->counted_grid = context->classified_grid = NULL;
-    if (grid->complex->slabs) edge_numbers_release(&grid->complex->slabs->edges);
-    tc_status status = complex_kernels_get(context, complex_kind(grid, false), r->kernels);
+    tc_status status = complex_kernels_get(context, complex_kind(grid, method, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
-    if (context->workspace_grid != grid && (context->options.max_memory_bytes || grid->complex->slabs)) {
+    if (context->workspace_grid != grid && (context->options.max_memory_bytes || r->is_cut)) {
         cl->Finish(context->queue);
         workspace_release(context);
     }
     context->workspace_grid = grid;
-    return cases_provide(context, &r->work->cases);
+    return TC_OK;
 }
 
-void complex_classified_note(tc_grid *grid, double isovalue, surface_size size) {
+tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
+    complex_grid *c = grid->complex;
+    *r = (complex_run){.grid = grid, .complex = c, .part = &c->part, .context = grid->context, .is_cut = c->slabs};
+    if (c->slabs) edge_numbers_release(&c->slabs->edges);
+    whole_part_release(grid);
+    tc_status status = complex_workspace_begin(r, grid, isovalue, TC_METHOD_TETRA);
+    if (!status && !c->slabs) status = complex_arrays_provide(grid);
+    return status ? status : cases_provide(grid->context, &r->work->cases);
+}
+
+void complex_classified_note(tc_grid *grid, double isovalue, tc_method method, surface_size size) {
     grid->context->classified_grid = grid;
     grid->complex->classified_isovalue = isovalue;
+    grid->complex->classified_method = method;
     grid->complex->size = size;
 }
 
-static tc_status clusters_reserve(complex_run *r) {
+tc_status surface_clusters_reserve(complex_run *r) {
     const uint64_t clusters = r->job.cluster_count;
     const uint64_t state_bytes = 4 * (HEAD_WORDS + (uint64_t)TILE_WORDS * r->job.cluster_tiles);
     tc_status status = surface_reserve(r, &r->work->clusters, sizeof(cluster_state) * clusters, "clusters");
     if (!status) status = surface_reserve(r, &r->work->active_clusters, 4 * clusters, "active clusters");
     if (!status) status = surface_reserve(r, &r->work->state, state_bytes, "the scan");
-    return status ? status : buffer_fill(r, &r->work->state, 0, 0, state_bytes);
+    return status ? status : surface_fill(r, &r->work->state, 0, 0, state_bytes);
 }
 
 tc_status surface_classify(complex_run *r) {
     const complex_buffers *w = r->work;
     part_describe(r);
-    tc_status status = clusters_reserve(r);
+    tc_status status = surface_clusters_reserve(r);
     if (status) return status;
     const kernel_argument arguments[] = {ARGUMENT(r->job),
                                          ARGUMENT(r->part->samples.memory),
@@ -141,7 +150,7 @@ tc_status surface_classify(complex_run *r) {
                                          ARGUMENT(w->state.memory)};
     status = kernel_launch(r->context, r->kernels[KERNEL_CLASSIFY], "kernel complex_classify", arguments,
                            sizeof arguments / sizeof *arguments);
-    if (!status) status = head_read(r);
+    if (!status) status = surface_head_read(r);
     if (!status && r->head[HEAD_INVALID]) status = complex_point_fail(r->complex);
     if (status) return status;
     r->part->ranges_known = true;
@@ -171,7 +180,7 @@ static tc_status active_list(complex_run *r) {
                                   sizeof arguments / sizeof *arguments);
 }
 
-static tc_status table_reserve(complex_run *r, uint64_t entries) {
+tc_status surface_table_reserve(complex_run *r, uint64_t entries) {
     r->job.table_mask = (uint32_t)(entries - 1);
     r->job.probe_limit = entries >= 2ull * r->head[HEAD_CROSSED] ? r->job.table_mask : 256;
     return surface_reserve(r, &r->work->table, 4 * entries, "the table of edges");
@@ -179,11 +188,11 @@ static tc_status table_reserve(complex_run *r, uint64_t entries) {
 
 /* Enlarges the table, and resets what the attempt with the smaller table has changed. */
 static tc_status table_enlarge(complex_run *r, uint64_t entries) {
-    tc_status status = table_reserve(r, entries);
-    if (!status) status = buffer_fill(r, &r->work->table, EDGE_NONE, 0, 4 * entries);
-    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * (HEAD_TICKETS + KERNEL_JOIN), 8);
-    if (!status) status = buffer_fill(r, &r->work->state, 0, 4 * HEAD_FULL, 4);
-    return status ? status : buffer_fill(r, &r->work->tiles, 0, 0, 4ull * TILE_WORDS * r->job.active_tiles);
+    tc_status status = surface_table_reserve(r, entries);
+    if (!status) status = surface_fill(r, &r->work->table, EDGE_NONE, 0, 4 * entries);
+    if (!status) status = surface_fill(r, &r->work->state, 0, 4 * (HEAD_TICKETS + KERNEL_JOIN), 8);
+    if (!status) status = surface_fill(r, &r->work->state, 0, 4 * HEAD_FULL, 4);
+    return status ? status : surface_fill(r, &r->work->tiles, 0, 0, 4ull * TILE_WORDS * r->job.active_tiles);
 }
 
 /* Enters the crossed edges into the table and numbers their vertices. */
@@ -199,7 +208,7 @@ static tc_status edges_join(complex_run *r) {
     if (!status)
         status = kernel_launch(r->context, r->kernels[KERNEL_NUMBER], "kernel complex_number", number,
                                sizeof number / sizeof *number);
-    return status ? status : head_read(r);
+    return status ? status : surface_head_read(r);
 }
 
 /* In most complexes an edge has five tetrahedra: a table half as large as the crossed edges, each counted for every
@@ -210,7 +219,7 @@ tc_status surface_number(complex_run *r) {
     while (2 * entries < r->head[HEAD_CROSSED]) entries *= 2;
     tc_status status = surface_reserve(r, &w->entries, 16ull * r->job.active_count, "crossed edges");
     if (!status) status = surface_reserve(r, &w->tiles, 4ull * TILE_WORDS * r->job.active_tiles, "the scan");
-    if (!status) status = table_reserve(r, entries);
+    if (!status) status = surface_table_reserve(r, entries);
     if (!status) status = active_list(r);
     if (!status) status = edges_join(r);
     if (status || !r->head[HEAD_FULL]) return status;

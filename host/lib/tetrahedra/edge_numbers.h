@@ -10,6 +10,8 @@
 
 #include "tetracubes.h"
 
+#include <stdbool.h>
+
 typedef struct edge_numbers {
     uint64_t *edges; /* by number */
     uint32_t *slots;
@@ -19,6 +21,9 @@ typedef struct edge_numbers {
 /* The number of the edge of two points, low < high; a new edge gets the next number. TC_ERROR_MEMORY, or TC_ERROR_LIMIT
  * where 32 bits do not suffice. */
 tc_status edge_numbers_find(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number);
+
+/* Whether the edge has a number. */
+bool edge_numbers_has(const edge_numbers *n, uint32_t low, uint32_t high);
 
 void edge_numbers_release(edge_numbers *n);
 

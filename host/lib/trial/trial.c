@@ -127,7 +127,7 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
 
 /* Builds the kernels apart from running them, so that the report can tell which of the two failed. */
 static tc_status kernels_build(tc_context *context, kernel_kind kind) {
-    sized_kernel of_complexes[COMPLEX_KERNELS];
+    sized_kernel of_complexes[WHOLE_KERNELS];
     kernels k;
     tc_status status =
         kind.grid == KIND_COMPLEX ? complex_kernels_get(context, kind, of_complexes) : kernels_get(context, kind, &k);
@@ -155,6 +155,7 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
     trial_volume v = {.type = kind.type,
                       .kind = kind.grid == KIND_COMPLEX ? GRID_CURVILINEAR : (grid_kind)kind.grid,
                       .unstructured = kind.grid == KIND_COMPLEX,
+                      .whole = kind.grid == KIND_COMPLEX && kind.method == TC_METHOD_HYBRID,
                       .missing = kind.missing,
                       .plain = channel_in(kind.made, CHANNEL_NORMALS)};
     tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;

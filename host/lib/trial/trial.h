@@ -31,9 +31,11 @@ bool trial_pending(const tc_grid *grid, const tc_extract_options *options, bool 
 typedef struct trial_volume {
     tc_type type;
     grid_kind kind;
+    bool whole;                        /* unstructured, and cells are kept whole */
     bool unstructured, missing, plain; /* plain: samples of one magnitude, for normals: squares would overflow */
     tc_grid_options options;
     tc_tetrahedra complex; /* unstructured: the volume, cut */
+    tc_cells cells;        /* whole: what was cut */
     double isovalue;
     void *samples;
     float *points, *axes;
@@ -42,6 +44,10 @@ typedef struct trial_volume {
 /* Makes samples and coordinates; to be released in any case. */
 tc_status trial_volume_make(trial_volume *v);
 void trial_volume_release(trial_volume *v);
+
+/* Of a volume of whole cells: these, and their tetrahedra (trial_cells.c). noise: a number for each number. */
+tc_status trial_cells_make(trial_volume *v, uint64_t noise(uint64_t));
+void trial_cells_release(trial_volume *v);
 
 /* A grid over it, in a context of either engine. */
 tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_parameters scan, tc_grid **grid);

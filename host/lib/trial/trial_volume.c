@@ -111,11 +111,13 @@ tc_status trial_volume_make(trial_volume *v) {
     for (uint64_t n = 0; n < SAMPLES; n++) sample_put(v, n);
     coordinates_make(v);
     v->complex.struct_size = sizeof v->complex;
+    if (v->whole) return trial_cells_make(v, noise);
     return v->unstructured ? tc_tetrahedralize_grid(&v->options, &v->complex) : TC_OK;
 }
 
 void trial_volume_release(trial_volume *v) {
     tc_tetrahedra_release(&v->complex);
+    trial_cells_release(v);
     free(v->samples);
     free(v->points);
     free(v->axes);
@@ -130,5 +132,6 @@ tc_status trial_grid_create(const trial_volume *v, tc_context *context, scan_par
     complex.samples = v->samples;
     complex.tetrahedron_count = v->complex.tetrahedron_count;
     complex.tetrahedra = v->complex.tetrahedra;
+    if (v->whole) complex.source = &v->cells, complex.cells = v->complex.cells;
     return complex_create(context, &complex, scan, grid);
 }

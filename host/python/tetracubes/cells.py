@@ -69,7 +69,7 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
     (one more than cells) and connectivity. Tetrahedra, hexahedra, voxels, wedges, pyramids and prisms, quadratic ones
     by their corners; cells of fewer dimensions are left out.
     values: (n,), one per point. Where one is not finite, the tetrahedra there are left out.
-    method: "tetra"; or "hybrid", which makes fewer triangles of cells that are no tetrahedra, by the reference engine.
+    method: "tetra"; or "hybrid", which makes fewer triangles of cells that are no tetrahedra.
     skip_unsupported: whether cells that cannot be cut are left out instead of refused.
     The rest as for ``isosurface``. Vertices are x, y, z.
     """
@@ -95,7 +95,6 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
         setattr(how, member, place.ctypes.data)
         if method == "hybrid":
             how.source, how.cells = ctypes.addressof(given), cut.cells
-            engine = "reference" if engine == "auto" else engine  # no kernel keeps cells whole
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
         with GridBase(context, tc.tc_tetrahedra_grid_create, how, (place, samples), "xyz", samples.shape) as grid:

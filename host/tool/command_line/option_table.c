@@ -97,7 +97,7 @@ const option option_table[] = {
      "ambiguous cases the tetrahedra decide; snap: tetrahedra whose samples near\n"
      "the surface are moved onto it, where its topology stays: a quarter of the\n"
      "triangles, of better shape (structured grids). Of unstructured grids hybrid\n"
-     "keeps cells whole, by the reference engine"},
+     "keeps cells whole, polyhedra excepted"},
     {"--snap", NULL, "A", COMMAND_EXTRACT, VALUE_THRESHOLD, IN(snap), NULL,
      "of --method snap: a sample is moved to a crossing at most this part of an\n"
      "edge away, 0 to 0.5 (default: 0.5)"},

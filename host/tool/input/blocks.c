@@ -248,13 +248,13 @@ void blocks_release(block_list *list) {
     *list = (block_list){0};
 }
 
-static tc_status complex_grid(const prepared_block *b, tc_context *context, const double *origin, tc_grid **grid) {
+static tc_status complex_grid(const options *o, const prepared_block *b, tc_context *context, const double *origin,
+                              tc_grid **grid) {
     tc_tetrahedra_grid_options from;
     const tc_cells cells = cells_of(b);
     if (!b->complex.tetrahedron_count) return TC_OK;
     tc_tetrahedra_grid_options_init(&from);
-    from.source = &cells; /* for method hybrid */
-    from.cells = b->complex.cells;
+    if (o->method == TC_METHOD_HYBRID) from.source = &cells, from.cells = b->complex.cells;
     from.point_count = (uint64_t)b->source->point_count;
     from.points = b->source->points.f32;
     from.points_f64 = b->source->points.f64;
@@ -275,7 +275,7 @@ int block_grid(const options *o, const block_list *list, int n, tc_context *cont
     tc_grid_options from, whole;
     *grid = NULL;
     if (b->is_skipped) return 0;
-    if (b->is_cut) return block_status(input_status(o, complex_grid(b, context, origin, grid)), n, list->count);
+    if (b->is_cut) return block_status(input_status(o, complex_grid(o, b, context, origin, grid)), n, list->count);
     describe_grid(b, &from, &whole);
     if (origin) {
         from.has_origin = 1;

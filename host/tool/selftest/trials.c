@@ -128,6 +128,13 @@ static const trial complexes[] = {
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .change = CHANGE_MISSING},
 };
 
+static const trial whole[] = {
+    {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 128, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .change = CHANGE_STEPS},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F64, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .change = CHANGE_MISSING},
+};
+
 static const trial scanned[] = {
     {.field = "gyroid", .dims = {130, 70, 66}, .type = TC_U8, .isovalue = 127.5, .is_known = 1, .vertices = 254936, .triangles = 502192},
     {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 127.5, .kind = KIND_COMPLEX},
@@ -148,6 +155,7 @@ static const trial slabbed[] = {
     {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_F32, .isovalue = 127.5},
     {.field = "gyroid", .dims = {192, 96, 64}, .type = TC_U8, .isovalue = 127.5, .normals = 1},
     {.field = "gyroid", .dims = {80, 50, 40}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX},
+    {.field = "gyroid", .dims = {80, 50, 40}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID},
 };
 /* clang-format on */
 
@@ -197,6 +205,7 @@ const trial_group trial_groups[] = {
     GROUP("closed", "closed surfaces", closed, standard, 0, 2, 1),
     GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0, 2, 1),
     GROUP("complexes", "unstructured grids", complexes, standard, 0, 1, 1),
+    GROUP("cells", "unstructured cells kept whole", whole, standard, 0, 1, 1),
     GROUP("scan", "the scan and its fallback", scanned, chained, 0, 1, 3),
     GROUP("launches", "work-group and tile sizes", launched, varied, 0, 1, 2),
     GROUP("divisions", "ways to divide", quotients, divided, 0, 1, 1),

@@ -115,18 +115,50 @@ static void describe_grid(const trial *t, selftest_volume *v) {
     if (t->kind == KIND_CURVILINEAR || t->kind == KIND_COMPLEX) grid->points = v->points;
 }
 
+/* The cubes as hexahedra, every fifth as two wedges, some turned over. */
+static int make_cells(selftest_volume *v) {
+    static const int hexahedra[2][8] = {{0, 1, 3, 2, 4, 5, 7, 6}, {4, 5, 7, 6, 0, 1, 3, 2}};
+    static const int wedges[2][6] = {{0, 3, 1, 4, 7, 5}, {0, 2, 3, 4, 6, 7}};
+    const int64_t *d = v->grid.dims, cubes = (d[0] - 1) * (d[1] - 1) * (d[2] - 1);
+    uint8_t *types = malloc(2 * (size_t)cubes);
+    int64_t *offsets = calloc(2 * (size_t)cubes + 1, sizeof *offsets), *at = malloc(12 * (size_t)cubes * sizeof *at);
+    v->cells = (tc_cells){.struct_size = sizeof v->cells, .point_count = (uint64_t)(d[0] * d[1] * d[2])};
+    v->cells.points = v->points, v->cells.types = types, v->cells.offsets = offsets, v->cells.connectivity = at;
+    if (!types || !offsets || !at) return fail(STATUS_FAILED, "out of memory for a volume of the self-test");
+    uint64_t count = 0;
+    for (int64_t n = 0; n < cubes; n++) {
+        const int64_t x = n % (d[0] - 1), y = n / (d[0] - 1) % (d[1] - 1), z = n / (d[0] - 1) / (d[1] - 1);
+        const int cut = n % 5 == 3, corners = cut ? 6 : 8;
+        for (int part = 0; part <= cut; part++) {
+            const int *order = cut ? wedges[part] : hexahedra[n % 7 == 2];
+            types[count] = cut ? 13 : 12;
+            offsets[count + 1] = offsets[count] + corners;
+            for (int c = 0; c < corners; c++)
+                at[offsets[count] + c] =
+                    ((z + (order[c] >> 2)) * d[1] + y + (order[c] >> 1 & 1)) * d[0] + x + (order[c] & 1);
+            count++;
+        }
+    }
+    v->cells.cell_count = count;
+    return tc_tetrahedralize(&v->cells, &v->complex) ? fail(STATUS_FAILED, "%s", tc_message()) : 0;
+}
+
 int selftest_volume_make(const trial *t, selftest_volume *v) {
     *v = (selftest_volume){.is_complex = t->kind == KIND_COMPLEX, .complex.struct_size = sizeof v->complex};
     int status = make_samples(t, v);
     if (!status && t->kind != KIND_UNIFORM) status = make_coordinates(t, v);
     if (status) return status;
     describe_grid(t, v);
+    if (v->is_complex && t->method == TC_METHOD_HYBRID) return make_cells(v);
     if (v->is_complex && tc_tetrahedralize_grid(&v->grid, &v->complex)) return fail(STATUS_FAILED, "%s", tc_message());
     return 0;
 }
 
 void selftest_volume_release(selftest_volume *v) {
     tc_tetrahedra_release(&v->complex);
+    free((void *)(uintptr_t)v->cells.types);
+    free((void *)(uintptr_t)v->cells.offsets);
+    free((void *)(uintptr_t)v->cells.connectivity);
     free(v->samples);
     free(v->points);
     free(v->axes);
@@ -142,5 +174,6 @@ tc_status selftest_grid_create(const selftest_volume *v, tc_context *context, tc
     complex.samples = v->samples;
     complex.tetrahedron_count = v->complex.tetrahedron_count;
     complex.tetrahedra = v->complex.tetrahedra;
+    if (v->cells.types) complex.source = &v->cells, complex.cells = v->complex.cells;
     return tc_tetrahedra_grid_create(context, &complex, grid);
 }

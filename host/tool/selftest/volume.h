@@ -8,6 +8,7 @@ typedef struct selftest_volume {
     tc_grid_options grid;
     int is_complex;
     tc_tetrahedra complex; /* the grid, cut, where it is one */
+    tc_cells cells;        /* its cubes, where these are kept whole */
     void *samples;
     float *points, *axes;
 } selftest_volume;

@@ -1,0 +1,28 @@
+/*
+ * complex_vertex.cl - a vertex of a complex: its number and its position
+ */
+#ifndef COMPLEX_VERTEX_CL
+#define COMPLEX_VERTEX_CL
+
+#include "complex_number.cl"
+#include "crossing.cl"
+
+/* The number of the vertex in slot `owner`, whose item owns it. */
+inline_always uint vertex_number(const complex_job *c, uint owner, global const active_item *active,
+                                 global const uint *tiles) {
+    global const active_item *t = active + slot_item(c, owner);
+    uint lower = t->owned & ((1u << slot_edge(c, owner)) - 1);
+    return tile_before(tiles, slot_item(c, owner) / c->tile_actives, TILE_VERTICES) + t->vertex + (uint)popcount(lower);
+}
+
+/* The vertex on an edge. */
+inline_always void edge_vertex(const complex_job *c, uint2 edge, global const BITS *samples, global const float *points,
+                               global float *out) {
+    float t = crossing(SAMPLE_VALUE(samples[edge.x]), SAMPLE_VALUE(samples[edge.y]), ISOVALUE(&c->test));
+    float3 p0 = vload3(edge.x, points), p1 = vload3(edge.y, points);
+    out[0] = t == 1 ? p1.x : p0.x + t * (p1.x - p0.x);
+    out[1] = t == 1 ? p1.y : p0.y + t * (p1.y - p0.y);
+    out[2] = t == 1 ? p1.z : p0.z + t * (p1.z - p0.z);
+}
+
+#endif
