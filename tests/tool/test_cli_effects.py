@@ -26,7 +26,7 @@ VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "-
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
           "--method": ["snap"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
           "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"],
-          "--snap": ["0.3"], "--preview": ["a.png"], "--view": ["top"], "--preview-size": ["40,30"], "--iso": ["100"]}
+          "--snap": ["0.3"], "--part": ["0/2"], "--preview": ["a.png"], "--view": ["top"], "--preview-size": ["40,30"], "--iso": ["100"]}
 REFERENCE = ["--engine", "reference"]
 
 # Per case of the source: command, operand, more arguments. That of the option itself is added.
@@ -35,6 +35,7 @@ CASES = {
     "has_no_output": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_file": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_file_nor_reference": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "makes_part": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.part", "--part", "0/2"]),
     "has_no_preview": ("info", "u8.nrrd", []),
     "has_only_cells": ("info", "cells.vtu", []),
     "file_has_no_normals": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.stl"]),

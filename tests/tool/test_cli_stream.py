@@ -163,7 +163,7 @@ class Stream(GridCase):
                            (["--drop-degenerate"], "--drop-degenerate needs"),
                            (["--preview", self.path("a.png")], "--preview (draws the whole mesh|needs libpng)"),
                            (["--roi", ":,:,2:9"], "take a part"),
-                           (["-o", self.path("a.obj")], "write ply, vtp or stl"),
+                           (["-o", self.path("a.obj")], "write ply, vtp(, stl or vtkhdf| or stl)"),
                            (["-o", self.path("a.ply"), "--soup"], "--soup"),
                            (["-o", "-", "--format", "ply"], "name a file"),
                            (["--count"], "--count makes no mesh")):
