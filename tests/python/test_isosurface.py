@@ -177,7 +177,7 @@ def test_bad_engine(ball):
         tetracubes.isosurface(ball, 0, engine="cuda")
 
 
-@pytest.mark.parametrize("method", ["tetra", "hybrid"])
+@pytest.mark.parametrize("method", ["tetra", "hybrid", "snap"])
 @pytest.mark.parametrize("seed", range(12))
 def test_parts(method, seed):
     """Parts joined are one piece, byte for byte: with ties, missing samples, normals, fields, far from zero."""
@@ -191,6 +191,8 @@ def test_parts(method, seed):
         volume[random.random(shape) < 0.1] = np.nan
     if seed % 4 == 3:
         options["nodata"] = 3
+    if seed % 3 == 0:
+        options["closed"] = True
     if seed >= 4:
         options["mask"] = random.random(shape) < 0.9
     if seed >= 8:
@@ -217,8 +219,8 @@ def test_parts_are_read_by_parts(ball):
     mesh = tetracubes.isosurface_by_parts(Slices(), 0, planes=4, engine="reference",
                                           progress=lambda stage, fraction: told.append(fraction))
     assert mesh.hash == tetracubes.isosurface(ball, 0, engine="reference").hash
-    assert max(Slices.read) == 13 and len(Slices.read) == 6 and 0 <= min(told) <= max(told) <= 1
-    with pytest.raises(ValueError, match="snap"):
-        tetracubes.isosurface_by_parts(ball, 0, method="snap")
+    assert max(Slices.read) == 10 and len(Slices.read) == 7 and 0 <= min(told) <= max(told) <= 1
+    with pytest.raises(ValueError, match="method"):
+        tetracubes.isosurface_by_parts(ball, 0, method="smooth")
     with pytest.raises(ValueError, match="planes"):
         tetracubes.isosurface_by_parts(ball, 0, planes=0)

@@ -118,10 +118,14 @@ class GridBase:
         the volume's shape, or one axis more, of components.
         """
         how = extract_options(level, method, snap, normals, closed)
-        fields = {name: self._field(name, array) for name, array in (carry or {}).items()}
+        return self._extract(tc.tc_extract, how, carry or {})
+
+    def _extract(self, function, how, carry, *arguments):
+        """The surface by tc_extract or tc_extract_piece, whose further arguments stand before the place of the mesh."""
+        fields = {name: self._field(name, array) for name, array in carry.items()}
         handle = ctypes.c_void_p()
         try:
-            self._call(tc.tc_extract, ctypes.byref(how), ctypes.byref(handle))
+            self._call(function, ctypes.byref(how), *arguments, ctypes.byref(handle))
         finally:
             memory = MeshMemory(handle)
         data = tc_mesh_data()
@@ -129,7 +133,7 @@ class GridBase:
         shape = data.vertex_count, 3
         return Mesh(arrays.owned(data.positions, shape, np.float32, memory),
                     arrays.owned(data.triangles, (data.triangle_count, 3), np.uint32, memory),
-                    arrays.owned(data.normals, shape, np.float32, memory) if normals else None,
+                    arrays.owned(data.normals, shape, np.float32, memory) if how.normals else None,
                     {name: self._carried(how, field, data.vertex_count) for name, field in fields.items()},
                     np.array(data.origin), self._axes, data.active_cell_count)
 
@@ -181,6 +185,8 @@ class Grid(GridBase):
     it raises, end the call.
     part: of a volume that is a part of a larger one: the number of its first plane there, and how many planes that has.
     Surfaces of parts that share a plane then fit to the bit; see also isosurface_by_parts.
+    owned: of a part with a halo, the first plane that it owns and the one behind the last: tc_grid_options of the
+    library says what is allowed. The grid then gives what the part owns.
     """
 
     _opencl: Any = None  # the pyopencl.Context of from_opencl
@@ -189,7 +195,7 @@ class Grid(GridBase):
                  direction: npt.ArrayLike | None = None, mask: Any = None, nodata: float | None = None,
                  axes: str = "zyx", device: int | str | None = None, engine: str = "auto",
                  max_memory: int | None = None, progress: Progress | None = None,
-                 part: tuple[int, int | None] | None = None) -> None:
+                 part: tuple[int, int | None] | None = None, owned: tuple[int, int] | None = None) -> None:
         samples, missing = arrays.volume_of(volume, mask)
         how = self._options(samples.shape, samples.dtype, spacing, origin, direction, nodata, axes)
         how.samples, how.blanked_samples = arrays.address(samples), arrays.address(missing)
@@ -199,6 +205,8 @@ class Grid(GridBase):
                 whole = options(tc_grid_options)
                 whole.dims[:] = *how.dims[:2], planes
                 how.whole = ctypes.pointer(whole)
+        if owned is not None:
+            how.owned[:] = owned
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
         super().__init__(context, tc.tc_grid_create, how, (samples, missing), axes, samples.shape)
