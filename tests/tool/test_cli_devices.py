@@ -36,7 +36,7 @@ class Devices(Case):
     def test_unknown_device(self):
         self.needs_device()
         volume = self.generate("sphere", "a.nrrd")
-        for spec in ("no such device", "99", "99:0", "-1"):
+        for spec in ("no such device", "99", "99:0", "-1", "cpu:99", "gpu:-1", "cpu:", "cpu:0x"):
             self.refuses(1, "extract", volume, "--iso", "127.5", "--device", spec, "-o", self.path("a.ply"))
             self.refuses(1, "selftest", "--device", spec)
         self.refuses(1, "extract", volume, "--iso", "127.5", env={"TETRACUBES_DEVICE": "no such device"},
@@ -54,7 +54,7 @@ class Devices(Case):
             self.assertIn(device["name"], text)
         device = report["devices"][0]
         volume = self.generate("sphere", "a.nrrd")
-        for spec in ("0", device["spec"], device["type"], device["name"]):
+        for spec in ("0", device["spec"], device["type"], device["type"].upper() + ":0", device["name"]):
             got = self.report("extract", volume, "--iso", "127.5", "--device", spec)
             self.assertEqual(got["device"], device["name"])
 

@@ -47,6 +47,7 @@ CASES = {
     "is_not_noise": ("generate", "sphere", [*RAW, "-o", "new.nrrd"]),
     "has_no_time": ("selftest", None, []),
     "has_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "-o", "a.ply"]),
+    "is_whole_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE, "--method", "hybrid"]),
     "is_snap_of_cells": ("extract", "cells.vtu", ["--iso", "100", "--field", "f", *REFERENCE]),
     "has_world_range": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "--roi-world", ":,:,:"]),
     "is_everything": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
