@@ -8,7 +8,9 @@
  * With --engine auto, the reference engine takes over where the main engine fails, and goes on from there: its meshes
  * are the same.
  *
- * Surfaces that would not fit into memory are streamed instead (extract/streamed.h).
+ * Surfaces that would not fit into memory are streamed instead (extract/streamed.h), as are those that several
+ * processes make together (extract/team.h): these end each stage together, so that what is wrong on one is known to
+ * all.
  *
  * What the command line alone can tell is refused before any work. A surface that fails verification or check is not
  * written; the others are, and the exit status is 3. Files of a surface appear together, when all are complete.

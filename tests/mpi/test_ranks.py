@@ -22,7 +22,7 @@ from tool_case import GridCase
 
 GIVEN = dict(word.split("=", 1) for word in sys.argv[2:] if "=" in word)
 IS_LONG = "long" in sys.argv[2:]
-ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+ROOT = {f"{name}_ALLOW_RUN_AS_ROOT{end}": "1" for name in ("OMPI", "PRTE") for end in ("", "_CONFIRM")}
 TIMEOUT = 200
 
 
