@@ -315,7 +315,10 @@ static int run(stream_job *j, engine *e) {
 static int publish_together(stream_job *j, int status) {
     team *t = j->in->team;
     if (status && !t->has_failed) t->leave(t, status);
-    if (!t->has_failed) status = team_surfaces_close(t, j->shared, j->count, &j->files);
+    if (t->has_failed)
+        team_surfaces_discard(t, j->shared, j->count);
+    else
+        status = team_surfaces_close(t, j->shared, j->count, &j->files);
     if (!status) team_surfaces_report(t, j->surfaces->report, j->count);
     if (!status) status = t->agree(t, output_group_publish(&j->files));
     output_group_discard(&j->files);

@@ -48,6 +48,11 @@ int team_surfaces_close(team *t, team_surface *surfaces, size_t count, output_gr
     return t->agree(t, status);
 }
 
+void team_surfaces_discard(const team *t, team_surface *surfaces, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        if (surfaces[n].is_open && !t->rank) output_discard(&surfaces[n].whole);
+}
+
 void team_surfaces_report(team *t, surface_report *reports, size_t count) {
     for (size_t n = 0; n < count; n++) {
         surface_report *s = &reports[n];

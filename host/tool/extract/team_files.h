@@ -23,6 +23,9 @@ int team_surface_open(team *t, const char *path, team_surface *s);
 /* Closes the files that are open: complete, they wait in the group of the first member. */
 int team_surfaces_close(team *t, team_surface *surfaces, size_t count, output_group *group);
 
+/* After a failure that all know of, in its place: removes those files. */
+void team_surfaces_discard(const team *t, team_surface *surfaces, size_t count);
+
 /* Bounds, times and pieces in the reports become those of all members. */
 void team_surfaces_report(team *t, surface_report *reports, size_t count);
 
