@@ -4,7 +4,8 @@
  *
  *     RANK_STRIKE="RANK CALL N kill"        before its call N of CALL, from 1, the rank is killed
  *     RANK_STRIKE="RANK CALL N interrupt"   then mpirun, its parent, gets an interrupt, as from a terminal, and the
- * rank hangs for half a minute RANK_STRIKE="RANK CALL N full"        from then on there is no room (MPI_File_write_at)
+ * rank hangs for half a minute RANK_STRIKE="RANK CALL N full"        from then on there is no room (MPI_File_open,
+ * MPI_File_write_at)
  *
  * CALL: MPI_Iallreduce, MPI_Iexscan, MPI_File_open, MPI_File_write_at, MPI_File_close, rename
  */
@@ -55,8 +56,8 @@ EXPORT int MPI_Iexscan(const void *from, void *to, int count, MPI_Datatype type,
 }
 
 EXPORT int MPI_File_open(MPI_Comm all, const char *name, int mode, MPI_Info info, MPI_File *file) {
-    (void)strike("MPI_File_open");
-    return PMPI_File_open(all, name, mode, info, file);
+    const int has_room = !strike("MPI_File_open"), code = PMPI_File_open(all, name, mode, info, file);
+    return has_room ? code : MPI_ERR_NO_SPACE;
 }
 
 EXPORT int MPI_File_write_at(MPI_File file, MPI_Offset at, const void *from, int count, MPI_Datatype type,

@@ -198,6 +198,11 @@ class Endings(RankCase):
             done = self.fails(strike, "No space left on device; free space")
             self.assertIn(f"rank {strike[0]}: ", done.stderr)
 
+    def test_second_file_cannot_be_opened(self):
+        """The first goes as well."""
+        self.how[2:] = ["100,127.5", *self.how[3:-1], self.path("x-%.ply")]
+        self.fails("1 MPI_File_open 2 full", "rank 1: .*x-127.5.ply.*cannot be written by this rank: No space left")
+
     def test_told_once(self):
         """What all ranks fail with is told by one."""
         before = self.files()
