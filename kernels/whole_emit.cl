@@ -19,8 +19,10 @@ inline_always void item_prefetch(const complex_job *c, uint a, global const BITS
         line_prefetch(active + slot_item(c, table[entries[slot_of(c, a, lowest_bit(rest))]]));
     for (uint rest = active[a].owned; rest; rest &= rest - 1) {
         const uint2 edge = candidate_points(active + a, lowest_bit(rest), cases);
-        line_prefetch(samples + edge.x), line_prefetch(samples + edge.y);
-        line_prefetch(points + 3ul * edge.x), line_prefetch(points + 3ul * edge.y);
+        line_prefetch(samples + edge.x);
+        line_prefetch(samples + edge.y);
+        line_prefetch(points + 3ul * edge.x);
+        line_prefetch(points + 3ul * edge.y);
     }
 }
 

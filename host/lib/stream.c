@@ -258,7 +258,7 @@ static bool unit_emits(const stream *s, const unit *u) {
     return false;
 }
 
-static tc_status piece_take(stream *s, size_t unit_index, size_t surface, tc_mesh **mesh, tc_mesh_piece *piece) {
+static tc_status piece_take(stream *s, size_t unit_index, size_t surface, tc_mesh **mesh, const tc_mesh_piece *next) {
     const unit *u = &s->units[unit_index];
     const bool is_last = u->end == s->whole.dims[2]; /* else there is a unit behind, counted for its seam */
     const uint32_t *seam = is_last ? NULL : s->units[unit_index + 1].surfaces[surface].seam;
@@ -271,12 +271,15 @@ static tc_status piece_take(stream *s, size_t unit_index, size_t surface, tc_mes
         status =
             (tc_status)fail(TC_ERROR_DATA, "samples, or what is blanked, have changed between the passes of a stream");
     if (status) return status;
-    piece->surface = surface;
-    piece->mesh = &data;
-    piece->grid = s->grid;
-    piece->first_plane = s->grid_first;
-    piece->plane_count = s->grid_end - s->grid_first;
-    CALL_BACK(s->o.take(s->o.user, piece));
+    const tc_mesh_piece piece = {.struct_size = sizeof piece,
+                                 .surface = surface,
+                                 .first_vertex = next->first_vertex,
+                                 .first_triangle = next->first_triangle,
+                                 .mesh = &data,
+                                 .grid = s->grid,
+                                 .first_plane = s->grid_first,
+                                 .plane_count = s->grid_end - s->grid_first};
+    CALL_BACK(s->o.take(s->o.user, &piece));
     return TC_OK;
 }
 
@@ -296,7 +299,6 @@ static tc_status units_emit(stream *s) {
     tc_mesh *mesh = NULL;
     tc_mesh_piece *next = calloc(s->o.surface_count, sizeof *next); /* of each surface */
     tc_status status = next ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the pieces of a stream");
-    for (size_t n = 0; n < s->o.surface_count && !status; n++) next[n].struct_size = sizeof *next;
     for (size_t u = 0; u < s->own_units && !status; u++) {
         progress_share(s, 0.5 + 0.5 * (double)u / (double)s->own_units, 0.5 / (double)s->own_units);
         status = unit_emit(s, u, &mesh, next);

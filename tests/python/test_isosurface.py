@@ -206,6 +206,15 @@ def test_parts(method, seed):
         assert (joined.origin == whole.origin).all()
 
 
+def test_mesh_with_a_face_too_many(ball, tmp_path):
+    mesh = tetracubes.isosurface(ball, 0, engine="reference")
+    mesh.triangles = mesh.triangles + np.uint32(1)
+    for use in mesh.picture, lambda: mesh.save(tmp_path / "a.ply"), lambda: mesh.hash:
+        with pytest.raises(ValueError, match="a face has vertex"):
+            use()
+    assert not any(tmp_path.iterdir())
+
+
 def test_parts_are_read_by_parts(ball):
     """No more planes are read at once than asked for and the halo."""
     class Slices:

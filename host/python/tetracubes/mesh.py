@@ -103,6 +103,8 @@ class Mesh:
         """The mesh as the C interface has it, and the arrays that it points into."""
         arrays = [np.ascontiguousarray(self.positions, np.float32), np.ascontiguousarray(self.triangles, np.uint32),
                   None if self._normals is None else np.ascontiguousarray(self._normals, np.float32)]
+        if arrays[1].size and arrays[1].max() >= len(arrays[0]):
+            raise ValueError(f"a face has vertex {arrays[1].max()}, and the mesh {len(arrays[0])} vertices")
         places = [None if array is None else array.ctypes.data for array in arrays]
         data = tc_mesh_data(vertex_count=len(arrays[0]), triangle_count=len(arrays[1]), positions=places[0],
                             triangles=places[1], normals=places[2], origin=tuple(self.origin))

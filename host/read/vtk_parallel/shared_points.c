@@ -11,6 +11,7 @@
 #include "sample_types.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,8 +60,8 @@ int pieces_have_numbers(const piece_list *list, int on_cells) {
 
 /* In the order of the numbers, which may be below 0. Double has integers of 64 bits, too (load_field). */
 uint64_t number_key(const dataset_field *f, int64_t n) {
-    const double value = value_at(f->type, f->values, (uint64_t)n);
-    const int64_t number = value >= -0x1p62 && value <= 0x1p62 ? (int64_t)value : 0;
+    const double value = value_at(f->type, f->values, (uint64_t)n), most = (double)(INT64_C(1) << 62);
+    const int64_t number = fabs(value) <= most ? (int64_t)value : 0;
     return (uint64_t)number ^ UINT64_C(1) << 63;
 }
 

@@ -37,6 +37,8 @@ static int file_has_no_normals(const situation *s) {
 
 static int has_no_device(const situation *s) { return s->o->engine == TC_ENGINE_REFERENCE; }
 
+static int has_no_device_nor_stream(const situation *s) { return has_no_device(s) && !s->o->stream; }
+
 static int is_not_raw(const situation *s) { return !options_given(s->o, "--dims"); }
 
 static int has_bytes(const situation *s) {
@@ -143,8 +145,8 @@ static const effect table[] = {
      "--engine"},
     {COMMAND_EXTRACT, "--device", BEFORE_READING, has_no_device, TOLD,
      "--device has no effect with --engine reference"},
-    {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device, TOLD,
-     "--max-memory has no effect with --engine reference: it bounds memory of a device"},
+    {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device_nor_stream, TOLD,
+     "--max-memory has no effect with --engine reference: it bounds memory of a device, and of --stream"},
 
     {COMMAND_EXTRACT, "--snap", BEFORE_READING, is_not_snap, REFUSED,
      "--snap is the threshold of --method snap: give that too, or leave it out"},

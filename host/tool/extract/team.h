@@ -34,7 +34,7 @@ struct team {
     uint64_t (*sent_bytes)(const team *t);
 
     /* A failure that the others cannot wait for: tells it, removes what is unfinished, ends all members. */
-    void (*leave)(team *t, int status) __attribute__((noreturn));
+    void (*leave)(team *t, int status); /* does not return */
 };
 
 #endif
