@@ -41,6 +41,7 @@ CASES = {
     "file_has_no_normals": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE, "-o", "a.stl"]),
     "has_no_main_engine": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_device": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "has_no_device_nor_stream": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "is_not_snap": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "is_not_raw": ("info", "u8.nrrd", []),
     "has_bytes": ("info", "u8.raw", RAW),

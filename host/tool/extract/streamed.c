@@ -76,8 +76,8 @@ static uint64_t memory_of_stream(const stream_input *in) {
 
 /* Of an address in a mapped file, or in an array that lies in one: the bytes from there to its end; else 0. */
 static uint64_t bytes_in_file(const dataset *d, const char *from) {
-    const char *begin = d->mapping, *end = begin + d->mapping_bytes;
-    return begin && from >= begin && from < end ? (uint64_t)(end - from) : samples_in_file(from);
+    const uintptr_t begin = (uintptr_t)d->mapping, at = (uintptr_t)from;
+    return at >= begin && at - begin < d->mapping_bytes ? d->mapping_bytes - (at - begin) : samples_in_file(from);
 }
 
 /* Says which pages of the file come next, and which have been used. */
