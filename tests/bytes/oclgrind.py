@@ -33,7 +33,7 @@ EXCLUDED = [
     # Look-back and tickets need no exclusion: Oclgrind takes two atomics on one word for no race. The table of edges is
     # read without one, volatile, before atomic_cmpxchg or atomic_min: one aligned word that only goes from empty to an
     # edge's place and to earlier places of the same edge, so that any value leads to the same entry, and is checked.
-    re.compile(r"^Read-write data race .*\n\tKernel: complex_join\n(?=(?:.*\n)*?.*load volatile i32)"
+    re.compile(r"^Read-write data race .*\n\tKernel: (?:complex_join|whole_cut)\n(?=(?:.*\n)*?.*load volatile i32)"
                r"(?=(?:.*\n)*?.*@_Z\d+atomic_(?:cmpxchg|min))"),
     # A pass of snap reads whole words of the bricks around while their groups store to them. What these add are samples
     # of the pass's own colour, and a reader takes only bits of other colours (kernels/snap.cl).

@@ -97,6 +97,7 @@ static int fail_damaged(const reader *r, const char *what) {
 static int open_tiff(reader *r, const char *path, const mapping *file) {
     *r = (reader){.path = path, .file = file};
     TIFFOpenOptions *options = file->size ? TIFFOpenOptionsAlloc() : NULL;
+    if (file->size && !options) return fail(STATUS_FAILED, "%s: no memory to read it", path);
     if (options) {
         TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MOST);
         TIFFOpenOptionsSetErrorHandlerExtR(options, keep_error, r);
