@@ -87,12 +87,10 @@ tc_status complex_point_fail(const complex_grid *c);
 /* The device path (complex_device.c); the sample type has values on both sides of the isovalue. */
 tc_status complex_device_create(tc_grid *grid);
 void complex_device_destroy(tc_grid *grid);
-tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
-tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+tc_status complex_device_count(tc_grid *grid, tc_method method, double isovalue, double share, tc_counts *counts);
+tc_status complex_device_extract(tc_grid *grid, tc_method method, double isovalue, tc_mesh *mesh);
 
-/* The same by method hybrid (whole_device.c). */
-tc_status whole_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts);
-tc_status whole_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh);
+/* As complex_device_carry, by method hybrid. */
 tc_status whole_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
 
 /* True where this surface was the last to be counted or extracted, which complex_device_carry needs. That carries a

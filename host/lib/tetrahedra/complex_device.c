@@ -1,6 +1,6 @@
 /*
- * Complexes on a device: whole where the device has room (count, allocate the mesh, emit); else slab by slab
- * (complex_slabs.c), from then on always.
+ * Complexes on a device: in one go where the device has room (count, allocate the mesh, emit); else slab by slab, from
+ * then on always. What methods do otherwise is in their complex_method.
  */
 #include "tetrahedra/whole_run.h"
 
@@ -41,7 +41,7 @@ void complex_device_destroy(tc_grid *grid) {
 }
 
 /* Cuts a complex into slabs that the device has held whole so far, as its surface does not fit. */
-static tc_status cut_later(complex_run *r) {
+static tc_status tetrahedra_cut(complex_run *r) {
     cl->Finish(r->context->queue);
     tc_status status = complex_cut(r->grid);
     if (status) return status;
@@ -52,7 +52,7 @@ static tc_status cut_later(complex_run *r) {
 }
 
 /* All stages before emission; head has the counts then. */
-static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
+static tc_status tetrahedra_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
     tc_status status = complex_run_begin(r, grid, isovalue);
     if (!status) status = surface_classify(r);
     if (!status) status = context_progress(r->context, "classify", 0.6 * share);
@@ -60,25 +60,40 @@ static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, dou
     return status ? status : context_progress(r->context, "classify", share);
 }
 
-static void whole_note(const complex_run *r, double isovalue) {
-    complex_classified_note(r->grid, isovalue, TC_METHOD_TETRA,
+static bool is_cut(const tc_grid *grid) { return grid->complex->slabs != NULL; }
+
+static const complex_method method_tetrahedra = {.method = TC_METHOD_TETRA,
+                                                 .is_cut = is_cut,
+                                                 .count = tetrahedra_count,
+                                                 .emit = surface_emit,
+                                                 .cut = tetrahedra_cut,
+                                                 .slabs_count = complex_slabs_count,
+                                                 .slabs_extract = complex_slabs_extract};
+
+static const complex_method *method_of(tc_method method) {
+    return method == TC_METHOD_HYBRID ? &method_cells : &method_tetrahedra;
+}
+
+static void surface_note(const complex_run *r, double isovalue, tc_method method) {
+    complex_classified_note(r->grid, isovalue, method,
                             (surface_size){r->head[HEAD_VERTICES], r->job.active_count, r->job.tile_actives});
 }
 
-tc_status complex_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts) {
+tc_status complex_device_count(tc_grid *grid, tc_method method, double isovalue, double share, tc_counts *counts) {
+    const complex_method *m = method_of(method);
     complex_run r;
-    if (grid->complex->slabs) return complex_slabs_count(grid, isovalue, 0, share, counts);
-    tc_status status = whole_count(&r, grid, isovalue, share);
+    if (m->is_cut(grid)) return m->slabs_count(grid, isovalue, 0, share, counts);
+    tc_status status = m->count(&r, grid, isovalue, share);
     if (r.too_large) {
-        status = cut_later(&r);
-        return status ? status : complex_slabs_count(grid, isovalue, 0.6 * share, share, counts);
+        status = m->cut(&r);
+        return status ? status : m->slabs_count(grid, isovalue, 0.6 * share, share, counts);
     }
     counts->vertex_count = r.head[HEAD_VERTICES];
     counts->triangle_count = r.head[HEAD_TRIANGLES];
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
     cl->Finish(r.context->queue);
-    if (!status) whole_note(&r, isovalue);
+    if (!status) surface_note(&r, isovalue, method);
     return status;
 }
 
@@ -108,15 +123,14 @@ static tc_status mesh_close(complex_run *r, device_buffer *buffer, const host_bl
     return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
 }
 
-tc_status surface_mesh_emit(complex_run *r, tc_mesh *mesh,
-                            tc_status emit(complex_run *, const device_buffer *, const device_buffer *)) {
+static tc_status mesh_emit(complex_run *r, const complex_method *method, tc_mesh *mesh) {
     mesh_buffers *m = &r->context->work.mesh[0];
     const uint64_t vertex_bytes = mesh->vertex_count * CHANNEL_BYTES;
     const uint64_t triangle_bytes = mesh->triangle_count * TRIANGLE_BYTES;
     tc_status status =
         mesh_open(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
-    if (!status) status = emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
+    if (!status) status = method->emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
     if (!status)
         status = mesh_close(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes);
@@ -125,16 +139,17 @@ tc_status surface_mesh_emit(complex_run *r, tc_mesh *mesh,
     return status;
 }
 
-tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) {
+tc_status complex_device_extract(tc_grid *grid, tc_method method, double isovalue, tc_mesh *mesh) {
+    const complex_method *m = method_of(method);
     complex_run r;
-    if (grid->complex->slabs) return complex_slabs_extract(grid, isovalue, 0, mesh);
-    tc_status status = whole_count(&r, grid, isovalue, 0.8);
+    if (m->is_cut(grid)) return m->slabs_extract(grid, isovalue, 0, mesh);
+    tc_status status = m->count(&r, grid, isovalue, 0.8);
     double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
-    if (!status && r.head[HEAD_TRIANGLES]) status = surface_mesh_emit(&r, mesh, surface_emit);
+    if (!status && r.head[HEAD_TRIANGLES]) status = mesh_emit(&r, m, mesh);
     if (r.too_large) {
-        status = cut_later(&r);
-        return status ? status : complex_slabs_extract(grid, isovalue, 0.8, mesh);
+        status = m->cut(&r);
+        return status ? status : m->slabs_extract(grid, isovalue, 0.8, mesh);
     }
     if (!status) status = context_progress(r.context, "emit", 1);
     mesh->active_cell_count = r.job.active_count;
@@ -142,6 +157,6 @@ tc_status complex_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) 
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
     cl->Finish(r.context->queue);
-    if (!status) whole_note(&r, isovalue);
+    if (!status) surface_note(&r, isovalue, method);
     return status;
 }

@@ -34,8 +34,6 @@ bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options)
     return options->method == TC_METHOD_TETRA || (options->method == TC_METHOD_HYBRID && grid->complex->has_cells);
 }
 
-static bool is_whole(const tc_extract_options *options) { return options->method == TC_METHOD_HYBRID; }
-
 static bool surface_possible(const tc_grid *grid, const tc_extract_options *options) {
     return grid->complex->tetrahedron_count &&
            inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed);
@@ -53,16 +51,14 @@ tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_count(grid, options, counts);
-    return device_end(grid->context, is_whole(options) ? whole_device_count(grid, options->isovalue, share, counts)
-                                                       : complex_device_count(grid, options->isovalue, share, counts));
+    return device_end(grid->context, complex_device_count(grid, options->method, options->isovalue, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_extract(grid, options, mesh);
-    return device_end(grid->context, is_whole(options) ? whole_device_extract(grid, options->isovalue, mesh)
-                                                       : complex_device_extract(grid, options->isovalue, mesh));
+    return device_end(grid->context, complex_device_extract(grid, options->method, options->isovalue, mesh));
 }
 
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
@@ -70,6 +66,6 @@ tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const 
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_carry(grid, options, c, vertex_count);
-    return is_whole(options) ? whole_device_carry(grid, options->isovalue, c, vertex_count)
-                             : complex_device_carry(grid, options->isovalue, c, vertex_count);
+    return options->method == TC_METHOD_HYBRID ? whole_device_carry(grid, options->isovalue, c, vertex_count)
+                                               : complex_device_carry(grid, options->isovalue, c, vertex_count);
 }

@@ -90,6 +90,27 @@ typedef struct complex_run {
     double start_ms; /* kernels are built by then */
 } complex_run;
 
+/* What a method does with a complex on the device: `tetrahedra` with those that cells are cut into, `cells` with cells
+ * that are kept whole (whole_run.h). */
+typedef struct complex_method {
+    tc_method method;
+    bool (*is_cut)(const tc_grid *grid); /* it goes slab by slab, and does so from then on */
+
+    /* All stages before emission, in one go; then r->head and r->job have the counts. */
+    tc_status (*count)(complex_run *r, tc_grid *grid, double isovalue, double share);
+    tc_status (*emit)(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
+
+    /* Cuts the complex into slabs, after a run that was too large. */
+    tc_status (*cut)(complex_run *r);
+    tc_status (*slabs_count)(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
+    tc_status (*slabs_extract)(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
+} complex_method;
+
+extern const complex_method method_cells; /* whole_device.c */
+
+/* The job of kernel 1 over the run's part, as far as both methods have the same. */
+complex_job complex_job_of(const complex_run *r, uint32_t cluster_count);
+
 /* Kernels, and the workspace for this grid. */
 tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue);
 
@@ -113,10 +134,6 @@ tc_status surface_fill(const complex_run *r, const device_buffer *buffer, cl_uin
 tc_status surface_head_read(complex_run *r);
 tc_status surface_table_reserve(complex_run *r, uint64_t entries);
 tc_status surface_clusters_reserve(complex_run *r);
-
-/* Emits the surface of a complex that is on the device whole into a mesh of the host. */
-tc_status surface_mesh_emit(complex_run *r, tc_mesh *mesh,
-                            tc_status emit(complex_run *, const device_buffer *, const device_buffer *));
 
 /* Reserves a buffer whose size depends on the surface. Where it does not fit and the complex is not cut into slabs yet:
  * TC_ERROR_MEMORY, and too_large is set. */

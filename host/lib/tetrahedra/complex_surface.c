@@ -78,20 +78,21 @@ tc_status surface_head_read(complex_run *r) {
 
 /* --------------------------------------------------------------------------------------------------- classification */
 
-static void part_describe(complex_run *r) {
+complex_job complex_job_of(const complex_run *r, uint32_t cluster_count) {
     const complex_part *part = r->part;
-    r->job = (complex_job){.test = r->test,
-                           .ranges_known = part->ranges_known,
-                           .spin_limit = r->grid->scan.spin_limit,
-                           .sample_offset = part->sample_offset,
-                           .point_offset = part->point_offset,
-                           .tetrahedron_offset = part->tetrahedron_offset,
-                           .point_count = part->point_count,
-                           .item_count = part->tetrahedron_count,
-                           .cluster_count = complex_cluster_count(part->tetrahedron_count),
-                           .tile_clusters = complex_tile_clusters(r->grid),
-                           .tile_actives = complex_tile_actives(r->grid)};
-    r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
+    const uint32_t tile_clusters = complex_tile_clusters(r->grid);
+    return (complex_job){.test = r->test,
+                         .ranges_known = part->ranges_known,
+                         .spin_limit = r->grid->scan.spin_limit,
+                         .sample_offset = part->sample_offset,
+                         .point_offset = part->point_offset,
+                         .tetrahedron_offset = part->tetrahedron_offset,
+                         .point_count = part->point_count,
+                         .item_count = part->tetrahedron_count,
+                         .cluster_count = cluster_count,
+                         .tile_clusters = tile_clusters,
+                         .tile_actives = complex_tile_actives(r->grid),
+                         .cluster_tiles = (cluster_count + tile_clusters - 1) / tile_clusters};
 }
 
 tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue, tc_method method) {
@@ -138,7 +139,7 @@ tc_status surface_clusters_reserve(complex_run *r) {
 
 tc_status surface_classify(complex_run *r) {
     const complex_buffers *w = r->work;
-    part_describe(r);
+    r->job = complex_job_of(r, complex_cluster_count(r->part->tetrahedron_count));
     tc_status status = surface_clusters_reserve(r);
     if (status) return status;
     const kernel_argument arguments[] = {ARGUMENT(r->job),

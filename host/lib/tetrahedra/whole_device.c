@@ -96,7 +96,7 @@ static tc_status all_provide(tc_grid *grid) {
 /* ---------------------------------------------------------------------------------------------------------- counts */
 
 /* Cuts the cells into slabs, after the device has held them whole or has been found too small for that. */
-static tc_status cut_later(complex_run *r) {
+static tc_status cells_cut(complex_run *r) {
     cl->Finish(r->context->queue);
     tc_status status = whole_cut_into_slabs(r->grid);
     if (status) return status;
@@ -115,7 +115,7 @@ static tc_status stages_run(complex_run *r, tc_grid *grid, double share, bool *d
     return status;
 }
 
-static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
+static tc_status cells_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
     bool differ = false;
     tc_status status = whole_run_begin(r, grid, isovalue);
     if (!status && !grid->complex->whole->is_cut && !whole_fits(grid)) {
@@ -131,47 +131,12 @@ static tc_status whole_count(complex_run *r, tc_grid *grid, double isovalue, dou
     return status ? status : context_progress(r->context, "classify", share);
 }
 
-static void whole_note(const complex_run *r, double isovalue) {
-    complex_classified_note(r->grid, isovalue, TC_METHOD_HYBRID,
-                            (surface_size){r->head[HEAD_VERTICES], r->job.active_count, r->job.tile_actives});
-}
-
 static bool is_cut(const tc_grid *grid) { return grid->complex->whole && grid->complex->whole->is_cut; }
 
-tc_status whole_device_count(tc_grid *grid, double isovalue, double share, tc_counts *counts) {
-    complex_run r;
-    if (is_cut(grid)) return whole_slabs_count(grid, isovalue, 0, share, counts);
-    tc_status status = whole_count(&r, grid, isovalue, share);
-    if (r.too_large) {
-        status = cut_later(&r);
-        return status ? status : whole_slabs_count(grid, isovalue, 0.6 * share, share, counts);
-    }
-    counts->vertex_count = r.head[HEAD_VERTICES];
-    counts->triangle_count = r.head[HEAD_TRIANGLES];
-    counts->active_cell_count = r.job.active_count;
-    counts->classify_ms = clock_ms() - r.start_ms;
-    cl->Finish(r.context->queue);
-    if (!status) whole_note(&r, isovalue);
-    return status;
-}
-
-tc_status whole_device_extract(tc_grid *grid, double isovalue, tc_mesh *mesh) {
-    complex_run r;
-    if (is_cut(grid)) return whole_slabs_extract(grid, isovalue, 0, mesh);
-    tc_status status = whole_count(&r, grid, isovalue, 0.8);
-    double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
-    if (!status && r.head[HEAD_TRIANGLES]) status = surface_mesh_emit(&r, mesh, whole_emit);
-    if (r.too_large) {
-        status = cut_later(&r);
-        return status ? status : whole_slabs_extract(grid, isovalue, 0.8, mesh);
-    }
-    if (!status) status = context_progress(r.context, "emit", 1);
-    mesh->active_cell_count = r.job.active_count;
-    mesh->timings.classify_ms = classified - r.start_ms;
-    mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
-    mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    cl->Finish(r.context->queue);
-    if (!status) whole_note(&r, isovalue);
-    return status;
-}
+const complex_method method_cells = {.method = TC_METHOD_HYBRID,
+                                     .is_cut = is_cut,
+                                     .count = cells_count,
+                                     .emit = whole_emit,
+                                     .cut = cells_cut,
+                                     .slabs_count = whole_slabs_count,
+                                     .slabs_extract = whole_slabs_extract};

@@ -34,25 +34,13 @@ tc_status whole_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
 
 static void part_describe(complex_run *r) {
     const struct whole_cells *w = r->complex->whole;
-    const complex_part *part = r->part;
-    r->job = (complex_job){.test = r->test,
-                           .ranges_known = part->ranges_known,
-                           .spin_limit = r->grid->scan.spin_limit,
-                           .sample_offset = part->sample_offset,
-                           .point_offset = part->point_offset,
-                           .tetrahedron_offset = part->tetrahedron_offset,
-                           .code_offset = w->code_offset,
-                           .begin_offset = w->begin_offset,
-                           .point_count = part->point_count,
-                           .item_count = part->tetrahedron_count,
-                           .cluster_count = whole_cluster_count(part->tetrahedron_count),
-                           .tile_clusters = complex_tile_clusters(r->grid),
-                           .tile_actives = complex_tile_actives(r->grid),
-                           .word_step = w->word_step,
-                           .cell_points = w->cell_points,
-                           .one_code = w->one_code,
-                           .slot_shift = w->has_prisms ? 5 : 4};
-    r->job.cluster_tiles = (r->job.cluster_count + r->job.tile_clusters - 1) / r->job.tile_clusters;
+    r->job = complex_job_of(r, whole_cluster_count(r->part->tetrahedron_count));
+    r->job.code_offset = w->code_offset;
+    r->job.begin_offset = w->begin_offset;
+    r->job.word_step = w->word_step;
+    r->job.cell_points = w->cell_points;
+    r->job.one_code = w->one_code;
+    r->job.slot_shift = w->has_prisms ? 5 : 4;
 }
 
 /* Buffers of what every cell shares stand in for those of what each has. */
