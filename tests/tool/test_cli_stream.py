@@ -4,7 +4,9 @@
 Asked for, and where memory is short; of data in all forms in which they can come; what ends a stream leaves nothing.
 """
 import gzip
+import json
 import os
+import pty
 import resource
 import signal
 import struct
@@ -110,7 +112,7 @@ class Stream(GridCase):
         self.expect_same([volume], "300", endings=("stl",))
 
     def test_little_memory(self):
-        """Where the mesh would not fit the surface is streamed unasked; samples that do not fit lie in a file."""
+        """Where the mesh would not fit the surface is streamed unasked."""
         dims = "128,128,128"
         self.expect(0, "generate", "noise", "--dims", dims, "--type", "u8", "-o", self.path("n.raw"), "--quiet")
         words = ["extract", self.path("n.raw"), "--dims", dims, "--type", "u8", "--iso", "127.5", "--engine", "reference",
@@ -121,15 +123,56 @@ class Stream(GridCase):
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stdout, r'"pieces": \d\d')
         self.assertEqual(self.read("whole.ply"), self.read("pieces.ply"))
-        with open(self.path("be.raw"), "wb") as out:  # to be swapped: 100 MB and no memory for them
-            out.truncate(100 << 20)
-        words = [tool_case.TOOL, "extract", self.path("be.raw"), "--dims", "512,512,200", "--type", "i16", "--endian",
-                 "big", "--iso", "1", "--engine", "reference", "--count"]
+
+    def count_of(self, name, *more, folder, bytes_most=resource.RLIM_INFINITY):
+        """Counts in 512 x 512 x 200 samples of 16 bits, 100 MB, with no more memory than that."""
+        words = [tool_case.TOOL, "extract", self.path(name), "--dims", "512,512,200", "--type", "i16", *more, "--iso", "1",
+                 "--engine", "reference", "--count", "--json"]
         done = subprocess.run(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, timeout=400,
-                              env=dict(os.environ, TMPDIR=self.path("none")),
-                              preexec_fn=limited(resource.RLIMIT_DATA, 60 << 20))
-        self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stderr, "TMPDIR")
+                              env=dict(os.environ, TMPDIR=folder),
+                              preexec_fn=limited(resource.RLIMIT_DATA, bytes_most))
+        return done.returncode, json.loads(done.stdout)["surfaces"][0]["vertices"] if done.stdout else done.stderr
+
+    def test_samples_in_a_file(self):
+        """What is to be swapped or unpacked, and does not fit into memory, lies in a file without a name."""
+        folder = self.path("temporary")
+        os.mkdir(folder)
+        with open(self.path("be.raw"), "wb") as out:
+            out.write(struct.pack(">i", 7) * 1000)
+            out.seek(50 << 20)
+            out.write(struct.pack(">h", 300) * 70000)
+            out.truncate(100 << 20)
+        inputs = [("be.raw", "--endian", "big")]
+        if "gzip" in self.expect(0, "--version").stdout:
+            self.write("be.raw.gz", gzip.compress(self.read("be.raw"), 1))
+            inputs.append(("be.raw.gz", "--endian", "big"))
+        for name, *more in inputs:
+            status, vertices = self.count_of(name, *more, folder=folder)
+            self.assertEqual(status, 0, vertices)
+            self.assertGreater(vertices, 100000)
+            limits = {"folder": folder, "bytes_most": 100 << 20}
+            self.assertEqual(self.count_of(name, *more, **limits), (0, vertices))
+            self.assertEqual(os.listdir(folder), [])
+            status, text = self.count_of(name, *more, folder=self.path("none"), bytes_most=100 << 20)
+            self.assertEqual(status, 1)
+            self.assertRegex(text, "TMPDIR")
+
+    def test_progress(self):
+        """On a terminal: how far, how fast, how long still."""
+        volume = self.generate("noise", "n.nrrd", "160,160,160")
+        leader, follower = pty.openpty()
+        running = subprocess.Popen([tool_case.TOOL, "extract", volume, "--iso", "127.5", "--engine", "reference", "--stream",
+                                    "-o", self.path("n.ply")], stdout=subprocess.DEVNULL, stderr=follower)
+        os.close(follower)
+        text = b""
+        try:
+            while some := os.read(leader, 4096):
+                text += some
+        except OSError:  # the other end is closed
+            pass
+        os.close(leader)
+        self.assertEqual(running.wait(timeout=400), 0)
+        self.assertRegex(text.decode(), r"(classify|emit) +\d+%, [\d.e-]+ GB/s, \d+:\d\d left")
 
     def test_nothing_is_left(self):
         volume = self.generate("noise", "n.nrrd", "100,100,120")
