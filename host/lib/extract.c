@@ -34,17 +34,13 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
     return status;
 }
 
-/* Whether a sample is snapped depends on samples up to five steps away, and the numbers behind a piece on two planes.
- */
-enum { SNAP_HALO = 8 };
-
 static tc_status piece_check(const tc_grid *grid, const tc_extract_options *options) {
     const int64_t before = grid->own[0], behind = grid->dims[2] - grid->own[1];
     if (grid->complex || !method_has_zeros(options->method)) return TC_OK;
-    if ((!grid->cut[0] || before >= SNAP_HALO) && (!grid->cut[1] || behind >= SNAP_HALO)) return TC_OK;
+    if ((!grid->cut[0] || before >= PIECE_SNAP) && (!grid->cut[1] || behind >= PIECE_SNAP)) return TC_OK;
     return (tc_status)fail(TC_ERROR_ARGUMENT,
                            "method snap needs a halo of %d planes on either side of a piece: there are %lld and %lld",
-                           SNAP_HALO, (long long)before, (long long)behind);
+                           PIECE_SNAP, (long long)before, (long long)behind);
 }
 
 /* At the start of a call: vets kernels that are not known to be good; may switch to the other variant of the kernels.

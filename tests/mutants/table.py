@@ -170,7 +170,7 @@ FILES = {
     "host/lib/grid/complex.c": ["test_far, reference"],
     "host/lib/reference/carry_vertex.c": ["test_cli_blocks, carry", "test_cli_cells, carry"],
     "host/lib/grid/mesh.c": ["test_api, reference"],
-    "host/lib/stream.c": ["test_grid_pieces, reference"],
+    "host/lib/stream": ["test_grid_pieces, reference"],
     "host/lib/structured/slab_plan.c": ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_slab.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],

@@ -15,10 +15,6 @@
  * count from a number near its first; so only the number of samples along an axis is limited by this. */
 static const int64_t index_limit = 1 << 24;
 
-/* Planes of a piece beside those that it owns: for gradients and missing cells one before, in bricks of their own; for
- * the vertices that its last triangles use two behind. */
-enum { PIECE_BEFORE = BRICK_PLANES, PIECE_BEHIND = 2 };
-
 size_t tc_type_bytes(tc_type type) { return sample_bytes(type); }
 
 const char *tc_type_name(tc_type type) {
