@@ -354,7 +354,6 @@ int main(int argc, char **argv) {
     if (test_chosen("orders")) orders_run(device);
     tc_context_destroy(device);
     if (test_chosen("groups")) {
-        groups_begin();
         device = device_open(0, true);
         for (uint64_t n = seed; n < seed + count / 2; n++) run(n, TC_F32, device, "groups");
         tc_context_destroy(device);
