@@ -10,10 +10,6 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
-    if (options->closed && options->method != TC_METHOD_TETRA)
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "method %s does not close surfaces of grids of tetrahedra: use method tetra",
-                               tc_method_name(options->method));
     if (options->closed && grid->context->options.engine != TC_ENGINE_REFERENCE)
         return (tc_status)fail(TC_ERROR_DEVICE,
                                "kernels close surfaces of structured grids only: use the reference engine for grids of "
