@@ -104,8 +104,7 @@ const option option_table[] = {
     {"--closed", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(closed), NULL,
      "close the surface where it ends, at the grid's border and beside missing\n"
      "cells, by the inside part of the faces there: the mesh then bounds the\n"
-     "volume of samples >= V; each block by itself. Of unstructured grids by\n"
-     "--engine reference, or auto"},
+     "volume of samples >= V; each block by itself"},
     {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
