@@ -32,12 +32,13 @@ typedef struct counted_face {
 typedef struct search {
     const tc_grid *grid;
     const complex_grid *c;
-    bool keeps_cells;
-    _Atomic uint64_t *hashes; /* by point; then of the border's points not 0 */
+    bool keeps_cells, has_gaps; /* has_gaps: a sample is missing */
+    _Atomic uint64_t *hashes;   /* by point */
+    uint64_t *marks;            /* a bit by point: it is on the border */
     uint64_t share_count;
     share_list *shares;
     _Atomic uint64_t next;
-    atomic_bool invalid, no_memory;
+    atomic_bool failed;  /* there is no memory, or a point that the grid does not have */
     counted_face *table; /* open addressing, half full at most */
     uint64_t table_size;
     border_list *out;
@@ -67,29 +68,32 @@ static uint64_t run_begin(const search *s, uint64_t n) {
     return n < count ? n : count;
 }
 
+/* Of points that the grid does not have, which are found later, no sample is looked at. */
 static bool run_is_present(const search *s, uint64_t first, uint64_t end) {
     const uint32_t *points = s->c->tetrahedra;
     bool missing = false;
-    for (uint64_t n = 4 * first; n < 4 * end && type_is_real(s->grid->type); n++)
-        missing = missing || is_missing(s->grid, points[n]);
+    for (uint64_t n = 4 * first; n < 4 * end; n++)
+        missing = missing || (points[n] < s->c->point_count && is_missing(s->grid, points[n]));
     return !missing;
 }
 
-static bool points_are_valid(const search *s, uint64_t first, uint64_t end) {
-    uint32_t most = 0;
-    for (uint64_t n = 4 * first; n < 4 * end; n++) most = s->c->tetrahedra[n] > most ? s->c->tetrahedra[n] : most;
-    return most < s->c->point_count;
+static bool gaps_exist(const tc_grid *grid) {
+    uint32_t gaps = 0;
+    for (uint32_t n = 0; n < grid->complex->point_count && type_is_real(grid->type); n++) gaps |= is_missing(grid, n);
+    return gaps;
 }
 
 typedef bool run_visit(search *s, uint64_t share, uint64_t first, uint64_t end);
 
-/* Visits the runs that begin in a share and are present. */
+/* Visits the runs that begin in a share and are present; all at once where no sample is missing. */
 static void share_walk(search *s, uint64_t share, run_visit *visit) {
-    const uint64_t end = run_begin(s, (share + 1) * SHARE);
-    for (uint64_t n = run_begin(s, share * SHARE), behind; n < end && !s->no_memory; n = behind) {
+    const uint64_t first = run_begin(s, share * SHARE), end = run_begin(s, (share + 1) * SHARE);
+    bool done = s->has_gaps || visit(s, share, first, end);
+    for (uint64_t n = first, behind; n < end && s->has_gaps && done; n = behind) {
         behind = run_end(s, n);
-        if (run_is_present(s, n, behind) && !visit(s, share, n, behind)) s->no_memory = true;
+        done = !run_is_present(s, n, behind) || visit(s, share, n, behind);
     }
+    if (!done) s->failed = true;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- hashes */
@@ -111,37 +115,46 @@ static void hash_add(search *s, uint32_t point, uint64_t hash) {
 }
 
 static bool run_hash(search *s, uint64_t share, uint64_t first, uint64_t end) {
+    uint64_t gathered = 0; /* of the smallest point, which the tetrahedra of a cell share */
+    uint32_t smallest = 0;
     (void)share;
     for (uint64_t n = first; n < end; n++) {
         uint32_t p[4];
         memcpy(p, s->c->tetrahedra + 4 * n, sizeof p);
         pair_sort(&p[0], &p[1]), pair_sort(&p[2], &p[3]), pair_sort(&p[0], &p[2]);
         pair_sort(&p[1], &p[3]), pair_sort(&p[1], &p[2]);
+        if (p[3] >= s->c->point_count) return false;
         const uint64_t h0 = face_hash(p[1], p[2], p[3]), h1 = face_hash(p[0], p[2], p[3]),
                        h2 = face_hash(p[0], p[1], p[3]), h3 = face_hash(p[0], p[1], p[2]), all = h0 ^ h1 ^ h2 ^ h3;
-        hash_add(s, p[0], all ^ h0), hash_add(s, p[1], all ^ h1), hash_add(s, p[2], all ^ h2);
-        hash_add(s, p[3], all ^ h3);
+        if (p[0] != smallest) hash_add(s, smallest, gathered), gathered = 0;
+        smallest = p[0], gathered ^= all ^ h0;
+        hash_add(s, p[1], all ^ h1), hash_add(s, p[2], all ^ h2), hash_add(s, p[3], all ^ h3);
     }
+    hash_add(s, smallest, gathered);
     return true;
 }
 
 static void shares_hash(void *shared) {
     search *s = shared;
     uint64_t n;
-    while ((n = atomic_fetch_add(&s->next, 1)) < s->share_count && !s->invalid) {
-        const uint64_t count = s->c->tetrahedron_count, end = (n + 1) * SHARE;
-        if (!points_are_valid(s, n * SHARE, end < count ? run_end(s, end - 1) : count))
-            s->invalid = true;
-        else
-            share_walk(s, n, run_hash);
-    }
+    while ((n = atomic_fetch_add(&s->next, 1)) < s->share_count && !s->failed) share_walk(s, n, run_hash);
+}
+
+/* Hashes give way to marks. */
+static tc_status points_mark(search *s) {
+    const uint32_t count = s->c->point_count;
+    s->marks = calloc(count / 64 + (size_t)1, sizeof *s->marks);
+    if (!s->marks) return memory_fail();
+    for (uint32_t n = 0; n < count; n++)
+        s->marks[n / 64] |= (uint64_t)(atomic_load_explicit(&s->hashes[n], memory_order_relaxed) != 0) << n % 64;
+    free(s->hashes);
+    s->hashes = NULL;
+    return TC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------ candidates */
 
-static bool is_border_point(const search *s, uint32_t point) {
-    return atomic_load_explicit(&s->hashes[point], memory_order_relaxed) != 0;
-}
+static unsigned is_marked(const search *s, uint32_t point) { return s->marks[point / 64] >> point % 64 & 1; }
 
 static bool candidate_add(share_list *list, uint64_t tetrahedron) {
     if (list->count == list->room) {
@@ -157,9 +170,8 @@ static bool candidate_add(share_list *list, uint64_t tetrahedron) {
 static bool run_collect(search *s, uint64_t share, uint64_t first, uint64_t end) {
     for (uint64_t n = first; n < end; n++) {
         const uint32_t *p = s->c->tetrahedra + 4 * n;
-        const int met =
-            is_border_point(s, p[0]) + is_border_point(s, p[1]) + is_border_point(s, p[2]) + is_border_point(s, p[3]);
-        if (met >= 3 && !candidate_add(&s->shares[share], n)) return false;
+        const unsigned marked = is_marked(s, p[0]) + is_marked(s, p[1]) + is_marked(s, p[2]) + is_marked(s, p[3]);
+        if (marked >= 3 && !candidate_add(&s->shares[share], n)) return false;
     }
     return true;
 }
@@ -167,7 +179,7 @@ static bool run_collect(search *s, uint64_t share, uint64_t first, uint64_t end)
 static void shares_collect(void *shared) {
     search *s = shared;
     uint64_t n;
-    while ((n = atomic_fetch_add(&s->next, 1)) < s->share_count && !s->no_memory) share_walk(s, n, run_collect);
+    while ((n = atomic_fetch_add(&s->next, 1)) < s->share_count && !s->failed) share_walk(s, n, run_collect);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- faces */
@@ -186,26 +198,40 @@ static counted_face *face_find(const search *s, uint32_t a, uint32_t b, uint32_t
     }
 }
 
-static bool is_border_face(const search *s, uint32_t a, uint32_t b, uint32_t c) {
-    return a != b && b != c && c != a && face_find(s, a, b, c)->count == 1;
+static bool may_be_border(const search *s, uint32_t a, uint32_t b, uint32_t c) {
+    return is_marked(s, a) & is_marked(s, b) & is_marked(s, c);
 }
 
-/* Counts the faces of all candidates that may be on the border. */
+static bool is_border_face(const search *s, uint32_t a, uint32_t b, uint32_t c) {
+    return a != b && b != c && c != a && may_be_border(s, a, b, c) && face_find(s, a, b, c)->count == 1;
+}
+
+/* Counts the faces of a tetrahedron that may be on the border; in the table, once it is there. */
+static uint64_t faces_enter(search *s, uint32_t tetrahedron) {
+    const uint32_t *p = s->c->tetrahedra + 4 * (uint64_t)tetrahedron;
+    uint64_t count = 0;
+    for (int side = 0; side < 4; side++) {
+        const uint32_t a = p[sides[side][0]], b = p[sides[side][1]], c = p[sides[side][2]];
+        if (!may_be_border(s, a, b, c)) continue;
+        if (s->table) face_find(s, a, b, c)->count++;
+        count++;
+    }
+    return count;
+}
+
+static uint64_t candidates_enter(search *s) {
+    uint64_t count = 0;
+    for (uint64_t n = 0; n < s->share_count; n++)
+        for (uint32_t m = 0; m < s->shares[n].count; m++) count += faces_enter(s, s->shares[n].tetrahedra[m]);
+    return count;
+}
+
 static tc_status faces_count(search *s) {
-    uint64_t candidates = 0;
-    for (uint64_t n = 0; n < s->share_count; n++) candidates += s->shares[n].count;
-    for (s->table_size = 64; s->table_size < 8 * candidates;) s->table_size *= 2;
+    const uint64_t count = candidates_enter(s);
+    for (s->table_size = 64; s->table_size < 2 * count;) s->table_size *= 2;
     s->table = calloc((size_t)s->table_size, sizeof *s->table);
     if (!s->table) return memory_fail();
-    for (uint64_t n = 0; n < s->share_count; n++)
-        for (uint32_t m = 0; m < s->shares[n].count; m++) {
-            const uint32_t *p = s->c->tetrahedra + 4 * (uint64_t)s->shares[n].tetrahedra[m];
-            for (int side = 0; side < 4; side++) {
-                const uint32_t a = p[sides[side][0]], b = p[sides[side][1]], c = p[sides[side][2]];
-                if (is_border_point(s, a) && is_border_point(s, b) && is_border_point(s, c))
-                    face_find(s, a, b, c)->count++;
-            }
-        }
+    candidates_enter(s);
     return TC_OK;
 }
 
@@ -279,38 +305,55 @@ static tc_status faces_append(search *s) {
 
 /* ---------------------------------------------------------------------------------------------------------- points */
 
-/* Lists the points of faces, and gives faces their places there. Hashes give way to these. */
+/* The place of a point in the list; before: how many are marked before each word of marks. */
+static uint32_t place_of(const search *s, const uint32_t *before, uint32_t point) {
+    const uint64_t lower = s->marks[point / 64] & ((UINT64_C(1) << point % 64) - 1);
+    return before[point / 64] + (uint32_t)__builtin_popcountll(lower);
+}
+
+/* Lists the points of faces, which are marked now, and gives faces their places there. */
 static tc_status points_list(search *s) {
     border_list *out = s->out;
-    uint64_t count = 0;
-    for (uint64_t n = 0; n < s->c->point_count; n++) s->hashes[n] = 0;
-    for (uint64_t n = 0; n < out->face_count; n++)
-        for (int m = 0; m < 4; m++)
-            if (out->faces[n].points[m] < CAP_HALF) count += !s->hashes[out->faces[n].points[m]]++;
-    out->points = malloc((size_t)count * sizeof *out->points + 1);
-    if (!out->points) return memory_fail();
-    for (uint64_t n = 0; n < s->c->point_count; n++) {
-        if (!s->hashes[n]) continue;
-        s->hashes[n] = out->point_count;
-        out->points[out->point_count++] = (uint32_t)n;
+    const uint64_t words = s->c->point_count / 64 + UINT64_C(1);
+    uint32_t *before = malloc((size_t)words * sizeof *before);
+    if (!before) return memory_fail();
+    memset(s->marks, 0, (size_t)words * sizeof *s->marks);
+    for (uint64_t n = 0; n < 4 * out->face_count; n++) {
+        const uint32_t point = out->faces[n / 4].points[n % 4];
+        if (point < CAP_HALF) s->marks[point / 64] |= UINT64_C(1) << point % 64;
     }
-    for (uint64_t n = 0; n < out->face_count; n++)
-        for (int m = 0; m < 4; m++)
-            if (out->faces[n].points[m] < CAP_HALF)
-                out->faces[n].points[m] = (uint32_t)s->hashes[out->faces[n].points[m]];
-    return TC_OK;
+    for (uint64_t n = 0; n < words; n++) {
+        before[n] = (uint32_t)out->point_count;
+        out->point_count += (uint64_t)__builtin_popcountll(s->marks[n]);
+    }
+    out->points = malloc((size_t)out->point_count * sizeof *out->points + 1);
+    uint32_t *points = out->points;
+    for (uint64_t n = 0; n < words && points; n++)
+        for (uint64_t rest = s->marks[n]; rest; rest &= rest - 1)
+            *points++ = (uint32_t)(64 * n) + (uint32_t)__builtin_ctzll(rest);
+    for (uint64_t n = 0; n < 4 * out->face_count; n++) {
+        uint32_t *point = &out->faces[n / 4].points[n % 4];
+        if (*point < CAP_HALF) *point = place_of(s, before, *point);
+    }
+    free(before);
+    out->greatest = -INFINITY;
+    for (uint64_t n = 0; n < out->point_count && points; n++)
+        out->greatest = fmax(out->greatest, grid_value_at(s->grid, out->points[n]));
+    return points ? TC_OK : memory_fail();
 }
 
 static tc_status search_run(search *s) {
+    s->has_gaps = gaps_exist(s->grid);
     s->hashes = calloc((size_t)s->c->point_count, sizeof *s->hashes);
     s->shares = calloc((size_t)s->share_count + 1, sizeof *s->shares);
     if (!s->hashes || !s->shares) return memory_fail();
     parallel_run(s->share_count, shares_hash, s);
-    if (s->invalid) return complex_point_fail(s->c);
+    if (s->failed) return complex_point_fail(s->c);
+    tc_status status = points_mark(s);
     s->next = 0;
-    parallel_run(s->share_count, shares_collect, s);
-    if (s->no_memory) return memory_fail();
-    tc_status status = faces_count(s);
+    if (!status) parallel_run(s->share_count, shares_collect, s);
+    if (!status && s->failed) status = memory_fail();
+    if (!status) status = faces_count(s);
     if (!status) status = faces_append(s);
     return status ? status : points_list(s);
 }
@@ -329,6 +372,7 @@ tc_status border_list_provide(const tc_grid *grid, bool keeps_cells, border_list
     for (uint64_t n = 0; s.shares && n < s.share_count; n++) free(s.shares[n].tetrahedra);
     free(s.shares);
     free(s.hashes);
+    free(s.marks);
     free(s.table);
     if (status)
         border_list_release(grid->context, s.out);

@@ -15,6 +15,7 @@ typedef struct border_list {
     cap_face
         *faces; /* by tetrahedron, then by the corner that they do not have; by cell, then as cell_faces has them */
     uint64_t point_count, face_count;
+    double greatest; /* sample at these points; below the isovalue: the border adds nothing */
     device_buffer points_buffer, faces_buffer;
     uint64_t point_offset, face_offset; /* of the first item in its buffer */
 } border_list;

@@ -92,7 +92,7 @@ static tc_status border_run(tc_grid *grid, const tc_extract_options *options, co
                             cap_sizes *sizes) {
     border_list *border;
     tc_status status = caps_border_get(grid, options->method, &border);
-    if (status) return status;
+    if (status || border->greatest < options->isovalue) return status;
     caps_run c = {.grid = grid, .border = border, .edges = edges, .isovalue = options->isovalue};
     c.mesh = mesh;
     c.room = *sizes;

@@ -69,10 +69,10 @@ static tc_status count_launch(complex_run *r) {
     return status ? status : surface_head_read(r);
 }
 
-tc_status caps_count(complex_run *r, tc_method method) {
+tc_status caps_count(complex_run *r, const tc_extract_options *options) {
     complex_buffers *w = r->work;
-    tc_status status = caps_border_get(r->grid, method, &r->border);
-    if (status || !r->border->face_count) return status;
+    tc_status status = caps_border_get(r->grid, options->method, &r->border);
+    if (status || r->border->greatest < options->isovalue) return status;
     status = border_load(r);
     if (status) return status;
     job_describe(r);

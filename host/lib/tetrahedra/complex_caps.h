@@ -15,7 +15,7 @@
 tc_status caps_border_get(tc_grid *grid, tc_method method, border_list **out);
 
 /* Counts what the border adds to a surface that is numbered; head has the counts then. Emits it behind the surface. */
-tc_status caps_count(complex_run *r, tc_method method);
+tc_status caps_count(complex_run *r, const tc_extract_options *options);
 tc_status caps_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
 
 /* What the border adds to a surface whose crossed edges have these numbers. */

@@ -88,7 +88,7 @@ static uint64_t triangle_count_of(const complex_run *r) {
 static tc_status stages_count(complex_run *r, const complex_method *m, tc_grid *grid, const tc_extract_options *options,
                               double share) {
     tc_status status = m->count(r, grid, options, share);
-    return status || !options->closed ? status : caps_count(r, options->method);
+    return status || !options->closed ? status : caps_count(r, options);
 }
 
 static void surface_note(const complex_run *r, const tc_extract_options *options) {
