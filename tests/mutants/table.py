@@ -140,6 +140,7 @@ REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvili
 DEVICE = ["test_random, u8", "test_rare, one sample"]
 SNAPPED = ["test_snap, u8"]
 WHOLE = ["test_whole, alone", "test_whole, refusals", "test_whole, orders", "test_whole, slabs"]
+CAPS = ["test_whole, alone", "test_whole, slabs"]
 READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
 LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
@@ -214,6 +215,10 @@ FILES = {
     "host/common/stored_types.c": READERS,
     "host/lib/tetrahedra/whole": WHOLE,
     "kernels/whole": WHOLE,
+    "host/lib/tetrahedra/border_list.c": CAPS,
+    "host/lib/tetrahedra/caps_host.c": CAPS,
+    "host/lib/tetrahedra/complex_caps.c": CAPS,
+    "kernels/complex_caps.cl": CAPS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
     "kernels/snap": SNAPPED,
     "kernels/regular_alone.cl": SNAPPED,
