@@ -180,16 +180,9 @@ static void test_patterns(void) {
 
 static void test_two_hexahedra(void) {
     for (unsigned pattern = 0; pattern < 4096; pattern++) {
-        cell_list list = cell_list_make(12, 2);
-        uint32_t p[12];
+        cell_list list = hexahedra_make((uint32_t[3]){1, 1, 2}, true);
         float values[12];
         char name[60];
-        for (uint32_t n = 0; n < 12; n++) p[n] = cell_list_point(&list, n % 2, n / 2 % 2, n / 4);
-        for (uint32_t z = 0; z < 2; z++) {
-            const uint32_t *q = p + 4 * z, corners[8] = {q[0], q[1], q[3], q[2], q[4], q[5], q[7], q[6]};
-            cell_list_add(&list, 12, 8, corners, random_below(2));
-        }
-        cell_list_renumber(&list);
         for (int n = 0; n < 12; n++) values[n] = (float)(pattern >> n & 1) - 0.5f;
         snprintf(name, sizeof name, "two hexahedra, pattern %03x", pattern);
         list_check(&list, values, 0, false, true, name);
@@ -263,19 +256,10 @@ static void run(uint64_t seed) {
 /* Hexahedra under random numbers, with cells of noise: the whole encloses what its cells do, as both sides of a face
  * are cut alike, one from either side. */
 static void test_cells_add_up(void) {
-    enum { SIZE = 3, POINTS = SIZE + 1, CELLS = SIZE * SIZE * SIZE };
-    cell_list list = cell_list_make(POINTS * POINTS * POINTS, CELLS);
-    float values[POINTS * POINTS * POINTS];
+    enum { SIZE = 3, CELLS = SIZE * SIZE * SIZE };
+    cell_list list = hexahedra_make((uint32_t[3]){SIZE, SIZE, SIZE}, true);
+    float *values = memory_get(4 * list.point_count);
     double sum = 0;
-    for (uint32_t n = 0; n < POINTS * POINTS * POINTS; n++)
-        cell_list_point(&list, n % POINTS, n / POINTS % POINTS, n / POINTS / POINTS);
-    for (uint32_t n = 0; n < CELLS; n++) {
-        const uint32_t p = (n / SIZE / SIZE * POINTS + n / SIZE % SIZE) * POINTS + n % SIZE, up = POINTS * POINTS;
-        const uint32_t corners[8] = {p,      p + 1,      p + POINTS + 1,      p + POINTS,
-                                     p + up, p + up + 1, p + up + POINTS + 1, p + up + POINTS};
-        cell_list_add(&list, 12, 8, corners, false);
-    }
-    cell_list_renumber(&list);
     values_choose(&list, values, NOISE);
     for (uint64_t n = 0; n <= CELLS; n++) {
         tc_cells cells = cell_list_view(&list);
@@ -288,6 +272,7 @@ static void test_cells_add_up(void) {
         if (n < CELLS) sum += volume;
         if (n == CELLS) EXPECT(fabs(sum - volume) < 1e-3, "cells enclose %g, all together %g", sum, volume);
     }
+    free(values);
     cell_list_free(&list);
 }
 

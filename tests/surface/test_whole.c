@@ -45,21 +45,6 @@ typedef struct subject {
     float *carried[ISOVALUES];
 } subject;
 
-/* Hexahedra alone: the list may be read in one sweep. */
-static cell_list hexahedra_make(uint32_t size, bool renumbered) {
-    const uint32_t n = size + 1;
-    cell_list list = cell_list_make((uint64_t)n * n * n, (uint64_t)size * size * size);
-    for (uint32_t p = 0; p < n * n * n; p++) cell_list_point(&list, p % n, p / n % n, p / n / n);
-    for (uint32_t c = 0; c < size * size * size; c++) {
-        const uint32_t first = (c / size / size * n + c / size % size) * n + c % size, up = n * n;
-        const uint32_t corners[8] = {first,      first + 1,      first + n + 1,      first + n,
-                                     first + up, first + up + 1, first + up + n + 1, first + up + n};
-        cell_list_add(&list, 12, 8, corners, renumbered && random_below(2));
-    }
-    if (renumbered) cell_list_renumber(&list);
-    return list;
-}
-
 /* Gives a corner of every fourth cell a point of its own, so that cells share half a quadrilateral, or nothing. */
 static void cells_tear(cell_list *list) {
     const uint64_t room = list->point_count + list->cell_count;
@@ -81,7 +66,7 @@ static cell_list list_make(uint64_t seed, char *name) {
     const uint32_t kind = random_below(6), size = 1 + random_below(6);
     const uint64_t block_seed = random_u64();
     cell_list list = kind == 2  ? honeycomb_make(size, block_seed)
-                     : kind > 2 ? hexahedra_make(size, kind != 4)
+                     : kind > 2 ? hexahedra_make((uint32_t[3]){size, size, size}, kind != 4)
                                 : mixed_block_make(size, block_seed);
     if (kind == 1) cell_list_collapse(&list);
     if (kind == 2) cell_list_drop_polyhedra(&list);
