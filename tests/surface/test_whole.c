@@ -59,18 +59,25 @@ static void cells_tear(cell_list *list) {
     cell_list_renumber(list);
 }
 
-static cell_list list_make(uint64_t seed, char *name) {
-    static const char *const kinds[6] = {"mixed block", "collapsed",          "prisms",
-                                         "hexahedra",   "hexahedra in order", "torn"};
+enum { MIXED, COLLAPSED, PRISMS, HEXAHEDRA, IN_ORDER, TORN, KINDS };
+
+/* Begins the random numbers of a seed. */
+static uint32_t kind_of(uint64_t seed) {
     random_state = seed * 0x2545f4914f6cdd1du;
-    const uint32_t kind = random_below(6), size = 1 + random_below(6);
+    return random_below(KINDS);
+}
+
+static cell_list list_make(uint64_t seed, char *name) {
+    static const char *const kinds[KINDS] = {"mixed block", "collapsed",          "prisms",
+                                             "hexahedra",   "hexahedra in order", "torn"};
+    const uint32_t kind = kind_of(seed), size = 1 + random_below(6);
     const uint64_t block_seed = random_u64();
-    cell_list list = kind == 2  ? honeycomb_make(size, block_seed)
-                     : kind > 2 ? hexahedra_make((uint32_t[3]){size, size, size}, kind != 4)
-                                : mixed_block_make(size, block_seed);
-    if (kind == 1) cell_list_collapse(&list);
-    if (kind == 2) cell_list_drop_polyhedra(&list);
-    if (kind == 5) cells_tear(&list);
+    cell_list list = kind == PRISMS      ? honeycomb_make(size, block_seed)
+                     : kind >= HEXAHEDRA ? hexahedra_make((uint32_t[3]){size, size, size}, kind != IN_ORDER)
+                                         : mixed_block_make(size, block_seed);
+    if (kind == COLLAPSED) cell_list_collapse(&list);
+    if (kind == PRISMS) cell_list_drop_polyhedra(&list);
+    if (kind == TORN) cells_tear(&list);
     random_state = block_seed;
     sprintf(name, "seed %" PRIu64 ": %s of %u", seed, kinds[kind], size);
     return list;
@@ -359,7 +366,10 @@ int main(int argc, char **argv) {
     reference = reference_open();
     tc_context *device = device_open(0, false);
     for (uint64_t n = seed; n < seed + count && test_chosen("alone"); n++) run(n, type_of(n), device, "alone");
-    for (uint64_t n = seed; n < seed + count / 20 && test_chosen("slabs"); n++) budgets_run(n, false);
+    for (uint64_t n = seed; n < seed + count / 4 && test_chosen("slabs"); n++) {
+        const bool halves = closed_of(n) && method_of(n) == TC_METHOD_HYBRID && kind_of(n) == TORN;
+        if (n < seed + count / 20 || halves) budgets_run(n, false);
+    }
     if (test_chosen("refusals")) refusals_run(device);
     if (test_chosen("orders")) orders_run(device);
     tc_context_destroy(device);
