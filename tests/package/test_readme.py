@@ -145,7 +145,7 @@ def test_keys(text, tool):
     page = "host/tool/README.md"
     table = section(page, text, "| of `extract` | |", "With `--count`")
     documented = set(re.findall(r"`([a-z_0-9]+)`", table)) - {"extract", "verified"}
-    documented -= {"ranks", "sent_bytes"}  # of tetracubes-mpi: tests/mpi/test_ranks.py
+    documented -= {"ranks", "cut", "sent_bytes"}  # of tetracubes-mpi: tests/mpi/test_ranks.py
     with tempfile.TemporaryDirectory() as folder:
         run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
         extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]

@@ -123,6 +123,11 @@ const option option_table[] = {
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
      "join' makes the mesh of all N, which other processes may have made; of what\n"
      "can be streamed"},
+    {"--cut", NULL, "C", COMMAND_EXTRACT, VALUE_CUT, IN(cut), NULL,
+     "of ranks (tetracubes-mpi) and parts, which planes each has: even (default);\n"
+     "cost: as much to read and to write for each rank; or the planes where all\n"
+     "but the first begin, multiples of 4, as in 40,96 for three: all parts of a\n"
+     "surface need the same. It never changes the mesh"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
