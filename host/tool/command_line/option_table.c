@@ -39,10 +39,10 @@ const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
      "of --preview: isolines to draw, of one value or of several"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
-     "out: only the report); with several isovalues, % in FILE stands for the\n"
-     "isovalue as typed; - is standard output (give --format): the report then\n"
-     "goes to standard error"},
+     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz, .vtkhdf or .html,\n"
+     "a page that shows it in a browser (left out: only the report); with several\n"
+     "isovalues, % in FILE stands for the isovalue as typed; - is standard output\n"
+     "(give --format): the report then goes to standard error"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
@@ -53,7 +53,7 @@ const option option_table[] = {
     {"--format", NULL, "F", COMMAND_JOIN, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl or vtkhdf, whatever FILE ends in"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
      "picture of the surface to write, as PNG; also without -o; with several\n"
      "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
