@@ -213,8 +213,8 @@ static void device_tell(void) {
     tc_context_destroy(checked);
 }
 
-/* In the quick tier kernels for groups are not optimised: PoCL takes ten seconds for one, and no CPU gets it unless it is
- * asked for. PoCL does not go back once it was told, so groups come last. */
+/* In the quick tier kernels for groups are not optimised: PoCL takes ten seconds for one, and no CPU gets it unless it
+ * is asked for. PoCL does not go back once it was told, so groups come last. */
 static void groups_begin(void) {
     const char *flags = getenv("TEST_PLAIN_KERNELS");
     if (flags && *flags) setenv("POCL_EXTRA_BUILD_FLAGS", flags, 1);
