@@ -18,9 +18,11 @@
 #define kernel __kernel __attribute__((intel_vec_len_hint(1)))
 #endif
 
-/* Prefetches the cache line at an address, which may lie outside the buffer. Tools may define this as empty. */
+/* Prefetches the cache line at an address, which may lie outside the buffer, into the cache of the second level: what
+ * is prefetched here is used so late that it would displace what is in use from the first. Tools may define this as
+ * empty. */
 #ifndef line_prefetch
-#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
+#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)
 #endif
 
 /* Stores a whole cache line without reading it into the caches; `out` is the start of a line. */
