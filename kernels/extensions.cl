@@ -40,6 +40,9 @@
 /* Sixteen words of 4 bytes, of any type, at any multiple of 4 bytes. */
 typedef uint16 __attribute__((aligned(4), may_alias)) words16;
 
+/* Sixteen bytes, anywhere. */
+typedef uchar16 __attribute__((aligned(1), may_alias)) bytes16;
+
 /* 64 samples of a row, and a byte for each. */
 typedef BITS samples64 __attribute__((ext_vector_type(64)));
 typedef BITS samples64_unaligned __attribute__((ext_vector_type(64), aligned(sizeof(BITS))));
