@@ -13,7 +13,7 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
 }
 
 /* Whether any sample that follows a uniform brick in x, y or z is on the other side. Bricks of the same tile that are
- * uniform decide by their sign; in others the words are read. */
+ * uniform decide by their sign; in others the words are read. A mixed brick with vertices at samples always may. */
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words signs, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {
@@ -23,7 +23,7 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
                                ? signs.bricks[brick_index(s, up, deep, across)].sign
                                : SIGN_MIXED;
         if (found == sign) continue;
-        if (found != SIGN_MIXED) return true;
+        if (found != SIGN_MIXED || ZEROS) return true;
         const ulong columns = n & 1 ? 1 : word_valid(s, across);
         const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
         const uint stride = row_in_tile(t, up) ? BRICK_ROWS : s->words_x; /* from plane to plane */

@@ -271,6 +271,12 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 /* Prefetches the samples of the rows that emit, and of the rows after them in y and z, where their edges end. */
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
     uint before = 0;
+#ifdef REAL
+    if (ZEROS) { /* and of those before */
+        links_prefetch(s, c.x / 64, c.y, c.z, mask, samples);
+        return;
+    }
+#endif
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
         uint here = mask & ((1u << BRICK_ROWS) - 1), rows = here | before;
         before = here;
@@ -290,6 +296,7 @@ inline_always void brick_prefetch(const slab *s, uint number, corner c, row_resu
         line_prefetch(k1.words + (ulong)BRICK_WORDS * number + line);
         line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up) + line);
         line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up) + line);
+        if (ZEROS) line_prefetch(zeros_of(s, k1.words + (ulong)BRICK_WORDS * number + line));
     }
     line_prefetch(k1.bricks + number);
     line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + deep));

@@ -47,6 +47,7 @@ typedef struct brick_work {
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
     long link_offsets[LINK_EVEN];
+    uint link_codes[LINK_EVEN];
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
     float positions[3 * BATCH_EDGES];
 #endif
@@ -59,6 +60,7 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
     if (ZEROS) link_offsets(s, work->link_offsets);
+    for (uint n = 0; n < LINK_EVEN && ZEROS; n++) work->link_codes[n] = link_code(n);
 #endif
 }
 
@@ -155,15 +157,17 @@ inline_always void neighbour_row_number(uint *number, ulong crossed, uint first)
  * EDGE_CODE. */
 inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong places, uint row, uint first, uint count,
                                uint *number, grid_arrays in, brick_work *work) {
+#ifdef REAL
+    const ulong zeros = !ZEROS ? 0 : CLOSED ? work->zero_corners[z][2 * y] & places : places;
+    uchar to[64 + 16];
+    row_snapped_to(s, c.x, c.y + y, c.z + z, zeros, work->link_offsets, in.samples, to);
+#endif
     for (; places; places &= places - 1) {
-        uint bit = lowest_bit(places);
+        const uint bit = lowest_bit(places);
         number[NUMBER_STEP * bit + PLACE_TYPE] = first + count;
 #ifdef REAL
-        const bool is_zero = ZEROS ? (CLOSED ? work->zero_corners[z][2 * y] >> bit & 1 : 1) : 0;
-        if (is_zero)
-            work->list[count] = snapped_edge(s, edges_corner(c), c.x + bit, c.y + y, c.z + z, work->link_offsets, in);
-        else
-            work->list[count] = EDGE_PLACE + row + bit;
+        const bool is_zero = CLOSED ? zeros >> bit & 1 : ZEROS;
+        work->list[count] = row + bit + (is_zero ? work->link_codes[to[bit]] : EDGE_PLACE);
 #endif
         count++;
     }
@@ -177,7 +181,9 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
-        loop_unrolled for (uint type = 0; type < PLACE_TYPE; type++) {
+        ulong any = !ZEROS; /* most rows with snapped samples have no other vertices */
+        loop_unrolled for (uint type = 0; type < PLACE_TYPE && ZEROS; type++) any |= work->crossed[z][type][y];
+        loop_unrolled for (uint type = 0; type < PLACE_TYPE && any; type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             uint end = count + (uint)popcount(crossed);

@@ -104,7 +104,7 @@ inline_always uint edge_at(const slab *s, corner brick, uint y, uint z, uint typ
                            ulong zeros, grid_arrays in) {
     const bool is_zero = CLOSED ? zeros >> bit & 1 : 1;
     if (ZEROS && type == PLACE_TYPE && is_zero)
-        return snapped_edge(s, edges_corner(brick), brick.x + bit, y, z, NULL, in);
+        return row + bit + link_code(snapped_to(s, brick.x + bit, y, z, in.samples));
     return (CLOSED && type == PLACE_TYPE ? EDGE_PLACE : edge_code(type, !(even >> bit & 1))) + row + bit;
 }
 

@@ -18,9 +18,11 @@
 #define kernel __kernel __attribute__((intel_vec_len_hint(1)))
 #endif
 
-/* Prefetches the cache line at an address, which may lie outside the buffer. Tools may define this as empty. */
+/* Prefetches the cache line at an address, which may lie outside the buffer, into the cache of the second level: what
+ * is prefetched here is used so late that it would displace what is in use from the first. Tools may define this as
+ * empty. */
 #ifndef line_prefetch
-#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address))
+#define line_prefetch(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)
 #endif
 
 /* Stores a whole cache line without reading it into the caches; `out` is the start of a line. */
@@ -37,6 +39,9 @@
 
 /* Sixteen words of 4 bytes, of any type, at any multiple of 4 bytes. */
 typedef uint16 __attribute__((aligned(4), may_alias)) words16;
+
+/* Sixteen bytes, anywhere. */
+typedef uchar16 __attribute__((aligned(1), may_alias)) bytes16;
 
 /* 64 samples of a row, and a byte for each. */
 typedef BITS samples64 __attribute__((ext_vector_type(64)));

@@ -39,31 +39,8 @@ inline_always void link_offsets(const slab *s, long offsets[LINK_EVEN]) {
     for (uint n = 0; n < LINK_EVEN; n++) offsets[n] = link_offset(s, n);
 }
 
-/* The index in its link of the nearest crossing of a sample on no border of the grid; LINK_EVEN: none is near enough.
- * Edges that are not crossed need no test: their samples are too near to each other in value. */
-inline_always uint nearest_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
-    const BITS sample = *at;
-    const REAL half_of = (REAL)0.5f, here = half_of * SAMPLE_VALUE(sample);
-    const REAL away = bits_inside(sample, &s->test) ? (REAL)-1 : (REAL)1;
-    REAL along = 0, across = 0;
-    uint nearest = LINK_EVEN, nearest_across = LINK_EVEN;
-#pragma unroll
-    for (uint n = 0; n < LINK_ODD; n++) {
-        const REAL difference = away * (half_of * SAMPLE_VALUE(at[offsets[n]]) - here);
-        nearest = difference > along ? n : nearest, along = difference > along ? difference : along;
-    }
-    if (!near_enough(s, sample, along)) nearest = LINK_EVEN, along = 0;
-    if (odd) return nearest;
-#pragma unroll
-    for (uint n = LINK_ODD; n < LINK_EVEN; n++) {
-        const REAL difference = away * (half_of * SAMPLE_VALUE(at[offsets[n]]) - here);
-        nearest_across = difference > across ? n : nearest_across, across = difference > across ? difference : across;
-    }
-    return near_enough(s, sample, across) && across * ACROSS > along ? nearest_across : nearest;
-}
-
-/* Whether such a sample is near enough to a crossing: the sample of its link that differs most on the other side has
- * the nearest one along its kind of edge. */
+/* Whether a sample on no border of the grid is near enough to a crossing: the sample of its link that differs most on
+ * the other side has the nearest one along its kind of edge. */
 inline_always bool wishes_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
     const REAL half_of = (REAL)0.5f, here = SAMPLE_VALUE(*at);
     REAL least = here, most = here;
@@ -78,10 +55,12 @@ inline_always bool wishes_inside(const slab *s, global const BITS *at, const lon
         least = other < least ? other : least, most = other > most ? other : most;
     }
     const REAL farthest = bits_inside(*at, &s->test) ? least : most;
-    return near_enough(s, *at, difference_of(half_of * farthest, half_of * here));
+    const REAL difference = difference_of(half_of * farthest, half_of * here);
+    return difference > 0 && near_enough(s, *at, difference);
 }
 
-/* The same for any sample: on a border it moves within that only. */
+/* The index in its link of the nearest crossing of any sample; LINK_EVEN: none is near enough. On a border a sample
+ * moves within that only. */
 inline_always uint nearest_on_border(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
     const bool border_x = x == 0 || x + 1 == s->nx, border_y = y == 0 || y + 1 == s->ny;
     const bool border_z = z == 0 || z + 1 == s->nz;

@@ -29,7 +29,8 @@ enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
  * start of the buffer stand for them. */
 enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 
-/* What kernel 1 finds out about a brick. While samples are snapped, `rows` tells whether it is near the surface. */
+/* What kernel 1 finds out about a brick. While samples are snapped, `rows` tells whether it is in the list of those
+ * that wish something. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
     slab_u32 rows;                /* bit n: row n of the brick emits something */
@@ -86,8 +87,9 @@ enum {
     STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
     STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
-    STATE_NEAR_BRICKS, /* method snap: bricks near the surface */
-    STATE_SNAP_TICKET, /* its kernels' next tile or brick of these: one each */
+    STATE_NEAR_BRICKS,    /* method snap: bricks near the surface */
+    STATE_WISHING_BRICKS, /* and those of them with samples that wish to be snapped */
+    STATE_SNAP_TICKET,    /* its kernels' next tile or brick of these: one each */
     STATE_WORDS = STATE_SNAP_TICKET + SNAP_TICKETS
 };
 

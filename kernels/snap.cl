@@ -5,8 +5,9 @@
  *
  * 1. snap_sign: the first stage of kernel 1 (sign.cl), over all bricks;
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
- * 3. snap_open: these get words of their own, also where they are uniform, and words of zeros, empty so far;
- * 4. snap_wish: which samples are near enough to a crossing of theirs;
+ * 3. snap_wish: which of their samples are near enough to a crossing of theirs; lists the bricks that have any. They
+ * get words of zeros, empty so far;
+ * 4. snap_open: those that are uniform get sign words of their own;
  * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: those that wish it and are regular points
  *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
  *    that another group stores to meanwhile has the same bits for its readers before and after;
@@ -51,18 +52,23 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
 
 inline_always uint brick_count_of(const slab *s) { return window_layers(s) * s->bricks_y * s->words_x; }
 
+/* Whether a brick is mixed, or one around it is on another side. Beyond the window's borders, bricks at the borders
+ * stand for those around. */
 inline_always bool brick_near(const slab *s, uint number, global const brick_state *bricks) {
-    const uint sign = bricks[number].sign, layers = window_layers(s);
-    const int w = (int)(number % s->words_x), row = (int)(number / s->words_x % s->bricks_y),
-              layer = (int)(number / s->words_x / s->bricks_y);
+    const long layer_size = (long)s->bricks_y * s->words_x, row_size = s->words_x;
+    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y, layer = number / (uint)layer_size;
+    const long before = w ? -1 : 0, after = w + 1 < s->words_x ? 1 : 0;
+    const long rows[3] = {row ? -row_size : 0, 0, row + 1 < s->bricks_y ? row_size : 0};
+    const long layers[3] = {layer ? -layer_size : 0, 0, layer + 1 < window_layers(s) ? layer_size : 0};
+    const uint sign = bricks[number].sign;
+    uint differ = 0;
     if (sign == SIGN_MIXED) return true;
-#pragma unroll 1
-    for (uint n = 0; n < 27; n++) {
-        const int x = w + (int)(n % 3) - 1, y = row + (int)(n / 3 % 3) - 1, z = layer + (int)(n / 9) - 1;
-        if (x < 0 || y < 0 || z < 0 || x >= (int)s->words_x || y >= (int)s->bricks_y || z >= (int)layers) continue;
-        if (bricks[((uint)z * s->bricks_y + (uint)y) * s->words_x + (uint)x].sign != sign) return true;
+#pragma unroll
+    for (uint n = 0; n < 9; n++) {
+        global const brick_state *at = bricks + number + rows[n % 3] + layers[n / 3];
+        differ |= (at[before].sign ^ sign) | (at[0].sign ^ sign) | (at[after].sign ^ sign);
     }
-    return false;
+    return differ != 0;
 }
 
 kernel void snap_near(slab s, global const brick_state *bricks, global uint *near, global uint *state) {
@@ -88,25 +94,6 @@ inline_always uint run_length(uint count) {
     for (uint run = run_take(ticket, length, shared); run < count; run = run_take(ticket, length, shared))
 #define BRICKS_OF_RUN(count) for (uint end = min(run + length, count), step = run; step < end; step += GROUP_BRICKS)
 
-kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
-                      global uint *state) {
-    local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
-    words += UNIFORM_BRICKS * BRICK_WORDS;
-    RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK, number = near[min(n, end - 1)], sign = bricks[number].sign;
-        const brick_place p = brick_place_of(&s, number);
-        for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
-            const bool exists = p.y + row % BRICK_ROWS < s.ny && p.z + row / BRICK_ROWS < s.z1;
-            global ulong *word = words + BRICK_WORDS * (ulong)number + row;
-            if (sign != SIGN_MIXED) *word = exists ? sign_word(sign) & word_valid(&s, p.w) : 0;
-            word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
-        }
-        group_barrier();
-        if (n < end && ITEM_ROW == 0) bricks[number].sign = SIGN_MIXED;
-    }
-}
-
 #ifdef REAL
 
 #if WORK_ITEMS == 1
@@ -115,26 +102,50 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
 #include "snap_wish_groups.cl"
 #endif
 
-/* wishes: a word for each row of the bricks near the surface. */
-kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global const ulong *words,
-                      global const brick_state *bricks, global const uint *near, global uint *state,
-                      global ulong *wishes) {
+/* wishes: a word for each row of the bricks near the surface. Mixed bricks get words of zeros. */
+kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
+                      global brick_state *bricks, global const uint *near, global uint *state, global ulong *wishes,
+                      global uint *wishing) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
     wish_room room;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
+    global ulong *zeros = words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
+    wish_results results = {wishes, bricks, wishing, &state[s.results.head_offset + STATE_WISHING_BRICKS]};
     wishes_begin(&s, &room);
     RUNS_OF(count, snap_ticket(&s, state, TICKET_WISH)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK;
+        const uint n = step + OWN_BRICK, number = near[min(n, end - 1)];
         if (n >= end) continue;
-        around_make(&s, words, bricks, near[n], &a);
-        wishes_make(&s, &a, brick_place_of(&s, near[n]), near[n], samples, cells, wishes, &room);
+        for (uint row = ITEM_ROW; row < BRICK_WORDS && bricks[number].sign == SIGN_MIXED; row += BRICK_ITEMS)
+            zeros[BRICK_WORDS * (ulong)number + row] = 0;
+        around_make(&s, words, bricks, number, &a);
+        wishes_make(&s, &a, brick_place_of(&s, number), number, samples, cells, results, &room);
     }
-    wishes_end(&s, samples, wishes, &room);
+    wishes_end(&s, samples, results, &room);
 }
 
 #endif
+
+/* Uniform bricks that wish something get words of their own, and words of zeros. */
+kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *wishing,
+                      global uint *state) {
+    local uint shared[1];
+    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
+    words += UNIFORM_BRICKS * BRICK_WORDS;
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
+        const uint n = step + OWN_BRICK, number = wishing[min(n, end - 1)], sign = bricks[number].sign;
+        const brick_place p = brick_place_of(&s, number);
+        for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end && sign != SIGN_MIXED; row += BRICK_ITEMS) {
+            const bool exists = p.y + row % BRICK_ROWS < s.ny && p.z + row / BRICK_ROWS < s.z1;
+            global ulong *word = words + BRICK_WORDS * (ulong)number + row;
+            *word = exists ? sign_word(sign) & word_valid(&s, p.w) : 0;
+            word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
+        }
+        group_barrier();
+        if (n < end && ITEM_ROW == 0) bricks[number].sign = SIGN_MIXED;
+    }
+}
 
 /* ------------------------------------------------------------------------------------------------------------ passes
  */
@@ -146,9 +157,9 @@ kernel void snap_wish(slab s, global const BITS *samples, global const ulong *ce
 #endif
 
 kernel void snap_even(slab s, uint colour, global ulong *words, global const brick_state *bricks,
-                      global const uint *near, global uint *state, global const ulong *wishes) {
+                      global const uint *wishing, global uint *state, global const ulong *wishes) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS], odd_j = colour >> 1;
+    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS], odd_j = colour >> 1;
     const uint odd_k = COLOUR_EVEN(odd_j, 0) == colour ? 0 : 1;
     const uint odd_y = (odd_j ^ (uint)s.first[1]) & 1, odd_z = (odd_k ^ (uint)s.first[2]) & 1;
     brick_around a;
@@ -157,13 +168,14 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
     RUNS_OF(count, snap_ticket(&s, state, TICKET_EVEN + colour)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         if (n >= end) continue;
-        const ulong index = BRICK_WORDS * (ulong)near[n];
-        const brick_place p = brick_place_of(&s, near[n]);
+        if (n + 2 < count) around_prefetch(&s, words, wishes, wishing[n + 2]);
+        const ulong index = BRICK_WORDS * (ulong)wishing[n];
+        const brick_place p = brick_place_of(&s, wishing[n]);
         for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
             const row_set r = set_spread(p.y, p.z, p.w, set, odd_y, odd_z);
             lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
-            around_make(&s, words, bricks, near[n], &a);
+            around_make(&s, words, bricks, wishing[n], &a);
             wanted = set_snap(&s, &a, r, true, wanted, false);
             if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
         }
@@ -171,23 +183,24 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
 }
 
 /* What becomes of the odd samples replaces the wishes. */
-kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *near,
+kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *wishing,
                      global uint *state, global ulong *wishes) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
+    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     RUNS_OF(count, snap_ticket(&s, state, TICKET_ODD)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         if (n >= end) continue;
-        const ulong index = BRICK_WORDS * (ulong)near[n];
-        const brick_place p = brick_place_of(&s, near[n]);
+        if (n + 2 < count) around_prefetch(&s, words, wishes, wishing[n + 2]);
+        const ulong index = BRICK_WORDS * (ulong)wishing[n];
+        const brick_place p = brick_place_of(&s, wishing[n]);
         bool have_around = false;
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
             const row_set r = set_of_plane(p.y, p.z, p.w, set);
             lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
             if (lanes_any(wanted)) {
-                if (!have_around) around_make(&s, words, bricks, near[n], &a);
+                if (!have_around) around_make(&s, words, bricks, wishing[n], &a);
                 have_around = true;
                 wanted = set_snap(&s, &a, r, false, wanted, true);
             }
@@ -196,15 +209,15 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
     }
 }
 
-kernel void snap_close(slab s, global ulong *words, global const uint *near, global uint *state,
+kernel void snap_close(slab s, global ulong *words, global const uint *wishing, global uint *state,
                        global const ulong *last) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
+    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
     words += BRICK_WORDS * (UNIFORM_BRICKS + (ulong)s.snapping.zero_bricks);
     RUNS_OF(count, snap_ticket(&s, state, TICKET_CLOSE)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
-            const ulong index = BRICK_WORDS * (ulong)near[n] + row;
+            const ulong index = BRICK_WORDS * (ulong)wishing[n] + row;
             words[index] |= last[index];
         }
     }

@@ -10,10 +10,6 @@
 inline_always lanes shifted_up(lanes word, lanes before) { return word << 1 | before >> 63; }
 inline_always lanes shifted_down(lanes word, lanes after) { return word >> 1 | after << 63; }
 
-/* Samples of a row that have one before them and one after them in x. */
-inline_always ulong has_before(uint w) { return w ? ~0ul : ~1ul; }
-inline_always ulong has_after(const slab *s, uint w) { return w + 1 < s->words_x ? ~0ul : word_valid(s, w) >> 1; }
-
 /* On which borders of the grid samples are, by axis. */
 typedef struct borders {
     lanes across[3];

@@ -1,81 +1,69 @@
 /*
- * snap_wish_alone.cl - wishes for a work-item alone: the samples of a brick that have a crossing are listed first, even
- * ones and odd ones apart, as the number in a row is hard to predict
+ * snap_wish_alone.cl - wishes for a work-item alone: sixteen samples at once, from a sample with a crossing on
  */
 #ifndef SNAP_WISH_ALONE_CL
 #define SNAP_WISH_ALONE_CL
 
-#include "nearest.cl"
+#include "nearest_alone.cl"
+#include "sign.cl"
 #include "snap_crossed.cl"
+#include "snap_wishes.cl"
 
-#define WISHES_MOST (BRICK_WORDS * 32)
-
+/* A brick's samples with crossings, and which of them wish to be snapped. */
 typedef struct wish_list {
     brick_place p;
     uint number;
+    uint rows; /* bit n: row n has samples that are not looked at yet: */
+    ulong crossed[BRICK_WORDS];
     ulong wishes[BRICK_WORDS];
-    uint count[2];
-    ushort list[2][WISHES_MOST + 1]; /* even and odd ones: row and place in it */
 } wish_list;
 
-/* The list of a brick is gone through after that of the next brick is made, when its samples have been fetched. */
+/* A brick is gone through after the samples with crossings of the next brick are found, when its samples have been
+ * fetched. */
 typedef struct wish_room {
     long offsets[LINK_EVEN];
     wish_list lists[2];
     uint brick_count;
 } wish_room;
 
-inline_always void rows_enter(const slab *s, row_set r, lanes crossed_any, lanes border, global const BITS *samples,
-                              wish_list *l) {
-    ulong crossed_rows[BRICK_ROWS], even_rows_of[BRICK_ROWS], border_rows[BRICK_ROWS];
+/* Enters the samples of a plane that have a crossing. Of those that cannot be looked at together the wishes are found
+ * at once. */
+inline_always void plane_enter(const slab *s, row_set r, lanes crossed_any, const borders *b,
+                               global const BITS *samples, wish_list *l) {
     const uint plane = r.z % BRICK_PLANES;
-    if (plane == 0) l->count[0] = l->count[1] = 0;
-    vstore8(crossed_any & ~border, 0, crossed_rows), vstore8(samples_even(s, r), 0, even_rows_of);
-    vstore8(crossed_any & border, 0, border_rows);
-    for (uint y = 0; y < BRICK_ROWS; y++) {
-        const uint row = BRICK_ROWS * plane + y;
-        l->wishes[row] = border_rows[y] ? border_wishes(s, r.y + y, r.z, r.w, border_rows[y], samples) : 0;
-        if (!crossed_rows[y]) continue;
-        for (uint odd = 0; odd < 2; odd++) {
-            ulong rest = crossed_rows[y] & (odd ? ~even_rows_of[y] : even_rows_of[y]);
-            uint count = l->count[odd], end = count + (uint)popcount(rest);
-            do {
-                l->list[odd][count++] = (ushort)(row << 6 | (lowest_bit(rest) & 63));
-                rest &= rest - 1;
-            } while (rest);
-            l->count[odd] = end;
-        }
+    const bool fit = links_fit16(s, r.w, r.y + BRICK_ROWS - 1, r.z);
+    const lanes inner = fit ? ~(b->across[0] | b->across[1] | b->across[2]) : (lanes)0, others = crossed_any & ~inner;
+    ulong *wishes = l->wishes + BRICK_ROWS * plane;
+    vstore8(crossed_any & inner, plane, l->crossed), vstore8(others, 0, wishes);
+    for (uint rows = lanes_nonzero(others); rows; rows &= rows - 1) {
+        const uint y = lowest_bit(rows);
+        wishes[y] = border_wishes(s, r.y + y, r.z, r.w, wishes[y], samples);
     }
-}
-
-/* Prefetches the samples of rows with crossings, and of the rows beside them. */
-inline_always void wishes_prefetch(const slab *s, const wish_list *l, uint rows, global const BITS *samples) {
-    uint wide[BRICK_PLANES + 2] = {0}; /* bit n: row n - 1 */
-    for (uint z = 0; z < BRICK_PLANES; z++) {
-        const uint here = rows >> (BRICK_ROWS * z) & 0xff, beside = here | here << 1 | here << 2;
-        for (uint n = 0; n < 3; n++) wide[z + n] |= beside;
-    }
-    for (uint z = 0; z < BRICK_PLANES + 2; z++)
-        for (uint rest = wide[z]; rest; rest &= rest - 1) {
-            global const BITS *row =
-                samples + row_start(s, l->p.y + lowest_bit(rest) - 1, l->p.z + z - 1) + 64ul * l->p.w;
-            for (uint sample = 0; sample < 64; sample += 64 / sizeof(BITS)) line_prefetch(row + sample);
-        }
+    l->rows |= lanes_nonzero(crossed_any & inner) << (BRICK_ROWS * plane);
 }
 
 inline_always void list_finish(const slab *s, wish_list *l, const long *offsets, global const BITS *samples,
-                               global ulong *wishes) {
-    ulong starts[BRICK_WORDS];
-    global ulong *out = wishes + BRICK_WORDS * (ulong)l->number;
-    for (uint row = 0; row < BRICK_WORDS; row++)
-        starts[row] = row_start(s, l->p.y + row % BRICK_ROWS, l->p.z + row / BRICK_ROWS) + 64ul * l->p.w;
-    for (uint odd = 0; odd < 2; odd++)
-        for (uint n = 0; n < l->count[odd]; n++) {
-            const uint row = l->list[odd][n] >> 6, bit = l->list[odd][n] & 63;
-            const bool wish = wishes_inside(s, samples + starts[row] + bit, offsets, odd);
-            l->wishes[row] |= (ulong)wish << bit;
+                               wish_results results) {
+    global ulong *out = results.wishes + BRICK_WORDS * (ulong)l->number;
+    for (uint rows = l->rows; rows; rows &= rows - 1) {
+        const uint row = lowest_bit(rows), y = l->p.y + row % BRICK_ROWS, z = l->p.z + row / BRICK_ROWS;
+        const uint odd = (s->parity + y + z) & 1;
+        global const BITS *first = samples + row_start(s, y, z) + 64ul * l->p.w;
+        ulong found = 0;
+        for (ulong rest = l->crossed[row]; rest; rest = bits_after16(rest)) {
+            const uint bit = lowest_bit(rest);
+            const samples16 here = samples16_of(s, first + bit, odd ^ (bit & 1));
+            found |= (ulong)wishes16(s, &here, offsets) << bit;
         }
-    for (uint n = 0; n < BRICK_WORDS; n += 8) vstore8(vload8(0, l->wishes + n), 0, out + n);
+        l->wishes[row] |= found & l->crossed[row];
+    }
+    lanes any = 0;
+    for (uint plane = 0; plane < BRICK_PLANES; plane++) {
+        const lanes of_plane = vload8(plane, l->wishes);
+        any |= of_plane;
+        vstore8(of_plane, plane, out);
+    }
+    if (lanes_any(any)) wishing_enter(l->number, results);
 }
 
 inline_always void wishes_begin(const slab *s, wish_room *room) {
@@ -83,25 +71,44 @@ inline_always void wishes_begin(const slab *s, wish_room *room) {
     room->brick_count = 0;
 }
 
+/* Whether samples beside a uniform brick may be on another side than its own: those of the bricks around it that are
+ * next to it. */
+inline_always bool uniform_crossed(const brick_around *a, ulong uniform) {
+    lanes differ = 0;
+    ulong differs = 0;
+#pragma unroll
+    for (uint n = 0; n < 27; n++) {
+        const uint x = n % 3, y = n / 3 % 3, z = n / 9;
+        const ulong columns = x == 0 ? 1ul << 63 : x == 2 ? 1 : ~0ul;
+        for (uint plane = z == 0 ? BRICK_PLANES - 1 : 0; plane < (z == 2 ? 1 : BRICK_PLANES); plane++) {
+            global const ulong *rows = a->words[z][y][x] + BRICK_ROWS * plane;
+            if (y == 1)
+                differ |= (vload8(0, rows) ^ uniform) & columns;
+            else
+                differs |= (rows[y == 0 ? BRICK_ROWS - 1 : 0] ^ uniform) & columns;
+        }
+    }
+    return differs || lanes_any(differ);
+}
+
 inline_always void wishes_make(const slab *s, const brick_around *a, brick_place p, uint number,
-                               global const BITS *samples, global const ulong *cells, global ulong *wishes,
+                               global const BITS *samples, global const ulong *cells, wish_results results,
                                wish_room *room) {
     wish_list *l = &room->lists[room->brick_count & 1];
-    uint rows = 0;
-    l->p = p, l->number = number;
+    const uint sign = results.bricks[number].sign;
+    if (sign != SIGN_MIXED && !uniform_crossed(a, sign_word(sign))) return;
+    l->p = p, l->number = number, l->rows = 0;
     for (uint set = 0; set < SETS_OF_PLANES; set++) {
         const row_set r = set_of_plane(p.y, p.z, p.w, set);
         const borders b = borders_of(s, r);
-        const lanes crossed_any = rows_wanted(s, a, r, &b, cells);
-        rows |= lanes_nonzero(crossed_any) << (BRICK_ROWS * set);
-        rows_enter(s, r, crossed_any, b.across[0] | b.across[1] | b.across[2], samples, l);
+        plane_enter(s, r, rows_wanted(s, a, r, &b, cells), &b, samples, l);
     }
-    wishes_prefetch(s, l, rows, samples);
-    if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, wishes);
+    links_prefetch(s, p.w, p.y, p.z, l->rows, samples);
+    if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, results);
 }
 
-inline_always void wishes_end(const slab *s, global const BITS *samples, global ulong *wishes, wish_room *room) {
-    if (room->brick_count) list_finish(s, &room->lists[(room->brick_count - 1) & 1], room->offsets, samples, wishes);
+inline_always void wishes_end(const slab *s, global const BITS *samples, wish_results results, wish_room *room) {
+    if (room->brick_count) list_finish(s, &room->lists[(room->brick_count - 1) & 1], room->offsets, samples, results);
 }
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "nearest.cl"
 #include "snap_crossed.cl"
+#include "snap_wishes.cl"
 
 typedef struct wish_room {
     long offsets[LINK_EVEN];
@@ -14,7 +15,7 @@ typedef struct wish_room {
 inline_always void wishes_begin(const slab *s, wish_room *room) { link_offsets(s, room->offsets); }
 
 inline_always void wishes_make(const slab *s, const brick_around *a, brick_place p, uint number,
-                               global const BITS *samples, global const ulong *cells, global ulong *wishes,
+                               global const BITS *samples, global const ulong *cells, wish_results results,
                                wish_room *room) {
     const row_set r = set_of_plane(p.y, p.z, p.w, (uint)get_local_id(0) % BRICK_WORDS);
     const borders b = borders_of(s, r);
@@ -25,9 +26,10 @@ inline_always void wishes_make(const slab *s, const brick_around *a, brick_place
         const uint bit = lowest_bit(rest);
         if (wishes_inside(s, samples + start + bit, room->offsets, !(even >> bit & 1))) wishes_of_row |= 1ul << bit;
     }
-    set_store(wishes_of_row, wishes + BRICK_WORDS * (ulong)number, r);
+    set_store(wishes_of_row, results.wishes + BRICK_WORDS * (ulong)number, r);
+    if (wishes_of_row) wishing_enter(number, results);
 }
 
-inline_always void wishes_end(const slab *s, global const BITS *samples, global ulong *wishes, wish_room *room) {}
+inline_always void wishes_end(const slab *s, global const BITS *samples, wish_results results, wish_room *room) {}
 
 #endif

@@ -22,6 +22,10 @@ inline_always ulong word_valid(const slab *s, uint w) {
     return left >= 64 ? ~0ul : (1ul << left) - 1;
 }
 
+/* Samples of a row that have one before them and one after them in x. */
+inline_always ulong has_before(uint w) { return w ? ~0ul : ~1ul; }
+inline_always ulong has_after(const slab *s, uint w) { return w + 1 < s->words_x ? ~0ul : word_valid(s, w) >> 1; }
+
 inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->results.word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }
