@@ -403,8 +403,9 @@ TC_API void tc_labels_options_init(tc_labels_options *options);
  * "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations", 2022). It runs on
  * threads of the host, whose number changes nothing.
  *
- * *mesh as in tc_extract; active cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids;
- * TC_ERROR_LIMIT for more than 2^32 - 1 vertices. */
+ * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
+ * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1
+ * vertices. */
 TC_API tc_status tc_extract_labels(tc_grid *grid, const tc_labels_options *options, tc_mesh **mesh);
 
 /* ------------------------------------------------------------------------------------------------ pieces of a grid */

@@ -6,9 +6,12 @@
 #include "failure.h"
 #include "grid/label_volume.h"
 #include "grid/mesh.h"
+#include "labels/label_run.h"
 #include "labels/smooth.h"
 #include "opencl/context.h"
+#include "opencl/vetting.h"
 #include "reference/reference_labels.h"
+#include "trial/trial.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -32,11 +35,37 @@ static tc_status options_take(const tc_grid *grid, tc_labels_options *o, const t
     return status;
 }
 
+/* Kernels place vertices of uniform grids only; the host makes the surfaces of others. */
+static bool runs_on_device(const tc_grid *grid) {
+    return grid->context->options.engine == TC_ENGINE_OPENCL && grid->kind == GRID_UNIFORM;
+}
+
+/* Where the context asks for it, on a small volume first. */
+static tc_status try_kernels(tc_context *context, kernel_kind kind) {
+    bool *has_passed = &context->trial_passed[kind_number(kind)];
+    if (!context->options.check_device || *has_passed) return TC_OK;
+    tc_status status = trial_of_kind(context, kind);
+    *has_passed = !status;
+    return status;
+}
+
+/* By kernels that are vetted first; again where they were exchanged on the way. */
+static tc_status device_make(const label_volume *volume, tc_mesh *mesh) {
+    tc_context *context = volume->grid->context;
+    tc_status status;
+    do {
+        status = call_vet(context, labels_kind(volume));
+        if (!status) status = try_kernels(context, labels_kind(volume));
+        if (!status) status = labels_extract(volume, volume->grid->scan, mesh);
+    } while (vetting_restarts(context));
+    return status;
+}
+
 static tc_status surfaces_make(const tc_grid *grid, const tc_labels_options *o, tc_mesh *mesh) {
     label_volume volume = {0};
     const double start = clock_ms();
     tc_status status = label_volume_make(grid, o, &volume);
-    if (!status) status = reference_labels(&volume, mesh);
+    if (!status) status = runs_on_device(grid) ? device_make(&volume, mesh) : reference_labels(&volume, mesh);
     if (!status) status = labels_smooth(&volume, o->smoothing, mesh);
     if (!status) memcpy(mesh->origin, grid->origin, sizeof mesh->origin);
     mesh->timings.total_ms = clock_ms() - start;

@@ -8,7 +8,8 @@
  * background of closed surfaces give the bytes of a volume that has them so. Device and reference are compared byte for
  * byte.
  *
- * Usage: test_labels [SEED [COUNT [all]]]. A failure names the seed of its grid: `test_labels SEED 1` repeats it.
+ * Usage: test_labels [SEED [COUNT [all]]], or test_labels alone|groups [always_copy] [SEED [COUNT]] for kernels of that
+ * variant beside the reference. A failure names the seed of its grid: `test_labels SEED 1` repeats it.
  */
 #include "engines.h"
 #include "label_walk.h"
@@ -443,11 +444,86 @@ static void test_refused(void) {
     expect_refused(&grid, &how, "options");
 }
 
+/* Types and sizes, parts and closed surfaces; in slabs too, by small budgets. */
+static void expect_device_same(const tc_context_options *options, const char *name) {
+    static uint32_t wide[SAMPLES_MAX];
+    static const uint32_t wanted[] = {1, 3, 6};
+    static const tc_type types[] = {TC_U8, TC_U16, TC_U32, TC_I16};
+    static const double matrix[3][4] = {{-0.5, 0.1, 0, 3}, {0.2, 0.7, 0, -1}, {0, 0.3, 2, 5}};
+    tc_context *context = context_open(options);
+    tc_mesh *meshes[2] = {NULL, NULL};
+    unsigned in_slabs = 0;
+    for (unsigned n = 0; n < 24; n++) {
+        tc_grid_options grid;
+        tc_labels_options how;
+        tc_mesh_data data[2];
+        grid_choose(&grid, 100 + n, true);
+        if (n % 3 == 0 || options->max_memory_bytes)
+            grid_begin(&grid, 63 + n / 3 % 3, 9, 40), samples_choose(&grid, LABELS);
+        const tc_type type = types[n % 4];
+        for (int64_t at = 0; at < sample_count(&grid); at++) {
+            const uint32_t label = n % 4 == 2 && samples[at] ? samples[at] + 4000000000u : samples[at];
+            if (type == TC_U8)
+                ((uint8_t *)wide)[at] = samples[at];
+            else if (type == TC_U32)
+                wide[at] = label;
+            else
+                ((uint16_t *)wide)[at] = samples[at];
+        }
+        grid.type = type;
+        grid.samples = wide;
+        if (n % 5 == 1) memcpy(grid.matrix, matrix, sizeof matrix);
+        options_begin(&how);
+        how.closed = n % 2;
+        how.smoothing = n % 7 == 0 ? 3 : 0;
+        if (n % 6 == 5) how.labels = wanted, how.label_count = 3;
+        if (!extract_labels(reference, &grid, &how, &meshes[0], &data[0])) continue;
+        if (!extract_labels(context, &grid, &how, &meshes[1], &data[1])) continue;
+        const char *difference = difference_of(&data[0], &data[1]);
+        EXPECT(!difference, "%s, volume %u, %s: %s", name, n, tc_type_name(type), difference);
+        in_slabs += data[1].slab_count > 1;
+        if (options->max_memory_bytes) expect_within(context, options->max_memory_bytes, name);
+    }
+    EXPECT(!options->max_memory_bytes || in_slabs > 5, "%u volumes in slabs", in_slabs);
+    for (int n = 0; n < 2; n++) tc_mesh_destroy(meshes[n]);
+    tc_context_destroy(context);
+}
+
+/* Kernels of one variant; copies: as on a device with memory of its own. */
+static void test_device(bool groups, bool copies, uint64_t seed, uint64_t count) {
+    tc_context_options options;
+    tc_expert_options expert;
+    options_init(&options, &expert);
+    if (groups) groups_begin();
+    expert.work_items = groups ? 64 : 1;
+    expert.always_copy = copies;
+    device = context_open(&options);
+    for (uint64_t n = 0; n < count; n++) run(seed + n, n % 10 == 0);
+    tc_context_destroy(device);
+    device = NULL;
+    expect_device_same(&options, "default");
+    expert.tile_bricks = 1;
+    expert.spin_limit = 1;
+    expect_device_same(&options, "every tile recounted");
+    options.max_memory_bytes = 4 << 20;
+    expect_device_same(&options, "slabs");
+}
+
 int main(int argc, char **argv) {
-    const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 2022;
-    const uint64_t count = argc > 2 ? strtoull(argv[2], NULL, 0) : 1500;
+    const bool on_device = argc > 1 && (!strcmp(argv[1], "alone") || !strcmp(argv[1], "groups"));
+    const bool copies = on_device && argc > 2 && !strcmp(argv[2], "always_copy");
+    char **numbers = argv + on_device + copies;
+    const int number_count = argc - on_device - copies;
+    const uint64_t seed = number_count > 1 ? strtoull(numbers[1], NULL, 0) : 2022;
+    const uint64_t count = number_count > 2 ? strtoull(numbers[2], NULL, 0) : on_device ? 300 : 1500;
     reference = reference_open();
-    test_patterns(argc > 3);
+    if (on_device) {
+        if (!device_exists()) return SKIPPED;
+        test_device(!strcmp(argv[1], "groups"), copies, seed, count);
+        tc_context_destroy(reference);
+        return EXPECT_DONE();
+    }
+    test_patterns(number_count > 3);
     for (uint64_t n = 0; n < count; n++) run(seed + n, n % 50 == 0);
     test_one_label();
     test_wanted();

@@ -55,6 +55,12 @@ typedef struct complex_buffers {
     device_buffer whole_cases; /* method hybrid */
 } complex_buffers;
 
+/* Of label maps: samples of a slab, results of kernel 1, and the mesh. */
+typedef struct label_buffers {
+    device_buffer samples, words, offsets, bases, rows, active, state, tables;
+    device_buffer positions, triangles, labels;
+} label_buffers;
+
 /* All buffers of kernels except arrays that the grid keeps whole on the device. The second window is used where copies
  * overlap kernels. */
 typedef struct workspace {
@@ -64,6 +70,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
+    label_buffers labels;
     device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */
 } workspace;
 
