@@ -43,16 +43,20 @@ inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, gl
     const ulong even = label_even(s, p.y, p.z), cubes = label_cubes(s, p);
     const ulong at = (ulong)BRICK_WORDS * brick + row;
     label_types(even, e, t);
-    for (uint n = 0; n < LABEL_ROW_TYPES; n++) {
+#pragma unroll
+    for (uint n = 0; n < LABEL_ROW_TYPES; n++) { /* all unrolled: a variable index would need a stack */
         if (store && n < LABEL_SHARED_TYPES) out.offsets[LABEL_OFFSETS * at + n] = (ushort)sums.x;
         sums.x += (uint)popcount(t[n]);
     }
+#pragma unroll
     for (uint n = 0; n < 5; n++) {
         const label_cells c = label_cells_in(label_tetrahedra(even, e, n), cubes);
         active |= label_cells_any(c);
         sums.y += label_cell_triangles(c);
     }
-    for (uint n = 0; n < LABEL_WORDS && store; n++) out.words[LABEL_WORDS * at + n] = e[n];
+#pragma unroll
+    for (uint n = 0; n < LABEL_WORDS; n++)
+        if (store) out.words[LABEL_WORDS * at + n] = e[n];
     if (store) atomic_or(&out.rows[brick], 1u << row);
     *cells += (uint)popcount(active);
     return sums;

@@ -63,6 +63,7 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
     const uint xz1 = label_row_find(s, p.y, p.z + 1, p.w + 1, in.rows);
     const ulong even = label_even(s, p.y, p.z), cubes = label_cubes(s, p);
     ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES];
+#pragma unroll
     for (uint n = 0; n < LABEL_WORDS; n++) e[n] = label_word_of(own, n, in);
     e[EX_Y1] = label_word_of(y1, 0, in), e[EZ_Y1] = label_word_of(y1, 2, in), e[EXZ_Y1] = label_word_of(y1, 4, in);
     e[EX_Z1] = label_word_of(z1, 0, in), e[EY_Z1] = label_word_of(z1, 1, in), e[EXY_Z1] = label_word_of(z1, 3, in);
@@ -73,12 +74,15 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
     e[EZ_XY1] = e[EZ_Y1] >> 1 | label_word_of(xy1, 2, in) << 63;
     e[EY_XZ1] = e[EY_Z1] >> 1 | label_word_of(xz1, 1, in) << 63;
     label_types(even, e, t);
+#pragma unroll
+    for (uint n = 0; n < LABEL_ROW_TYPES; n++) r->words[n] = t[n]; /* a variable index would need a stack */
     uint number = label_number_of(s, own, 0, in, tiles);
     for (uint n = 0; n < LABEL_ROW_TYPES; n++) {
-        r->words[n] = t[n], r->numbers[n] = number;
-        number += (uint)popcount(t[n]);
-        r->next[n] = n < LABEL_SHARED_TYPES ? label_number_of(s, x1, n, in, tiles) : 0;
+        r->numbers[n] = number;
+        number += (uint)popcount(r->words[n]);
     }
+    r->next[1] = label_number_of(s, x1, 1, in, tiles), r->next[2] = label_number_of(s, x1, 2, in, tiles);
+    for (uint n = 0; n < 3; n++) r->next[n ? 9 + n : 5] = label_number_of(s, x1, n ? 9 + n : 5, in, tiles);
     local ulong *w = r->words + LABEL_WORD_Y1;
     w[0] = e[EX_Y1], w[1] = e[EZ_Y1], w[2] = e[EXZ_Y1];
     w[3] = label_first_half(~even, e[EXZ_Y1], e[EX_Y1], e[EZ_Y1], e[EZ_XY1]);
@@ -92,8 +96,9 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
         r->next[LABEL_WORD_Y1 + n] = label_number_of(s, xy1, LABEL_Y1_TYPE(n), in, tiles);
         r->numbers[LABEL_WORD_Z1 + n] = label_number_of(s, z1, LABEL_Z1_TYPE(n), in, tiles);
         r->next[LABEL_WORD_Z1 + n] = label_number_of(s, xz1, LABEL_Z1_TYPE(n), in, tiles);
-        r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
     }
+#pragma unroll
+    for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
     r->numbers[LABEL_WORD_YZ1] = label_number_of(s, yz1, 0, in, tiles);
     r->next[LABEL_WORD_YZ1] = 0;
     r->triangles = own == NO_ROW ? 0

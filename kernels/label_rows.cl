@@ -21,6 +21,7 @@ inline_always ulong label_second_half(ulong even, ulong diagonal, ulong along_ne
 
 /* The words of vertices that a row's samples own, by type. */
 inline_always void label_types(ulong even, const ulong e[LABEL_EDGES], ulong t[LABEL_ROW_TYPES]) {
+#pragma unroll
     for (uint n = 0; n < LABEL_WORDS; n++) t[n] = e[n];
     t[6] = label_first_half(even, e[EXY], e[EX], e[EY], e[EY_X1]);
     t[7] = label_second_half(even, e[EXY], e[EX_Y1], e[EY], e[EY_X1]);
@@ -95,6 +96,7 @@ inline_always ulong label_cells_any(label_cells c) { return c.three | c.four | c
 
 inline_always ulong label_edges_any(const ulong e[LABEL_EDGES]) {
     ulong any = 0;
+#pragma unroll
     for (uint n = 0; n < LABEL_EDGES; n++) any |= e[n];
     return any;
 }

@@ -30,6 +30,7 @@ inline_always void label_edges_make(const label_job *s, label_place p, global co
     label_long y = {0, 0}, z = {0, 0}, yz = {0, 0}, z_y1 = {0, 0}, y_z1 = {0, 0};
     const uint odd = (s->parity + p.y + p.z) & 1;
     BITS a = row[0], b = row_y[0], c = row_z[0], d = row_yz[0];
+#pragma unroll
     for (uint n = 0; n < LABEL_EDGES; n++) e[n] = 0;
     for (uint x = 0; x <= 64; x++) {
         if (x >= end) continue; /* the same number of iterations for all work-items: see classify.cl */
