@@ -28,7 +28,7 @@ enum {
     ((vertices) | (inner) << 16 | (outer) << 18 | (triangles) << 20)
 
 /* A vertex of a cube: the row word that it is in, and whether it belongs to the next sample along x. */
-#define LABEL_VERTEX(word, next) ((word) | (next) << 5)
+#define LABEL_VERTEX(word, next) ((word) | (next) << 5) /* LABEL_ROW_WORDS is 32 */
 
 /* Row words: the own row's by type; then of the rows y + 1, z + 1 and both, what cubes use of them. */
 enum {
