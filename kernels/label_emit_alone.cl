@@ -33,12 +33,47 @@ inline_always void label_vertices_emit(const label_job *s, local const label_row
     }
 }
 
-/* Labels of the corners of the cube at a sample, those in memory. */
-inline_always void label_corners(const label_job *s, global const BITS *first, uint labels[8]) {
-    for (uint n = 0; n < 4; n++) {
-        global const BITS *row = first + (n & 1) * (ulong)s->nx + (n >> 1) * (ulong)s->nx * s->ny;
-        labels[2 * n] = row[0], labels[2 * n + 1] = row[1];
+/* Labels of the corners of the cube at a sample. */
+inline_always BITS8 label_corners(const label_job *s, global const BITS *first) {
+    global const BITS *y1 = first + s->nx, *z1 = first + (ulong)s->nx * s->ny, *yz1 = z1 + s->nx;
+    return (BITS8)(first[0], first[1], y1[0], y1[1], z1[0], z1[1], yz1[0], yz1[1]);
+}
+
+/* Bit n: corner n has the label. */
+inline_always uint label_equal(BITS8 corners, BITS label) {
+    const char8 is = convert_char8(corners == (BITS8)label);
+    return (uint)(((as_ulong(is) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
+}
+
+/* Triangles of a cube with two labels, which are those of an isovalue between them. inside: corners of the first. */
+inline_always uint label_two_emit(const label_job *s, label_numbers v, uint odd, uint inside, uint first, uint second,
+                                  uint n, global const uint *tables, label_mesh out) {
+    global const uchar *c = (global const uchar *)(tables + LABEL_CUBES + LABEL_CASE_WORDS * (256 * odd + inside));
+    global uint *to = out.triangles + s->triangle_offset + 3ul * n, *sides = out.labels + s->label_offset + 2ul * n;
+    const uint count = c[0];
+    for (uint m = 0; m < count; m++) {
+        vstore3((uint3)(v[c[3 * m + 1]], v[c[3 * m + 2]], v[c[3 * m + 3]]), m, to);
+        vstore2((uint2)(first, second), m, sides);
     }
+    return count;
+}
+
+inline_always uint label_cube_emit(const label_job *s, label_numbers v, uint odd, BITS8 corners, uint cells, uint n,
+                                   global const uint *tables, label_mesh out) {
+    const uint first = corners.s0, inside = label_equal(corners, corners.s0), before = n;
+    BITS l[8];
+    vstore8(corners, 0, l);
+    const uint other = l[lowest_bit(~(ulong)inside) & 7], rest = label_equal(corners, (BITS)other);
+    if ((inside | rest) == 255)
+        return other - 1 < first - 1 ? label_two_emit(s, v, odd, rest, other, first, n, tables, out)
+                                     : label_two_emit(s, v, odd, inside, first, other, n, tables, out);
+    for (; cells; cells &= cells - 1) {
+        const uint t = lowest_bit(cells);
+        const uint at = tables[LABEL_MAPS + (5 * odd + t) * LABEL_MAP_WORDS + LABEL_MAP_CORNERS];
+        const uint4 own = (uint4)(l[at & 7], l[at >> 4 & 7], l[at >> 8 & 7], l[at >> 12 & 7]);
+        n += label_cell_emit(s, v, own, t, odd, n, tables, out);
+    }
+    return n - before;
 }
 
 inline_always void label_row_emit(const label_job *s, local const label_row *r, uint lane, global const BITS *samples,
@@ -52,14 +87,9 @@ inline_always void label_row_emit(const label_job *s, local const label_row *r, 
     for (uint t = 0; t < 5; t++) cubes |= cells[t] = label_cells_any(r->cells[t]);
     for (; cubes; cubes &= cubes - 1) {
         const uint x = lowest_bit(cubes), odd = (s->parity + 64 * p.w + x + p.y + p.z) & 1;
-        uint l[8];
-        label_corners(s, first + x, l);
-        for (uint t = 0; t < 5; t++) {
-            if (!(cells[t] >> x & 1)) continue;
-            const uint corners = tables[LABEL_MAPS + (5 * odd + t) * LABEL_MAP_WORDS + LABEL_MAP_CORNERS];
-            const uint4 own = (uint4)(l[corners & 7], l[corners >> 4 & 7], l[corners >> 8 & 7], l[corners >> 12 & 7]);
-            n += label_cell_emit(s, table + LABEL_ROW_WORDS * x, own, t, odd, n, tables, out);
-        }
+        uint own = 0;
+        for (uint t = 0; t < 5; t++) own |= (uint)(cells[t] >> x & 1) << t;
+        n += label_cube_emit(s, table + LABEL_ROW_WORDS * x, odd, label_corners(s, first + x), own, n, tables, out);
     }
 }
 

@@ -13,14 +13,17 @@
 enum { LABEL_ROW_TYPES = 21, LABEL_SHARED_TYPES = 12, LABEL_OFFSETS = 16, LABEL_WORDS = 6 };
 
 /* Words of the tables: for each of 64 patterns the number of interfaces, then these; for each parity and tetrahedron
- * its eleven vertices, and its corners; for each parity and type the offset from the owner, as floats. */
+ * its eleven vertices, and its corners; for each parity and type the offset from the owner, as floats; for each parity
+ * and pattern of a cube with two labels, of which the set bits have the first, bytes: the number of triangles, then
+ * three vertices each. */
 enum {
     LABEL_CASE_WORDS = 8,
     LABEL_MAP_WORDS = 16,
     LABEL_MAPS = 64 * LABEL_CASE_WORDS,
     LABEL_MAP_CORNERS = 11, /* of a map: its corners, 4 bits each */
     LABEL_PLACES = LABEL_MAPS + 2 * 5 * LABEL_MAP_WORDS,
-    LABEL_TABLE_WORDS = LABEL_PLACES + 2 * LABEL_ROW_TYPES * 3
+    LABEL_CUBES = LABEL_PLACES + 2 * LABEL_ROW_TYPES * 3,
+    LABEL_TABLE_WORDS = LABEL_CUBES + 2 * 256 * LABEL_CASE_WORDS
 };
 
 /* An interface: four vertices, 4 bits each; its corners, 2 bits each; how many triangles it has. */

@@ -173,11 +173,11 @@ static tc_status work_reserve(label_run *r, const label_job *job) {
 /* Uploaded once per context. */
 static tc_status tables_provide(label_run *r) {
     uint32_t words[LABEL_TABLE_WORDS];
-    device_buffer *tables = &r->work->tables;
+    device_buffer *tables = &r->work->tables[r->v->grid->mirrored];
     if (tables->memory) return TC_OK;
     tc_status status = buffer_reserve(r->context, tables, sizeof words, "tables of labels");
     if (status) return status;
-    label_table_make(words);
+    label_table_make(r->v->grid->mirrored, words);
     cl_int error =
         cl->EnqueueWriteBuffer(r->context->queue, tables->memory, CL_TRUE, 0, sizeof words, words, 0, NULL, NULL);
     if (error) buffer_release(r->context, tables);
@@ -304,7 +304,7 @@ static tc_status emit_launch(const label_run *r, const label_job *job) {
                                          ARGUMENT(w->rows.memory),
                                          ARGUMENT(w->active.memory),
                                          ARGUMENT(w->state.memory),
-                                         ARGUMENT(w->tables.memory),
+                                         ARGUMENT(w->tables[r->v->grid->mirrored].memory),
                                          ARGUMENT(w->positions.memory),
                                          ARGUMENT(w->triangles.memory),
                                          ARGUMENT(w->labels.memory)};

@@ -19,6 +19,6 @@ kernel_kind labels_kind(const label_volume *volume);
 tc_status labels_extract(const label_volume *volume, scan_parameters scan, tc_mesh *mesh);
 
 /* Words of the table that kernel 2 reads (label_job.h). */
-void label_table_make(uint32_t *words);
+void label_table_make(bool mirrored, uint32_t *words);
 
 #endif

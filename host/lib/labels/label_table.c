@@ -29,7 +29,20 @@ static uint32_t interface_word(const label_interface *i) {
     return LABEL_INTERFACE(vertices, (uint32_t)i->inner, (uint32_t)i->outer, i->vertex_count - 2u);
 }
 
-void label_table_make(uint32_t *words) {
+/* Cubes with two labels are those of an isovalue between them. */
+static void cubes_make(bool mirrored, uint32_t *words) {
+    cube_case cases[2 * CASES_TWO_SIGNS];
+    _Static_assert(sizeof(cube_case) == LABEL_CASE_WORDS * sizeof(uint32_t), "kernels read it so");
+    tetra_cases_derive(cases, mirrored);
+    for (unsigned n = 0; n < 2 * CASES_TWO_SIGNS; n++) {
+        cube_case *c = &cases[n];
+        for (unsigned at = 0; at < 3u * c->triangle_count; at++)
+            c->edges[at / 3][at % 3] = (uint8_t)vertex_word(cube_edges[c->edges[at / 3][at % 3]]);
+    }
+    memcpy(words, cases, sizeof cases);
+}
+
+void label_table_make(bool mirrored, uint32_t *words) {
     label_tables tables;
     label_tables_derive(&tables);
     memset(words, 0, LABEL_TABLE_WORDS * sizeof *words);
@@ -46,4 +59,5 @@ void label_table_make(uint32_t *words) {
         for (unsigned c = 0; c < 4; c++) map[LABEL_MAP_CORNERS] |= (uint32_t)tetrahedron_corners[parity][t][c] << 4 * c;
     }
     memcpy(words + LABEL_PLACES, tables.offsets, sizeof tables.offsets);
+    cubes_make(mirrored, words + LABEL_CUBES);
 }

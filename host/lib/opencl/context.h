@@ -57,7 +57,8 @@ typedef struct complex_buffers {
 
 /* Of label maps: samples of a slab, results of kernel 1, and the mesh. */
 typedef struct label_buffers {
-    device_buffer samples, words, offsets, bases, rows, active, state, tables;
+    device_buffer samples, words, offsets, bases, rows, active, state;
+    device_buffer tables[2]; /* [1] for mirrored grids */
     device_buffer positions, triangles, labels;
 } label_buffers;
 
