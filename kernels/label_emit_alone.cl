@@ -22,8 +22,8 @@ inline_always void label_vertices_emit(const label_job *s, local const label_row
                                        global const uint *tables, label_mesh out) {
     const label_place p = r->place;
     const ulong even = label_even(s, p.y, p.z);
-    for (uint odd = 0; odd < 2; odd++) {
-        ulong rest = r->words[type] & (odd ? ~even : even);
+    for (uint odd = 0; odd < (type < LABEL_WORDS ? 1 : 2); odd++) { /* on edges both are in one place */
+        ulong rest = r->words[type] & (type < LABEL_WORDS ? ~0ul : odd ? ~even : even);
         if (!rest) continue;
         const label_line line = label_line_of(s, p, type, odd, tables);
         for (; rest; rest &= rest - 1) {

@@ -40,11 +40,16 @@ inline_always ulong label_word_of(uint at, uint type, label_arrays in) {
     return at == NO_ROW ? 0 : in.words[(ulong)LABEL_WORDS * at + type];
 }
 
-/* The number of a row's first vertex of a type. */
-inline_always uint label_number_of(const label_job *s, uint at, uint type, label_arrays in, global const uint *tiles) {
+/* The number of a row's first vertex. */
+inline_always uint label_first_of(const label_job *s, uint at, label_arrays in, global const uint *tiles) {
     if (at == NO_ROW) return 0;
     return s->vertex_base + tile_before(tiles, label_tile_of(s, at / BRICK_WORDS), TILE_VERTICES) +
-           in.bases[at].vertices + in.offsets[(ulong)LABEL_OFFSETS * at + type];
+           in.bases[at].vertices;
+}
+
+/* That of its first vertex of a type. */
+inline_always uint label_number_of(uint first, uint at, uint type, label_arrays in) {
+    return at == NO_ROW ? 0 : first + in.offsets[(ulong)LABEL_OFFSETS * at + type];
 }
 
 /* The types that cubes use of the rows y + 1 and z + 1. */
@@ -74,13 +79,16 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
     label_types(even, e, t);
 #pragma unroll
     for (uint n = 0; n < LABEL_ROW_TYPES; n++) r->words[n] = t[n]; /* a variable index would need a stack */
-    uint number = label_number_of(s, own, 0, in, tiles);
+    uint number = label_first_of(s, own, in, tiles);
     for (uint n = 0; n < LABEL_ROW_TYPES; n++) {
         r->numbers[n] = number;
         number += (uint)popcount(r->words[n]);
     }
-    r->next[1] = label_number_of(s, x1, 1, in, tiles), r->next[2] = label_number_of(s, x1, 2, in, tiles);
-    for (uint n = 0; n < 3; n++) r->next[n ? 9 + n : 5] = label_number_of(s, x1, n ? 9 + n : 5, in, tiles);
+    const uint first_x1 = label_first_of(s, x1, in, tiles), first_xy1 = label_first_of(s, xy1, in, tiles);
+    const uint first_xz1 = label_first_of(s, xz1, in, tiles), first_y1 = label_first_of(s, y1, in, tiles);
+    const uint first_z1 = label_first_of(s, z1, in, tiles);
+    r->next[1] = label_number_of(first_x1, x1, 1, in), r->next[2] = label_number_of(first_x1, x1, 2, in);
+    for (uint n = 0; n < 3; n++) r->next[n ? 9 + n : 5] = label_number_of(first_x1, x1, n ? 9 + n : 5, in);
     local ulong *w = r->words + LABEL_WORD_Y1;
     w[0] = e[EX_Y1], w[1] = e[EZ_Y1], w[2] = e[EXZ_Y1];
     w[3] = label_first_half(~even, e[EXZ_Y1], e[EX_Y1], e[EZ_Y1], e[EZ_XY1]);
@@ -90,14 +98,14 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
     w[9] = label_second_half(~even, e[EXY_Z1], e[EX_YZ1], e[EY_Z1], e[EY_XZ1]);
     w[10] = e[EX_YZ1];
     for (uint n = 0; n < 5; n++) {
-        r->numbers[LABEL_WORD_Y1 + n] = label_number_of(s, y1, LABEL_Y1_TYPE(n), in, tiles);
-        r->next[LABEL_WORD_Y1 + n] = label_number_of(s, xy1, LABEL_Y1_TYPE(n), in, tiles);
-        r->numbers[LABEL_WORD_Z1 + n] = label_number_of(s, z1, LABEL_Z1_TYPE(n), in, tiles);
-        r->next[LABEL_WORD_Z1 + n] = label_number_of(s, xz1, LABEL_Z1_TYPE(n), in, tiles);
+        r->numbers[LABEL_WORD_Y1 + n] = label_number_of(first_y1, y1, LABEL_Y1_TYPE(n), in);
+        r->next[LABEL_WORD_Y1 + n] = label_number_of(first_xy1, xy1, LABEL_Y1_TYPE(n), in);
+        r->numbers[LABEL_WORD_Z1 + n] = label_number_of(first_z1, z1, LABEL_Z1_TYPE(n), in);
+        r->next[LABEL_WORD_Z1 + n] = label_number_of(first_xz1, xz1, LABEL_Z1_TYPE(n), in);
     }
 #pragma unroll
     for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
-    r->numbers[LABEL_WORD_YZ1] = label_number_of(s, yz1, 0, in, tiles);
+    r->numbers[LABEL_WORD_YZ1] = label_first_of(s, yz1, in, tiles);
     r->next[LABEL_WORD_YZ1] = 0;
     r->triangles = own == NO_ROW ? 0
                                  : tile_before(tiles, label_tile_of(s, own / BRICK_WORDS), TILE_TRIANGLES) +
