@@ -382,7 +382,7 @@ typedef struct tc_labels_options {
                    border; else they have borders there */
 } tc_labels_options;
 
-/* Defaults: all labels, 16 sweeps, not closed. */
+/* Defaults: all labels, 8 sweeps, not closed. */
 TC_API void tc_labels_options_init(tc_labels_options *options);
 
 /* Extracts the surfaces between labels, and between labels and background, as one mesh in which neighbours share their
@@ -398,10 +398,10 @@ TC_API void tc_labels_options_init(tc_labels_options *options);
  * other by bricks, rows, types and x as those of tc_extract do, and so do triangles; if there is one label, the mesh
  * without smoothing is that of tc_extract of samples 0 and 1 at 0.5, to the byte.
  *
- * Smoothing moves every vertex half way to the mean of its neighbours, `smoothing` times, but no farther from its place
- * than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there count (after Gibson,
- * "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations", 2022). It runs on
- * threads of the host, whose number changes nothing.
+ * Smoothing moves every vertex three quarters of the way to the mean of its neighbours, `smoothing` times, but no
+ * farther from its place than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there
+ * count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations",
+ * 2022). It runs on threads of the host, whose number changes nothing.
  *
  * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
  * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SWEEPS_DEFAULT = 16, SWEEPS_MOST = 1000 };
+enum { SWEEPS_DEFAULT = 8, SWEEPS_MOST = 1000 };
 
 void tc_labels_options_init(tc_labels_options *options) {
     if (!options) return;

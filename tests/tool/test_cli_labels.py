@@ -72,7 +72,7 @@ class Reports(LabelCase):
         self.assertEqual(set(report), KEYS)
         self.assertEqual([set(row) for row in report["labels"]], [ROW_KEYS] * 3)
         self.assertEqual([row["label"] for row in report["labels"]], [3, 7, 300])
-        self.assertEqual((report["smoothing"], report["closed"], report["dims"]), (16, False, list(DIMS)))
+        self.assertEqual((report["smoothing"], report["closed"], report["dims"]), (8, False, list(DIMS)))
 
     def test_check(self):
         report = self.labels(self.raw_blocks(), "--check", "--smooth", "0")

@@ -42,32 +42,46 @@ static void blocks_span(void *shared) {
 
 static bool is_beside(const block_span *b, const neighbour_range *r) { return b->low < r->end && b->high >= r->first; }
 
-/* starts[n + 1] becomes the number of entries of vertex n: two for each of its triangles. False where they have no
- * numbers of 32 bits. */
-static bool entries_count(const search *s, const neighbour_range *r) {
-    uint64_t sum = 0;
-    for (uint64_t b = 0; b < s->block_count; b++)
-        for (uint64_t c = 3 * b * BLOCK_TRIANGLES; is_beside(&s->blocks[b], r) && c < 3 * block_end(s, b); c++)
-            if (s->triangles[c] >= r->first && s->triangles[c] < r->end) r->starts[s->triangles[c] - r->first + 1] += 2;
-    for (uint32_t n = 0; n < r->end - r->first; n++) {
-        sum += r->starts[n + 1];
-        if (sum > UINT32_MAX) return false;
-        r->starts[n + 1] = (uint32_t)sum;
+/* What is made for a range while its lists are found. */
+typedef struct range_work {
+    neighbour_range *r;
+    uint64_t *sums;   /* per vertex: of its followers less that of those before it, mixed; 0: they are the same */
+    uint32_t *places; /* per vertex: where its next entry goes; then where those of irregular ones begin */
+    uint32_t *all;    /* of irregular vertices: followers, and those before */
+} range_work;
+
+static uint64_t mixed(uint32_t vertex) { return (vertex + 1) * UINT64_C(0x9e3779b97f4a7c15) ^ vertex; }
+
+typedef void corner_visit(range_work *w, uint32_t vertex, uint32_t after, uint32_t before);
+
+/* Calls visit for the corners of triangles that lie at vertices of the range; vertex: from its first on. */
+static inline void corners_visit(const search *s, range_work *w, corner_visit *visit) {
+    const uint32_t first = w->r->first, count = w->r->end - first;
+    for (uint64_t b = 0; b < s->block_count; b++) {
+        if (!is_beside(&s->blocks[b], w->r)) continue;
+        for (const uint32_t *t = s->triangles + 3 * b * BLOCK_TRIANGLES; t < s->triangles + 3 * block_end(s, b);
+             t += 3) {
+            if (t[0] - first < count) visit(w, t[0] - first, t[1], t[2]);
+            if (t[1] - first < count) visit(w, t[1] - first, t[2], t[0]);
+            if (t[2] - first < count) visit(w, t[2] - first, t[0], t[1]);
+        }
     }
-    return true;
 }
 
-/* Uses starts[n] as the place of the next entry: afterwards it is where those of n + 1 begin. */
-static void entries_fill(const search *s, const neighbour_range *r) {
-    for (uint64_t b = 0; b < s->block_count; b++)
-        for (uint64_t t = b * BLOCK_TRIANGLES; is_beside(&s->blocks[b], r) && t < block_end(s, b); t++)
-            for (unsigned c = 0; c < 3; c++) {
-                const uint32_t *triangle = s->triangles + 3 * t, v = triangle[c];
-                if (v < r->first || v >= r->end) continue;
-                uint32_t *to = &r->starts[v - r->first];
-                r->vertices[(*to)++] = triangle[(c + 1) % 3];
-                r->vertices[(*to)++] = triangle[(c + 2) % 3];
-            }
+static void corner_count(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
+    w->r->starts[vertex + 1]++;
+    w->sums[vertex] += mixed(after) - mixed(before);
+}
+
+static void corner_fill(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
+    (void)before;
+    w->r->vertices[w->places[vertex]++] = after;
+}
+
+static void corner_fill_all(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
+    if (!w->sums[vertex]) return;
+    w->all[w->places[vertex]++] = after;
+    w->all[w->places[vertex]++] = before;
 }
 
 static void sort(uint32_t *values, uint32_t count) {
@@ -79,9 +93,10 @@ static void sort(uint32_t *values, uint32_t count) {
     }
 }
 
-/* Entries of a vertex, sorted: a neighbour is there once for each triangle at the edge. Keeps those that pull, at `to`;
- * returns how many. */
-static uint32_t neighbours_choose(const uint32_t *entries, uint32_t count, uint32_t *to, uint8_t *on_border) {
+/* Entries of a vertex, sorted: a neighbour is there once for each triangle at the edge. Keeps those that pull, at most
+ * `room`, at `to`; returns how many. */
+static uint32_t neighbours_choose(const uint32_t *entries, uint32_t count, uint32_t *to, uint32_t room,
+                                  uint8_t *on_border) {
     uint32_t kept = 0;
     bool has_border = false, has_junction = false;
     for (uint32_t n = 0, end; n < count; n = end) {
@@ -89,38 +104,71 @@ static uint32_t neighbours_choose(const uint32_t *entries, uint32_t count, uint3
         has_border |= end - n == 1;
         has_junction |= end - n > 2;
     }
-    for (uint32_t n = 0, end; n < count; n = end) {
+    for (uint32_t n = 0, end; n < count && kept < room; n = end) {
         for (end = n; end < count && entries[end] == entries[n];) end++;
-        const uint32_t vertex = entries[n]; /* to may lie before the entries, not behind */
-        if (has_border ? end - n == 1 : has_junction ? end - n > 2 : true) to[kept++] = vertex;
+        if (has_border ? end - n == 1 : has_junction ? end - n > 2 : true) to[kept++] = entries[n];
     }
     *on_border = has_border;
     return kept;
 }
 
-/* Sorts the entries of each vertex, and closes up what is kept of them. */
-static void entries_reduce(const neighbour_range *r) {
-    uint32_t begin = 0, kept = 0;
-    for (uint32_t n = 0; n < r->end - r->first; n++) {
-        const uint32_t end = r->starts[n];
-        sort(r->vertices + begin, end - begin);
-        r->starts[n] = kept;
-        kept += neighbours_choose(r->vertices + begin, end - begin, r->vertices + kept, &r->on_border[n]);
+/* A vertex whose followers are those before it lies within a surface: its neighbours are its followers. There is room
+ * for one more, as a vertex with one triangle has two. False without memory, or numbers of 32 bits. */
+static bool followers_find(const search *s, range_work *w) {
+    neighbour_range *r = w->r;
+    const uint32_t count = r->end - r->first;
+    uint64_t sum = 0;
+    corners_visit(s, w, corner_count);
+    for (uint32_t n = 0; n < count; n++) {
+        w->places[n] = (uint32_t)sum;
+        sum += r->starts[n + 1] + 1u;
+        if (sum > UINT32_MAX) return false;
+        r->counts[n] = (uint8_t)(r->starts[n + 1] < UINT8_MAX ? r->starts[n + 1] : UINT8_MAX);
+        r->starts[n + 1] = (uint32_t)sum;
+    }
+    r->vertices = malloc(((size_t)sum + 1) * sizeof *r->vertices);
+    if (!r->vertices) return false;
+    corners_visit(s, w, corner_fill);
+    return true;
+}
+
+/* Other vertices lie on junctions or borders. */
+static bool irregular_find(const search *s, range_work *w) {
+    neighbour_range *r = w->r;
+    const uint32_t count = r->end - r->first;
+    uint32_t sum = 0;
+    for (uint32_t n = 0; n < count; n++) {
+        const uint32_t triangles = r->starts[n + 1] - r->starts[n] - 1;
+        w->places[n] = sum;
+        if (w->sums[n]) sum += 2 * triangles;
+    }
+    w->all = malloc(((size_t)sum + 1) * sizeof *w->all);
+    if (!w->all) return false;
+    corners_visit(s, w, corner_fill_all);
+    for (uint32_t n = 0, begin = 0; n < count; n++) {
+        if (!w->sums[n]) continue;
+        const uint32_t room = r->starts[n + 1] - r->starts[n], end = w->places[n];
+        sort(w->all + begin, end - begin);
+        r->counts[n] = (uint8_t)neighbours_choose(w->all + begin, end - begin, r->vertices + r->starts[n],
+                                                  room < UINT8_MAX ? room : UINT8_MAX, &r->on_border[n]);
         begin = end;
     }
-    r->starts[r->end - r->first] = kept;
+    return true;
 }
 
 static bool range_find(const search *s, neighbour_range *r) {
     const size_t count = r->end - r->first;
+    range_work w = {
+        .r = r, .sums = calloc(count + 1, sizeof *w.sums), .places = malloc((count + 1) * sizeof *w.places)};
     r->starts = calloc(count + 1, sizeof *r->starts);
-    r->on_border = malloc(count + 1);
-    if (!r->starts || !r->on_border || !entries_count(s, r)) return false;
-    r->vertices = malloc(((size_t)r->starts[count] + 1) * sizeof *r->vertices);
-    if (!r->vertices) return false;
-    entries_fill(s, r);
-    entries_reduce(r);
-    return true;
+    r->counts = malloc(count + 1);
+    r->on_border = calloc(count + 1, 1);
+    bool is_found = w.sums && w.places && r->starts && r->counts && r->on_border;
+    is_found = is_found && followers_find(s, &w) && irregular_find(s, &w);
+    free(w.sums);
+    free(w.places);
+    free(w.all);
+    return is_found;
 }
 
 static void ranges_find(void *shared) {
@@ -155,6 +203,7 @@ void neighbours_release(neighbour_lists *lists) {
     for (uint32_t n = 0; n < lists->range_count && lists->ranges; n++) {
         free(lists->ranges[n].starts);
         free(lists->ranges[n].vertices);
+        free(lists->ranges[n].counts);
         free(lists->ranges[n].on_border);
     }
     free(lists->ranges);

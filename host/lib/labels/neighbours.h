@@ -10,8 +10,9 @@
 
 typedef struct neighbour_range {
     uint32_t first, end; /* vertices */
-    uint32_t *starts;    /* end - first + 1: where the neighbours of each begin */
-    uint32_t *vertices;  /* rising for each vertex */
+    uint32_t *starts;    /* end - first + 1: where the neighbours of each begin, with room for more */
+    uint8_t *counts;     /* one per vertex: how many it has */
+    uint32_t *vertices;  /* in an order that follows from the mesh */
     uint8_t *on_border;  /* one per vertex: it has an edge with one triangle */
 } neighbour_range;
 

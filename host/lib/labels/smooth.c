@@ -1,6 +1,7 @@
 /*
  * Each sweep makes new positions of all old ones, so neither threads nor the order of vertices change a bit. The box of
- * a vertex lies along the grid's axes, around the place where it was made.
+ * a vertex lies along the grid's axes, around the place where it was made. Positions have four components while they
+ * are smoothed, as processors take them.
  */
 #include "labels/smooth.h"
 
@@ -14,20 +15,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef float vector __attribute__((vector_size(16)));
+typedef int32_t bits __attribute__((vector_size(16)));
+
 static const float reach = 0.45f; /* cells, along each axis: surfaces on either side of a sample keep apart */
+static const float pull = 0.75f;  /* of the way to the mean of the neighbours */
 
 typedef struct smoothing {
     const label_volume *v;
     neighbour_lists lists;
     float matrix[3][3], inverse[3][3]; /* from index space, and into it */
+    bool is_straight;                  /* the grid's axes are those of space */
+    vector most;                       /* then: how far a vertex may move */
+    float shares[UINT8_MAX + 1];       /* of each of n neighbours */
     uint8_t *fixed;                    /* one per vertex: bit n, it does not move along axis n */
-    const float *places;               /* where vertices were made */
-    const float *from;
-    float *to;
+    float *mesh;                       /* where vertices were made; the mesh's own positions */
+    vector *places[2];
+    const vector *from;
+    vector *to;
     _Atomic uint64_t next;
 } smoothing;
-
-static float *positions_allocate(uint64_t vertices) { return malloc((size_t)(3 * vertices + 1) * sizeof(float)); }
 
 static void invert(smoothing *s) {
     const float *m = s->v->grid->matrix;
@@ -41,7 +48,14 @@ static void invert(smoothing *s) {
             const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
             s->inverse[c][r] = (float)((a[r1][c1] * a[r2][c2] - a[r1][c2] * a[r2][c1]) / determinant);
         }
+    s->is_straight = true;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) s->is_straight = s->is_straight && (r == c || s->matrix[r][c] == 0);
+    for (int axis = 0; axis < 3; axis++) s->most[axis] = reach * fabsf(s->matrix[axis][axis]);
+    for (int n = 1; n <= UINT8_MAX; n++) s->shares[n] = pull / (float)n;
 }
+
+static vector vector_load(const float *from) { return (vector){from[0], from[1], from[2], 0}; }
 
 /* Vertices at the end of a mesh stay in the planes of the grid's border that they lie in. */
 static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
@@ -57,20 +71,29 @@ static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
     return fixed;
 }
 
-static void ranges_fix(void *shared) {
+static void ranges_begin(void *shared) {
     smoothing *s = shared;
     for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) {
         const neighbour_range *r = &s->lists.ranges[n];
-        for (uint32_t v = r->first; v < r->end; v++)
-            s->fixed[v] = r->on_border[v - r->first] ? fixed_axes(s, s->places + 3 * (uint64_t)v) : 0;
+        for (uint64_t v = r->first; v < r->end; v++) {
+            s->places[0][v] = vector_load(s->mesh + 3 * v);
+            s->fixed[v] = r->on_border[v - r->first] ? fixed_axes(s, s->mesh + 3 * v) : 0;
+        }
     }
 }
 
-/* Keeps a vertex in its box. */
-static void constrain(const smoothing *s, uint8_t fixed, const float place[3], float at[3]) {
-    float moved[3], index[3];
+static void ranges_end(void *shared) {
+    smoothing *s = shared;
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;)
+        for (uint64_t v = s->lists.ranges[n].first; v < s->lists.ranges[n].end; v++)
+            memcpy(s->mesh + 3 * v, &s->to[v], CHANNEL_BYTES);
+}
+
+/* A vertex that may have left its box, in space or along some axes. */
+static vector constrain(const smoothing *s, uint8_t fixed, vector place, vector at) {
+    const vector moved = at - place;
+    float index[3];
     bool is_out = false;
-    for (int axis = 0; axis < 3; axis++) moved[axis] = at[axis] - place[axis];
     for (int axis = 0; axis < 3; axis++) {
         const float *m = s->inverse[axis], most = fixed >> axis & 1 ? 0 : reach;
         const float i = (m[0] * moved[0] + m[1] * moved[1]) + m[2] * moved[2];
@@ -81,26 +104,35 @@ static void constrain(const smoothing *s, uint8_t fixed, const float place[3], f
         const float *m = s->matrix[r];
         at[r] = place[r] + ((m[0] * index[0] + m[1] * index[1]) + m[2] * index[2]);
     }
+    return at;
 }
 
-static void vertex_move(const smoothing *s, const neighbour_range *r, uint32_t vertex) {
-    const uint32_t n = vertex - r->first, begin = r->starts[n], end = r->starts[n + 1];
-    const float *old = s->from + 3 * (uint64_t)vertex;
-    float *at = s->to + 3 * (uint64_t)vertex, sum[3] = {0, 0, 0};
-    for (uint32_t e = begin; e < end; e++) {
-        const float *p = s->from + 3 * (uint64_t)r->vertices[e];
-        for (int axis = 0; axis < 3; axis++) sum[axis] += p[axis] - old[axis];
+static vector lesser(vector a, vector b) {
+    const bits is = a < b;
+    return (vector)(((bits)a & is) | ((bits)b & ~is));
+}
+
+static vector constrain_straight(const smoothing *s, vector place, vector at) {
+    return place - lesser(-lesser(at - place, s->most), s->most);
+}
+
+static void range_move(const smoothing *s, const neighbour_range *r) {
+    const vector *from = s->from;
+    for (uint32_t n = 0; n < r->end - r->first; n++) {
+        const uint64_t vertex = r->first + (uint64_t)n;
+        const uint32_t *neighbours = r->vertices + r->starts[n], count = r->counts[n];
+        const vector old = from[vertex], place = vector_load(s->mesh + 3 * vertex);
+        vector sum = {0, 0, 0, 0};
+        for (uint32_t m = 0; m < count; m++) sum += from[neighbours[m]] - old;
+        const vector at = old + s->shares[count] * sum;
+        s->to[vertex] = s->is_straight && !s->fixed[vertex] ? constrain_straight(s, place, at)
+                                                            : constrain(s, s->fixed[vertex], place, at);
     }
-    const float half = end > begin ? 0.5f / (float)(end - begin) : 0;
-    for (int axis = 0; axis < 3; axis++) at[axis] = old[axis] + half * sum[axis];
-    constrain(s, s->fixed[vertex], s->places + 3 * (uint64_t)vertex, at);
 }
 
 static void ranges_move(void *shared) {
     smoothing *s = shared;
-    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;)
-        for (uint32_t v = s->lists.ranges[n].first; v < s->lists.ranges[n].end; v++)
-            vertex_move(s, &s->lists.ranges[n], v);
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) range_move(s, &s->lists.ranges[n]);
 }
 
 static void on_ranges(smoothing *s, void (*work)(void *shared)) {
@@ -108,36 +140,34 @@ static void on_ranges(smoothing *s, void (*work)(void *shared)) {
     parallel_run(s->lists.range_count, work, s);
 }
 
-static tc_status sweep(smoothing *s, uint32_t sweeps, float *const places[2]) {
+static tc_status sweep(smoothing *s, uint32_t sweeps) {
     tc_status status = TC_OK;
-    on_ranges(s, ranges_fix);
+    on_ranges(s, ranges_begin);
     for (uint32_t n = 0; n < sweeps && !status; n++) {
-        s->from = n ? places[n & 1] : s->places;
-        s->to = places[~n & 1];
+        s->from = s->places[n & 1];
+        s->to = s->places[~n & 1];
         on_ranges(s, ranges_move);
         status = context_progress(s->v->grid->context, "smooth", (double)(n + 1) / (double)sweeps);
     }
+    if (!status) on_ranges(s, ranges_end);
     return status;
 }
 
 tc_status labels_smooth(const label_volume *volume, uint32_t sweeps, tc_mesh *mesh) {
-    smoothing s = {.v = volume};
-    host_block *made = &mesh->channels[CHANNEL_POSITIONS];
-    float *places[2] = {positions_allocate(mesh->vertex_count), positions_allocate(mesh->vertex_count)};
-    s.places = made->memory;
-    s.fixed = malloc((size_t)mesh->vertex_count + 1);
+    smoothing s = {.v = volume, .mesh = mesh->channels[CHANNEL_POSITIONS].memory};
     tc_status status = TC_OK;
-    if (!sweeps || !mesh->vertex_count) goto cleanup;
-    if (!places[0] || !places[1] || !s.fixed)
+    if (!sweeps || !mesh->vertex_count) return TC_OK;
+    host_block blocks[2] = {{0}};
+    for (int n = 0; n < 2 && !status; n++) status = host_block_reserve(&blocks[n], mesh->vertex_count * sizeof(vector));
+    for (int n = 0; n < 2; n++) s.places[n] = blocks[n].memory;
+    s.fixed = malloc((size_t)mesh->vertex_count);
+    if (status || !s.fixed)
         status = (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing");
     invert(&s);
     if (!status) status = neighbours_find(mesh, &s.lists);
-    if (!status) status = sweep(&s, sweeps, places);
-    if (!status) memcpy(made->memory, s.to, (size_t)mesh->vertex_count * CHANNEL_BYTES);
-cleanup:
+    if (!status) status = sweep(&s, sweeps);
     neighbours_release(&s.lists);
     free(s.fixed);
-    free(places[0]);
-    free(places[1]);
+    for (int n = 0; n < 2; n++) host_block_release(&blocks[n]);
     return status;
 }

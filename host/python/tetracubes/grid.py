@@ -143,7 +143,7 @@ class GridBase:
         """The surfaces between the labels of a volume of integers, as one Mesh with ``boundary_labels``.
 
         labels: those that are wanted; others, 0, negative and missing samples are background. None: all.
-        smoothing: sweeps, 16 unless given; 0 leaves the stairs of the voxels.
+        smoothing: sweeps, 8 unless given; 0 leaves the stairs of the voxels.
         closed: whether surfaces are closed half a voxel beyond the volume's border.
         """
         how = options(tc_labels_options)

@@ -56,7 +56,7 @@ const option option_table[] = {
      "write a file for each label, its whole surface: the label stands for % in\n"
      "FILE, or goes with _ before the ending, as in organs_7.stl"},
     {"--smooth", NULL, "N", COMMAND_LABELS, VALUE_NUMBER, IN(smooth), NULL,
-     "sweeps of smoothing (default: 16); vertices stay within their voxel, and\n"
+     "sweeps of smoothing (default: 8); vertices stay within their voxel, and\n"
      "surfaces joined where they meet; 0 leaves the stairs of the voxels"},
     {"--closed", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(closed), NULL,
      "close the surfaces of labels that reach the border of the volume, half a\n"
