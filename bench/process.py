@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from typing import NamedTuple
 
 ISO = ["--iso", "127.5"]
 RUNS = 20
@@ -28,11 +29,18 @@ class Failure(Exception):
     """Ends the script with its text."""
 
 
-def run(command):
-    """Seconds, peak resident bytes and standard output."""
+class Run(NamedTuple):
+    """What a process took, with the children that it waited for; the peak is the largest of theirs."""
+    seconds: float
+    peak: int  # resident bytes
+    text: str  # standard output
+    cpu_seconds: float
+
+
+def run(command, **how):
     begin = time.perf_counter()
     with tempfile.TemporaryFile() as out:
-        process = subprocess.Popen(command, stdout=out)
+        process = subprocess.Popen(command, stdout=out, **how)
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - begin
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -40,7 +48,7 @@ def run(command):
         text = out.read().decode()
     if process.returncode:
         raise Failure(f"{' '.join(command)}: status {process.returncode}")
-    return seconds, usage.ru_maxrss * 1024, text
+    return Run(seconds, usage.ru_maxrss * 1024, text, usage.ru_utime + usage.ru_stime)
 
 
 def startup(tool, device, folder):
@@ -48,7 +56,7 @@ def startup(tool, device, folder):
     run([tool, "generate", "sphere", "--dims", "64,64,64", "--type", "u8", "-o", volume])
     command = [tool, "extract", volume, *ISO, "-o", mesh, *device]
     run(command)
-    times = [1e3 * run(command)[0] for _ in range(RUNS)]
+    times = [1e3 * run(command).seconds for _ in range(RUNS)]
     return {"median": round(statistics.median(times), 2), "min": round(min(times), 2), "max": round(max(times), 2)}
 
 
@@ -59,10 +67,10 @@ def peak_extra(tool, device, folder, field):
     run([tool, "generate", field, "--dims", dims, "--type", "u8", "-o", volume])
     command = [tool, "extract", volume, "--dims", dims, "--type", "u8", *ISO, "-o", mesh, "--json", *device]
     run([tool, "extract", volume, "--dims", dims, "--type", "u8", *ISO, "--count", *device])
-    _, peak, text = run(command)
-    surface = json.loads(text)["surfaces"][0]
+    done = run(command)
+    surface = json.loads(done.text)["surfaces"][0]
     mesh_bytes = 12 * (surface["vertices"] + surface["triangles"])
-    return round((peak - os.path.getsize(volume) - mesh_bytes) / 1e6, 1)
+    return round((done.peak - os.path.getsize(volume) - mesh_bytes) / 1e6, 1)
 
 
 def main():

@@ -44,10 +44,10 @@ def file_case(tool, folder, field, side, repeat):
         for way, more in WAYS.items():
             mesh = os.path.join(folder, way + ".ply")
             command = [tool, "extract", volume, "--dims", dims, "--type", "u8", *process.ISO, "-o", mesh, "--quiet"]
-            seconds, peak, _ = process.run([*command, *more])
+            done = process.run([*command, *more])
             if turn:
-                times[way].append(1e3 * seconds)
-            peaks[way] = round(peak / 1e6, 1)
+                times[way].append(1e3 * done.seconds)
+            peaks[way] = round(done.peak / 1e6, 1)
             if not filecmp.cmp(mesh, os.path.join(folder, "memory.ply"), shallow=False):
                 raise process.Failure(f"{field} {side}^3: {way} makes another file")
     size = os.path.getsize(os.path.join(folder, "memory.ply"))
@@ -95,16 +95,11 @@ def extract_seconds(tool, volume, mesh):
     """Wall time and peak of the process under the limit."""
     command = ["extract", volume, "--dims", ",".join(map(str, LARGE)), "--type", "u8", "--iso", "99.5", "-o", mesh,
                "--json"]
-    begin = time.perf_counter()
-    child = subprocess.Popen([tool, *command], stdout=subprocess.PIPE, preexec_fn=limited)
-    text = child.stdout.read()
-    _, status, usage = os.wait4(child.pid, 0)
-    if os.waitstatus_to_exitcode(status):
-        raise process.Failure(f"{' '.join(command)}: it fails")
-    surface = json.loads(text)["surfaces"][0]
+    done = process.run([tool, *command], preexec_fn=limited)
+    surface = json.loads(done.text)["surfaces"][0]
     if "pieces" not in surface:
         raise process.Failure("the large volume was not streamed")
-    return time.perf_counter() - begin, usage.ru_maxrss * 1024, surface["vertices"]
+    return done.seconds, done.peak, surface["vertices"]
 
 
 def large_case(tool, folder):

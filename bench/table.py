@@ -247,6 +247,38 @@ def table1_text(result):
             table(head, [table1_row(row) for row in result["table1"]])]
 
 
+# -------------------------------------------------------------------------------------------------------- out of core
+
+WAYS = {"memory": "Tetracubes, in memory", "stream": "Tetracubes, `--stream`",
+        "stream_128m": "Tetracubes, `--stream --max-memory 128M`", "hybrid_128m": "the same, `--method hybrid`",
+        "ranks": "Tetracubes, {ranks} ranks of MPI, one file", "vtk_memory": "VTK, in memory",
+        "vtk_pieces": "VTK, its writer asks for {pieces} pieces", "vtk_slabs": "VTK, {pieces} slabs appended",
+        "skimage": "scikit-image, {pieces} slabs of a memmap", "paraview": "ParaView, {ranks} ranks of MPI, a file each"}
+BUSY = 0.25  # load per core, from which on the text tells of it
+
+
+def way_row(result, name, way):
+    return [WAYS[name].format(**result), f"{way['ms']['median']:,.0f}", f"{way['cpu_ms']['median']:,.0f}",
+            f"{way['peak_mb']:,.0f}", f"{way['file_mb']:,.0f}", f"{way['triangles']:,}", f"{way['vertices']:,}"]
+
+
+def out_of_core_text(result):
+    """What bench/out_of_core.py measured on a machine."""
+    load = max(result["load_before_and_after"])
+    busy = f" The machine had other work meanwhile (load up to {load:.0f}), which all shared: wall times say little there, " \
+           "processor times more." if load > BUSY * result["cores"] else ""
+    known = ", ".join(f"{name} {version}" for name, version in result["versions"].items())
+    head = ["way", "wall, ms", "processors, ms", "peak, MB", "files, MB", "triangles", "vertices"]
+    tables = []
+    for case in result["cases"]:
+        rows = [way_row(result, name, case["ways"][name]) for name in WAYS if name in case["ways"]]
+        tables.append(table([f"{case['field']} {case['side']}³ u8, {head[0]}", *head[1:]], rows))
+    return [f"File to file, with memory bounded and without, on {result['cpu']}, {result['cores']} cores, {result['date']} "
+            f"({known}): raw samples to VTP, scikit-image to raw arrays. Ours are whole processes, of the others their work "
+            "alone; ParaView's processor time is that of all, waiting included, as ranks of Open MPI spin. Peaks are resident memory, mapped files included; of ranks "
+            "that of the largest. Pieces of the others are not joined: vertices at seams are there twice." + busy, *tables]
+
+
 # ------------------------------------------------------------------------------------------------------------ sections
 
 def machine_text(result):
@@ -339,7 +371,11 @@ def main():
     if not results:
         sys.exit(f"table.py: no results in {arguments.results}; run bench/run first")
     replace(arguments.readme, [part for result in results for part in brief(result)])
-    replace(arguments.page, [*(part for result in results for part in headlines(result)),
+    out_of_core = []
+    for path in sorted(glob.glob(os.path.join(arguments.results, "out_of_core", "*.json"))):
+        with open(path, encoding="utf-8") as file:
+            out_of_core += out_of_core_text(json.load(file))
+    replace(arguments.page, [*(part for result in results for part in headlines(result)), *out_of_core,
                              "All cases: [results](results/README.md)."])
     title = "# Results\n\nMade by bench/table.py from the files beside this one; what the columns mean: ../README.md."
     write(os.path.join(arguments.results, "README.md"),

@@ -38,6 +38,7 @@ def test_committed(folder):
     shutil.copytree(RESULTS, results)
     shutil.copy(SOURCE / "README.md", readme)
     shutil.copy(SOURCE / "bench" / "README.md", page)
+    expect("VTK, its writer asks for" in page.read_text(), "no table of volumes in pieces")
     (results / "README.md").unlink()
     done = make_tables(results, readme, page)
     expect(done.returncode == 0, f"table.py: {done.returncode} {done.stderr}")
@@ -131,6 +132,34 @@ def test_failures(folder):
         expect(done.returncode == 2 and "--no-such-option" in done.stderr, f"bench/{script}: {done.returncode}")
 
 
+TOOL = """#!/bin/sh
+[ "$1" = generate ] && exit 0
+for word; do last=$word; [ "$before" = -o ] && file=$word; before=$word; done
+echo mesh >"$file"
+[ "$last" = FAULT ] && echo more >>"$file"
+echo '{"surfaces": [{"vertices": 3, "triangles": 1}]}'
+"""
+
+
+def test_out_of_core(folder):
+    """Ways that make the same file are measured; one that makes another ends the run. The tool is one that writes a
+    line."""
+    build = folder / "build"
+    tool = build / "host" / "tool" / "tetracubes"
+    tool.parent.mkdir(parents=True)
+    for fault, status in (("none", 0), ("--stream", 1)):
+        tool.write_text(TOOL.replace("FAULT", fault))
+        tool.chmod(0o755)
+        done = run(sys.executable, SOURCE / "bench" / "out_of_core.py", "--build", build, "--python", "/none", "--ways",
+                   "stream", "--sizes", "32", "--fields", "sphere", "--repeat", "2", "--results", folder / f"ways{status}")
+        expect(done.returncode == status, f"out_of_core.py: {done.returncode} {done.stdout} {done.stderr}")
+        expect(not status or "stream makes another file" in done.stderr, f"out_of_core.py: {done.stderr}")
+    made = list((folder / "ways0").glob("*.json"))
+    expect(len(made) == 1 and not (folder / "ways1").exists(), f"results of out_of_core.py: {made}")
+    way = json.loads(made[0].read_text())["cases"][0]["ways"]["stream"] if made else {}
+    expect((way.get("vertices"), way.get("triangles"), way.get("turns")) == (3, 1, 2), f"results of out_of_core.py: {way}")
+
+
 def test_plot(folder):
     if run("/usr/bin/python3", "-c", "import matplotlib").returncode:
         print("matplotlib is missing: without plot.py")
@@ -150,6 +179,7 @@ def main():
         test_partial(folder)
         test_grid_methods(folder)
         test_failures(folder)
+        test_out_of_core(folder)
         test_plot(folder)
     print(f"{failures} failed")
     return 1 if failures else 0

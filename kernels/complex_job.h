@@ -71,10 +71,20 @@ enum { SHAPE_CORNERS, SHAPE_ORDER, SHAPE_BYTES = 16, SHAPE_CODES = 128, CODE_MIR
  * triangles' corners, as slots of edges. Derived from the tables of host/lib/grid/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
+/* A face on the border of the complex, counter-clockwise seen from outside, by the places of its points in the list of
+ * the border's. A quadrilateral begins with its smallest point, which its diagonal goes through. Else the last point is
+ * CAP_TRIANGLE; or CAP_HALF: the face is half a quadrilateral, and begins with the two points of its diagonal. */
+typedef struct cap_face {
+    slab_u32 points[4];
+} cap_face;
+
+#define CAP_TRIANGLE 0xffffffffu
+#define CAP_HALF     0xfffffffeu
+
 /* The head of the state buffer, before the tiles of kernel 1. */
 enum {
     HEAD_TICKETS, /* one for each kernel */
-    HEAD_ACTIVE_CLUSTERS = HEAD_TICKETS + 6,
+    HEAD_ACTIVE_CLUSTERS = HEAD_TICKETS + 8,
     HEAD_CROSSED, /* edges of active tetrahedra, counted once for each */
     HEAD_INVALID, /* not 0: a tetrahedron has a point number that is not below point_count */
     HEAD_FULL,    /* not 0: the table of edges is too small */
@@ -82,11 +92,15 @@ enum {
     HEAD_ACTIVE,  /* totals */
     HEAD_TRIANGLES,
     HEAD_VERTICES,
+    HEAD_CAP_TRIANGLES, /* of the border, where the surface is closed */
+    HEAD_CAP_VERTICES,
     HEAD_WORDS
 };
 
 enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, COMPLEX_KERNELS };
-enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS }; /* of cells: after joining, before it */
+enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS };           /* of cells: after joining, before it */
+enum { KERNEL_CAPS_COUNT = WHOLE_KERNELS, KERNEL_CAPS_EMIT, CLOSED_KERNELS }; /* of closed surfaces: the last two */
+enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT };                /* the others have their own numbers */
 
 #define EDGE_NONE 0xffffffffu
 
@@ -97,21 +111,25 @@ typedef struct complex_job {
     slab_u64 tetrahedron_offset; /* in words of 32 bits; of cells that of their points */
     slab_u64 code_offset;        /* of the first cell's code */
     slab_u64 begin_offset;       /* of where the first cell begins, in its buffer */
+    slab_u64 cap_point_offset;   /* of the border's points and faces, where the surface is closed */
+    slab_u64 cap_face_offset;
     slab_u32 point_count, item_count, cluster_count, active_count;
     slab_u32 tile_clusters, tile_actives; /* per tile of kernel 1 and of the numbering */
     slab_u32 cluster_tiles, active_tiles;
-    slab_u32 spin_limit;   /* of the scan */
-    slab_u32 ranges_known; /* of clusters */
-    slab_u32 table_mask;   /* entries of the table of edges, a power of two, less 1 */
-    slab_u32 probe_limit;  /* entries looked at before the table counts as full */
-    slab_u32 word_step;    /* of cells: words from a point to the next, 2 where point numbers have 64 bits */
-    slab_u32 cell_points;  /* from a cell to the next; 0: it is told where each begins */
-    slab_u32 one_code;     /* of all cells; 0: each has its own */
-    slab_u32 slot_shift;   /* 4; 5 where there are prisms */
+    slab_u32 spin_limit;            /* of the scan */
+    slab_u32 ranges_known;          /* of clusters */
+    slab_u32 table_mask;            /* entries of the table of edges, a power of two, less 1 */
+    slab_u32 probe_limit;           /* entries looked at before the table counts as full */
+    slab_u32 word_step;             /* of cells: words from a point to the next, 2 where point numbers have 64 bits */
+    slab_u32 cell_points;           /* from a cell to the next; 0: it is told where each begins */
+    slab_u32 one_code;              /* of all cells; 0: each has its own */
+    slab_u32 slot_shift;            /* 4; 5 where there are prisms */
+    slab_u32 cap_points, cap_faces; /* how many */
+    slab_u32 tile_caps, cap_tiles;  /* so many of each in a tile */
 } complex_job;
 
 #ifndef __OPENCL_VERSION__
-_Static_assert(sizeof(complex_job) == 11 * 8 + 20 * 4, "no padding, as for slab");
+_Static_assert(sizeof(complex_job) == 13 * 8 + 24 * 4, "no padding, as for slab");
 #endif
 
 #endif

@@ -1,19 +1,11 @@
 /*
- * complex_vertex.cl - a vertex of a complex: its number and its position
+ * complex_vertex.cl - the position of a vertex of a complex
  */
 #ifndef COMPLEX_VERTEX_CL
 #define COMPLEX_VERTEX_CL
 
 #include "complex_number.cl"
 #include "crossing.cl"
-
-/* The number of the vertex in slot `owner`, whose item owns it. */
-inline_always uint vertex_number(const complex_job *c, uint owner, global const active_item *active,
-                                 global const uint *tiles) {
-    global const active_item *t = active + slot_item(c, owner);
-    uint lower = t->owned & ((1u << slot_edge(c, owner)) - 1);
-    return tile_before(tiles, slot_item(c, owner) / c->tile_actives, TILE_VERTICES) + t->vertex + (uint)popcount(lower);
-}
 
 /* The vertex on an edge. */
 inline_always void edge_vertex(const complex_job *c, uint2 edge, global const BITS *samples, global const float *points,

@@ -9,19 +9,6 @@
 
 #include "complex_join.cl"
 
-/* The entry of an edge, EDGE_NONE where it has none. */
-inline_always uint edge_find(const complex_job *c, uint2 edge, uint entry, global const active_cell *active,
-                             global const uchar *cases, volatile global uint *table) {
-    for (uint probe = 0; probe <= c->probe_limit; probe++) {
-        uint there = table[entry];
-        if (there == EDGE_NONE) return EDGE_NONE;
-        uint2 other = edge_points(c, active, there, cases);
-        if (other.x == edge.x && other.y == edge.y) return entry;
-        entry = (entry + 1) & c->table_mask;
-    }
-    return EDGE_NONE;
-}
-
 /* Prefetches where the search for the diagonals of a cell begins. */
 inline_always void diagonals_prefetch(const complex_job *c, uint a, global const active_cell *active,
                                       global const uchar *cases, volatile global uint *table) {

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
+enum { GROUP_PATH_BYTES = 4096 };
+
 static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
 static uint64_t minus(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
@@ -23,21 +25,35 @@ static uint64_t number_in(const char *path, const char *name, uint64_t unit, uin
     return otherwise;
 }
 
-/* Its group may use so much more; pages of files, which the system takes back, count as free. */
-static uint64_t group_available(void) {
-    char line[512], path[600];
-    FILE *file = fopen("/proc/self/cgroup", "r");
-    char *group = NULL;
+/* What the group in this folder may still use; pages of files, which the system takes back, count as free. */
+static uint64_t group_left(const char *folder) {
+    char path[GROUP_PATH_BYTES + 32];
+    snprintf(path, sizeof path, "%s/memory.max", folder);
+    const uint64_t most = number_in(path, "", 1, UINT64_MAX); /* none: "max" */
+    if (most == UINT64_MAX) return UINT64_MAX;
+    snprintf(path, sizeof path, "%s/memory.current", folder);
+    const uint64_t used = number_in(path, "", 1, 0);
+    snprintf(path, sizeof path, "%s/memory.stat", folder);
+    const uint64_t files = number_in(path, "active_file ", 1, 0) + number_in(path, "inactive_file ", 1, 0);
+    return minus(most, minus(used, files));
+}
+
+uint64_t group_memory_available(const char *membership, const char *hierarchy) {
+    char line[GROUP_PATH_BYTES], folder[GROUP_PATH_BYTES];
+    const char *group = NULL;
+    uint64_t bytes = UINT64_MAX;
+    FILE *file = fopen(membership, "r");
     while (file && !group && fgets(line, sizeof line, file))
-        if (strncmp(line, "0::", 3) == 0) group = line + 3;
+        if (strncmp(line, "0::/", 4) == 0 && strchr(line, '\n')) group = line + 3;
     if (file) fclose(file);
     if (!group) return UINT64_MAX;
-    group[strcspn(group, "\n")] = '\0';
-    snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.max", group);
-    const uint64_t most = number_in(path, "", 1, UINT64_MAX);
-    if (most == UINT64_MAX) return UINT64_MAX;
-    snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.stat", group);
-    return minus(most, number_in(path, "anon ", 1, 0));
+    const int length = snprintf(folder, sizeof folder, "%s%.*s", hierarchy, (int)strcspn(group, "\n"), group);
+    if (length >= (int)sizeof folder) return UINT64_MAX;
+    for (char *end; strlen(folder) >= strlen(hierarchy); *end = '\0') {
+        bytes = least(bytes, group_left(folder));
+        if (!(end = strrchr(folder, '/'))) break;
+    }
+    return bytes;
 }
 
 static uint64_t limit_left(int resource, const char *used) {
@@ -48,7 +64,7 @@ static uint64_t limit_left(int resource, const char *used) {
 
 uint64_t host_memory_available(void) {
     uint64_t bytes = number_in("/proc/meminfo", "MemAvailable:", 1024, UINT64_MAX);
-    bytes = least(bytes, group_available());
+    bytes = least(bytes, group_memory_available("/proc/self/cgroup", "/sys/fs/cgroup"));
     bytes = least(bytes, limit_left(RLIMIT_DATA, "VmData:"));
     return least(bytes, limit_left(RLIMIT_AS, "VmSize:"));
 }

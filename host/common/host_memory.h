@@ -8,4 +8,8 @@
  * so. UINT64_MAX where nothing tells. */
 uint64_t host_memory_available(void);
 
+/* Of that the part of control groups, version 2: what the process's group, and those around it, may still use.
+ * membership: the file that names the group, /proc/self/cgroup; hierarchy: the folder that groups lie in. */
+uint64_t group_memory_available(const char *membership, const char *hierarchy);
+
 #endif

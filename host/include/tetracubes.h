@@ -310,10 +310,10 @@ typedef struct tc_extract_options {
     double snap;  /* method snap: a sample moves along an edge to a crossing at most this part of the edge away; 0 to
                      0.5, rounded to float32 */
     int closed;   /* nonzero: the surface is closed where it ends, at the grid's border and beside missing cells: by the
-                     inside part of the faces that one present cube has. Inside samples there are vertices: at the
+                     inside part of the faces that one present cell has. Inside samples there are vertices: at the
                      sample, with its gradient as normal. The mesh then bounds the present part of {f >= isovalue}.
-                     Of grids of tetrahedra by TC_METHOD_TETRA alone (TC_ERROR_ARGUMENT), and by the reference
-                     engine (TC_ERROR_DEVICE) */
+                     The border of a grid of tetrahedra is found by threads of the host, when a surface of it is
+                     first closed; the grid keeps it */
     int reserved; /* 0 */
 } tc_extract_options;
 

@@ -53,40 +53,53 @@ static int refuse_encoding(const read_request *request, const mapping *file) {
     return 0;
 }
 
-/* The name of a known format that this program does not read; NULL where it is unknown. */
-static const char *name_of_unread(const char *path, const mapping *file) {
-    static const struct {
-        const char *ending, *name;
-    } endings[] = {{".ex2", "Exodus"},          {".e", "Exodus"},
-                   {".exo", "Exodus"},          {".cgns", "CGNS"},
-                   {".stl", "a surface (STL)"}, {".ply", "a surface (PLY)"},
-                   {".obj", "a surface (OBJ)"}, {".dcm", "DICOM"},
-                   {".xdmf", "XDMF"},           {".msh", "a mesh of Gmsh or Fluent"},
-                   {".case", "EnSight"}};
+/* A known format that this program does not read, and how its files come in all the same. */
+typedef struct unread {
+    const char *ending, *name, *advice;
+} unread;
+
+#define BY_PYTHON "save it as .vtu, by ParaView or PyVista, or contour it from Python (tetracubes.contour_cells)"
+#define BY_VTK    "save it as .vtu or .vtm, by ParaView"
+#define NO_VOLUME "a surface has no isosurfaces"
+
+/* NULL where it is unknown. */
+static const unread *find_unread(const char *path, const mapping *file) {
+    static const unread endings[] = {{".ex2", "Exodus", BY_PYTHON},
+                                     {".e", "Exodus", BY_PYTHON},
+                                     {".exo", "Exodus", BY_PYTHON},
+                                     {".cgns", "CGNS", BY_VTK},
+                                     {".stl", "a surface (STL)", NO_VOLUME},
+                                     {".ply", "a surface (PLY)", NO_VOLUME},
+                                     {".obj", "a surface (OBJ)", NO_VOLUME},
+                                     {".dcm", "DICOM", "convert it to NIfTI, as dcm2niix does"},
+                                     {".xdmf", "XDMF", BY_VTK},
+                                     {".msh", "a mesh of Gmsh or Fluent", "convert it: meshio convert FILE a.vtu"},
+                                     {".case", "EnSight", BY_VTK}};
+    static const unread netcdf = {"", "netCDF (Exodus and others)", "convert it to HDF5: nccopy -k nc4 FILE a.h5"};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (path_ends_with(path, endings[i].ending)) return endings[i].name;
-    if (file_starts_with(file, "CDF\1") || file_starts_with(file, "CDF\2") || file_starts_with(file, "CDF\5"))
-        return "netCDF (Exodus and others)";
-    return NULL;
+        if (path_ends_with(path, endings[i].ending)) return &endings[i];
+    const int is_netcdf =
+        file_starts_with(file, "CDF\1") || file_starts_with(file, "CDF\2") || file_starts_with(file, "CDF\5");
+    return is_netcdf ? &netcdf : NULL;
 }
 
 static const read_format *find_format(const read_request *request, const mapping *file) {
     if (is_raw(request) && !request->raw_else) return raw_format;
     const read_format *format = read_format_of_content(file);
-    if (format == hdf5_format && name_of_unread(request->path, file)) return NULL; /* CGNS and Exodus lie in it */
+    if (format == hdf5_format && find_unread(request->path, file)) return NULL; /* CGNS and Exodus lie in it */
     if (!format) format = read_format_of_ending(request->path);
     return format || !request->raw_else ? format : raw_format;
 }
 
 static int refuse_unknown(const char *path, const mapping *file) {
-    const char *name = name_of_unread(path, file);
+    const unread *known = find_unread(path, file);
     char formats[FORMATS_TEXT];
     if (mapping_is_stream(path) && !file->size)
         return fail(STATUS_INPUT, "%s: %s is empty: what should send to it may have failed", path,
                     mapping_is_standard_input(path) ? "standard input" : "the pipe");
-    if (name)
-        return fail(STATUS_INPUT, "%s: is %s, which this program does not read; it reads %s", path, name,
-                    read_formats_text(formats));
+    if (known)
+        return fail(STATUS_INPUT, "%s: is %s, which this program does not read: %s; it reads %s", path, known->name,
+                    known->advice, read_formats_text(formats));
     if (ends_as_half_of_a_pair(path))
         return fail(STATUS_USAGE,
                     "%s: Plot3D needs two inputs, the grid, then its solution or function file; samples without a "
@@ -209,6 +222,11 @@ static int read_named(const read_request *request, dataset *out) {
     mapping file = {0};
     if (tiff_format->read && !request->path2 && !is_raw(request) && slices_are_named(request->path))
         return finish(request, out, read_as(tiff_format, request, &file, out));
+    if (is_raw(request) && !request->raw_else && slices_are_named(request->path))
+        return fail(STATUS_USAGE,
+                    "%s: folders and numbered names are for TIFF; a NRRD header lists slices of raw samples, by a line "
+                    "as 'data file: slice.%%d 1 93 1'",
+                    request->path);
     if (request->path2 && (mapping_is_standard_input(request->path) || mapping_is_standard_input(request->path2)))
         return fail(STATUS_USAGE,
                     "%s: standard input is one file, and two inputs are a Plot3D grid and its solution: "

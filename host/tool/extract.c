@@ -333,6 +333,7 @@ static int print_report(job *j, double begin_ms) {
         double sent = (double)j->team->sent_bytes(j->team);
         j->team->most(j->team, &sent, 1);
         j->report.rank_count = j->team->size;
+        j->report.begins = j->team->begins;
         j->report.sent_bytes = (uint64_t)sent;
         if (j->team->rank) return 0;
     }
@@ -365,6 +366,7 @@ cleanup:
         free(j.report.surfaces[n].preview);
     }
     free(j.report.surfaces);
+    if (t) free(t->begins);
     engine_close(&j.reference);
     engine_close(&j.main);
     blocks_release(&j.blocks);

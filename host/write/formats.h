@@ -44,6 +44,7 @@ MESH_FORMATS(WRITER)
 
 /* Whether the file's size, beside its counts, can be told in the format. */
 int glb_fits(const shown_mesh *s);
+int html_fits(const shown_mesh *s);
 
 /* Whether some of the arrays has that role. */
 static inline int shows_role(const shown_mesh *s, vertex_role role) {

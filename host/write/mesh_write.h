@@ -26,13 +26,14 @@
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NUMBERS)                                                \
-    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)                                                 \
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NUMBERS)                                   \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)                                    \
     ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                    \
     ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                               \
     ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                         \
     ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                           \
-    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NOT)                                                    \
+    ROW(html, "HTML", HAS_NORMALS, 0, vertices, html_fits, NOT)                                                        \
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NOT)                                       \
     ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)
 
 /* Of complexes: name and label. */

@@ -36,7 +36,7 @@ typedef struct format {
     {#name, name##_write, roles, has_doubles, COUNTS_##counts, fits, PIECES_##pieces},
 static const format formats[] = {MESH_FORMATS(FORMAT)};
 
-enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 64 };
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_BYTES = 96 };
 
 /* Values per vertex, of all fields together: a block of the output has to hold many vertices. */
 enum { FIELD_VALUES_MOST = 4096 };
@@ -126,8 +126,8 @@ static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, co
 static int check_size(const char *path, const shown_mesh *s, const format *f) {
     char list[LIST_BYTES];
     if (!f->fits || f->fits(s)) return 0;
-    return fail(STATUS_FAILED, "%s: %llu vertices and %llu triangles take more than the 4 GiB that %s holds; write %s",
-                path, (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count, f->name,
+    return fail(STATUS_FAILED, "%s: %llu vertices and %llu triangles are more than %s holds; write %s", path,
+                (unsigned long long)file_vertex_count(s), (unsigned long long)s->mesh->triangle_count, f->name,
                 list_formats(is_of_any_size, "", list));
 }
 

@@ -17,7 +17,7 @@ enum {
     CASE_BLANKED = 4,  /* samples and cells */
     CASE_EXTREMES = 8, /* floats of all exponents */
     CASE_DEEP = 16,    /* many layers of bricks, for slabs */
-    CASE_CLOSED = 32   /* not of complexes */
+    CASE_CLOSED = 32
 };
 
 typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_COMPLEX } case_kind;

@@ -116,6 +116,21 @@ void cell_list_renumber(cell_list *list) {
     free(points);
 }
 
+cell_list hexahedra_make(const uint32_t sizes[3], bool renumbered) {
+    const uint32_t nx = sizes[0] + 1, ny = sizes[1] + 1, nz = sizes[2] + 1, up = nx * ny;
+    cell_list list = cell_list_make((uint64_t)up * nz, (uint64_t)sizes[0] * sizes[1] * sizes[2]);
+    for (uint32_t p = 0; p < up * nz; p++) cell_list_point(&list, p % nx, p / nx % ny, p / up);
+    for (uint32_t c = 0; c < sizes[0] * sizes[1] * sizes[2]; c++) {
+        const uint32_t x = c % sizes[0], y = c / sizes[0] % sizes[1], z = c / sizes[0] / sizes[1];
+        const uint32_t first = (z * ny + y) * nx + x;
+        const uint32_t corners[8] = {first,      first + 1,      first + nx + 1,      first + nx,
+                                     first + up, first + up + 1, first + up + nx + 1, first + up + nx};
+        cell_list_add(&list, 12, 8, corners, renumbered && random_below(2));
+    }
+    if (renumbered) cell_list_renumber(&list);
+    return list;
+}
+
 /* ----------------------------------------------------------------------------------------------------- mixed block */
 
 static const uint8_t hexahedron_order[8] = {0, 1, 3, 2, 4, 5, 7, 6};

@@ -34,6 +34,10 @@ void cell_list_add_polyhedron(cell_list *list, int face_count, const int *counts
 /* Gives the points other numbers, at random. */
 void cell_list_renumber(cell_list *list);
 
+/* A block of unit cubes as hexahedra, so many along x, y and z, in the order of their points. renumbered: of either
+ * orientation, and points numbered at random. */
+cell_list hexahedra_make(const uint32_t sizes[3], bool renumbered);
+
 /* A block of size^3 unit cubes, columns of them cut into wedges, others into hexahedra, voxels, pyramids around their
  * middle and tetrahedra at random, of either orientation; points numbered at random. The same seed makes the same
  * block. */

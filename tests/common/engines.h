@@ -29,17 +29,8 @@ static inline tc_context *context_open(const tc_context_options *options) {
     return context;
 }
 
-/* A test of the quick tier, which takes a sample of what the long tier tries (long_groups_TEST). */
-static inline bool tier_is_quick(void) { return getenv("TEST_PLAIN_GROUPS") != NULL; }
-
-/* From here on nothing but kernels for groups of work-items is built. PoCL takes ten seconds to optimise one, which no
- * CPU gets unless it is asked for. In the quick tier TEST_PLAIN_GROUPS has the flags with which they are not optimised,
- * or none where this PoCL does not take them; long_groups_TEST runs the same test with all kernels optimised. PoCL does
- * not go back once it was told, so groups come last. */
-static inline void groups_begin(void) {
-    const char *flags = getenv("TEST_PLAIN_GROUPS");
-    if (flags && *flags) setenv("POCL_EXTRA_BUILD_FLAGS", flags, 1);
-}
+/* A test of the quick tier, which takes a sample of what the long tier tries (common/test_add.cmake). */
+static inline bool tier_is_quick(void) { return getenv("TEST_PLAIN_KERNELS") != NULL; }
 
 static inline tc_context *reference_open(void) {
     tc_context_options options;

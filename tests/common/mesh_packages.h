@@ -1,4 +1,4 @@
-/* mesh_packages.h - parsers of OFF, GLB and NPZ, as those of mesh_files.h */
+/* mesh_packages.h - parsers of OFF, GLB, HTML and NPZ, as those of mesh_files.h */
 #ifndef MESH_PACKAGES_H
 #define MESH_PACKAGES_H
 
@@ -91,6 +91,49 @@ static inline tc_mesh_data parse_glb(const char *text, size_t bytes) {
         expect_bounds(json, mesh.positions, v);
     }
     free(json);
+    return mesh;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- HTML
+ */
+
+/* What the page's script of that name holds, decoded to so many bytes; zeros where it holds something else. */
+static inline void *html_array(const char *text, const char *name, uint64_t bytes) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char tag[80];
+    snprintf(tag, sizeof tag, "\n<script type=\"text/plain\" id=\"%s\">", name);
+    unsigned char *out = calloc(bytes + 3, 1), values[256];
+    const char *at = strstr(text, tag);
+    memset(values, 255, sizeof values);
+    for (unsigned n = 0; n < 64; n++) values[(unsigned char)digits[n]] = (unsigned char)n;
+    EXPECT(out && at, "HTML: no %s", name);
+    if (!out || !at) return out;
+    at += strlen(tag);
+    const size_t length = strcspn(at, "<");
+    int wrong = length != bytes / 3 * 4 || strncmp(at + length, "</script>\n", 10) != 0;
+    for (size_t n = 0; n < length && !wrong; n++) {
+        const unsigned value = values[(unsigned char)at[n]];
+        wrong |= value > 63;
+        for (unsigned bit = 0; bit < 6; bit++)
+            out[(6 * n + bit) / 8] |= (unsigned char)((value >> (5 - bit) & 1) << (7 - (6 * n + bit) % 8));
+    }
+    EXPECT(!wrong, "HTML: %s of %zu characters", name, length);
+    return out;
+}
+
+static inline tc_mesh_data parse_html(const char *text, size_t bytes) {
+    const char *about = strstr(text, "<script type=\"application/json\" id=\"mesh\">");
+    const long long vertices = about ? number_behind(about, "\"vertices\": ", 0) : -1,
+                    triangles = about ? number_behind(about, "\"triangles\": ", 0) : -1;
+    EXPECT(strncmp(text, "<!DOCTYPE html>\n", 16) == 0 && text[bytes - 1] == '\n' && vertices >= 0 && triangles >= 0,
+           "HTML: a page of %lld vertices and %lld triangles", vertices, triangles);
+    tc_mesh_data mesh = {0};
+    if (vertices < 0 || triangles < 0) return make_mesh(0, 0, 0);
+    mesh.vertex_count = (uint64_t)vertices;
+    mesh.triangle_count = (uint64_t)triangles;
+    mesh.positions = html_array(text, "positions", 12 * mesh.vertex_count);
+    mesh.triangles = html_array(text, "triangles", 12 * mesh.triangle_count);
+    if (strstr(about, "\"normals\": true")) mesh.normals = html_array(text, "normals", 12 * mesh.vertex_count);
     return mesh;
 }
 

@@ -4,6 +4,7 @@ Readers give the points, the triangles as numbers of points, and the three types
 names them.
 """
 import ast
+import base64
 import json
 import math
 import re
@@ -151,6 +152,23 @@ def read_npz(path):
             {"<f4": "fff", "<f8": "ddd"}[arrays["vertices"][0]])
 
 
+def html_scripts(path):
+    """What the page's scripts hold that have names: the object about the mesh, and arrays as bytes."""
+    with open(path, encoding="utf-8") as f:
+        found = re.findall(r'<script type="([a-z/]+)" id="(\w+)">([^<]*)</script>\n', f.read())
+    return {name: json.loads(text) if kind == "application/json" else base64.b64decode(text, validate=True)
+            for kind, name, text in found}
+
+
+def read_html(path):
+    scripts = html_scripts(path)
+    points, corners = (struct.unpack(f"<{len(scripts[name]) // 4}{code}", scripts[name])
+                       for name, code in (("positions", "f"), ("triangles", "I")))
+    assert (len(points), len(corners)) == (3 * scripts["mesh"]["vertices"], 3 * scripts["mesh"]["triangles"])
+    assert scripts["mesh"]["normals"] == ("normals" in scripts)
+    return list(zip(*[iter(points)] * 3)), list(zip(*[iter(corners)] * 3)), "fff"
+
+
 def read_labels(path):
     """The two labels of each triangle, of PLY, VTP or NPZ."""
     if path.endswith(".ply"):
@@ -168,7 +186,7 @@ def read_labels(path):
 
 
 READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl, "off": read_off, "glb": read_glb,
-           "npz": read_npz}
+           "npz": read_npz, "html": read_html}
 
 
 def measures(points, faces, at=(0, 0, 0)):

@@ -1,11 +1,9 @@
 # Sets plain_kernels: what POCL_EXTRA_BUILD_FLAGS tells PoCL so that it does not optimise kernels, most of the time that a
-# test takes; and run_plain, a command before others with it. Both are empty where PoCL is of another version than 3: of
-# those that are known, 6.0 aborts on kernels that are not optimised.
+# test takes. Empty where PoCL is of another version than 3: of those that are known, 6.0 aborts on kernels that are not
+# optimised.
 set(plain_kernels)
-set(run_plain)
 execute_process(COMMAND dpkg-query -W "-f=\${Version}" pocl-opencl-icd
                 OUTPUT_VARIABLE pocl_version ERROR_QUIET RESULT_VARIABLE no_package)
 if(NOT no_package AND pocl_version MATCHES "^3\\.")
     set(plain_kernels -cl-opt-disable)
-    set(run_plain env POCL_EXTRA_BUILD_FLAGS=${plain_kernels})
 endif()

@@ -4,31 +4,47 @@ set(kernel_pool ${PROJECT_BINARY_DIR}/tests/kernel_pool)
 include(${CMAKE_CURRENT_LIST_DIR}/plain_kernels.cmake)
 
 # test_add(NAME PROGRAM [argument...]): a test that makes no use of OpenCL. The library's own cache is off, so that nothing
-# reaches the user's; a test that wants one names its folder. Kernels for groups of work-items are not optimised
-# (common/engines.h): the long tier does that (test_long_groups). Limits of time are there to end what hangs: they leave
-# room for a machine several times slower, or as many times as busy. COST, seconds of a processor about, starts long ones
+# reaches the user's; a test that wants one names its folder. Limits of time are there to end what hangs: they leave room
+# for a machine several times slower, or as many times as busy. COST, seconds of a processor about, starts long ones
 # first.
 function(test_add name)
     add_test(NAME ${name} COMMAND ${ARGN})
     set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 1200
-                         ENVIRONMENT_MODIFICATION "TETRACUBES_CACHE_DIR=set:;TEST_PLAIN_GROUPS=set:${plain_kernels}")
+                         ENVIRONMENT_MODIFICATION "TETRACUBES_CACHE_DIR=set:;TEST_PLAIN_KERNELS=set:${plain_kernels}")
 endfunction()
 
-# The same for one that may: in a cache of PoCL's of its own, with the kernels that tests before it built.
-function(test_add_device name)
+# The same for one that may, with kernels for one work-item per group optimised, those for groups not: in a cache of
+# PoCL's of its own, with the kernels that tests before it built.
+function(test_add_optimised name)
     test_add(${name} sh ${PROJECT_SOURCE_DIR}/tests/common/run_with_cache.sh ${kernel_pool} ${kernel_pool}_of_${name} ${ARGN})
+    set_tests_properties(${name} PROPERTIES LABELS device)
+endfunction()
+
+# The same, without any kernel optimised; tests/long runs it with all of them optimised.
+function(test_add_device name)
+    test_add_optimised(${name} ${ARGN})
+    if(plain_kernels)
+        set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT_MODIFICATION POCL_EXTRA_BUILD_FLAGS=set:${plain_kernels})
+    endif()
+endfunction()
+
+# The same in the long tier.
+function(test_add_long name)
+    test_add_optimised(${name} ${ARGN} CONFIGURATIONS Long)
+    set_tests_properties(${name} PROPERTIES LABELS long TIMEOUT 14400
+                         ENVIRONMENT_MODIFICATION TETRACUBES_CACHE_DIR=set:)
+endfunction()
+
+# test_add_analysis(NAME PROGRAM [argument...]): the same for what bash tests/analysis runs: sources and kernels under
+# tools that look for faults. The long tier can need its fixtures.
+function(test_add_analysis name)
+    test_add(${name} ${ARGN} CONFIGURATIONS Analysis Long)
+    set_tests_properties(${name} PROPERTIES LABELS analysis TIMEOUT 3600)
 endfunction()
 
 # test_after(EARLIER NAME...): these need the kernels that EARLIER builds, so they start when it has ended.
 function(test_after earlier)
     set_tests_properties(${ARGN} PROPERTIES DEPENDS ${earlier})
-endfunction()
-
-# test_long_groups(NAME COMMAND...): long_groups_NAME, in which kernels for groups are optimised as others are
-function(test_long_groups name)
-    test_add_device(long_groups_${name} ${ARGN} CONFIGURATIONS Long)
-    set_tests_properties(long_groups_${name} PROPERTIES LABELS long TIMEOUT 3600
-                         ENVIRONMENT_MODIFICATION TETRACUBES_CACHE_DIR=set:)
 endfunction()
 
 # test_program(NAME SOURCE...): links the library

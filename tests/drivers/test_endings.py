@@ -30,7 +30,7 @@ class EndCase(tool_case.Case):
 
     def outputs(self):
         """Every command that writes, with each of its formats, and the name it is to write."""
-        for ending in ("ply", "vtp", "stl", "obj", "off", "glb", "npz"):
+        for ending in ("ply", "vtp", "stl", "obj", "off", "glb", "html", "npz"):
             yield [*self.extract, "-o"], f"out.{ending}"
         yield [*self.extract, "--blocks", "separate", "-o"], "block.ply"
         yield ["tetrahedralize", self.volume, "--quiet", "-o"], "out.vtu"
@@ -288,7 +288,7 @@ class Places(EndCase):
 
 class Inputs(EndCase):
     def commands(self, volume):
-        for ending in ("ply", "vtp", "stl", "obj", "off", "glb", "npz"):
+        for ending in ("ply", "vtp", "stl", "obj", "off", "glb", "html", "npz"):
             yield ["extract", volume, "--iso", "127.5", "--engine", "reference", "--quiet", "-o"], f"out.{ending}"
         yield ["extract", volume, "--iso", "127.5", "--engine", "reference", "--json"], None
         yield ["extract", volume, "--iso", "127.5", "--engine", "reference", "--count"], None

@@ -237,7 +237,7 @@ def tool_commands():
         commands.append(f"generate gyroid --dims 21,18,15 --type {sample} -o {sample}.nrrd")
         commands.append(f"extract {sample}.nrrd --iso 99.5 --engine reference --check --json -o {sample}.ply")
     extract = "extract f32.nrrd --iso 99.5,127.5 --engine reference"
-    commands += [f"{extract} -o %.{ending}" for ending in ("ply", "stl", "obj", "vtp", "off", "glb", "npz")]
+    commands += [f"{extract} -o %.{ending}" for ending in ("ply", "stl", "obj", "vtp", "off", "glb", "html", "npz")]
     commands += [f"{extract} --method hybrid --normals --check", f"{extract} --soup -o %.stl", f"{extract} --count",
                  f"{extract} --nodata 0 --check", "info f32.nrrd --json", "tetrahedralize f32.nrrd -o cells.vtu",
                  "info cells.vtu", "extract cells.vtu --iso 99.5 --engine reference --check -o cells.vtp", "--version"]

@@ -218,7 +218,7 @@ class Memory(Failures):
                 self.fail_requests("extract", *inputs, "--iso", iso, "--engine", "reference", "-o", "s.ply")
 
     def test_outputs(self):
-        for ending in ("vtp", "stl", "obj", "off", "glb", "npz"):
+        for ending in ("vtp", "stl", "obj", "off", "glb", "html", "npz"):
             with self.subTest(ending):
                 self.fail_requests("extract", "@grid.vtk", "--iso", "80,90", "--engine", "reference", "--normals",
                                    "--check", "-o", f"s%.{ending}")

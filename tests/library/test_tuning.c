@@ -175,7 +175,6 @@ static void test_refused(tc_context *context) {
 int main(void) {
     if (!device_exists()) return SKIPPED;
     samples_fill();
-    groups_begin();
     umask(022); /* files that others may write are passed over */
     folder_make("tuning");
     snprintf(path, sizeof path, "%s/tuning", folder);

@@ -50,16 +50,17 @@ class RankCase(GridCase):
         self.assertEqual(done.returncode, 0, f"{count} ranks, {arguments}: {done.stdout} {done.stderr}")
         return done
 
-    def compare(self, counts, *arguments, formats=None):
+    def compare(self, counts, *arguments, formats=None, ranks=()):
+        """ranks: options that ranks have, and one process has not."""
         if not formats:
             has_hdf = "VTKHDF" in self.expect(0, "--version").stdout
             formats = ("ply", "vtp", "stl", "vtkhdf") if has_hdf else ("ply", "vtp", "stl")
         for ending in formats:
             self.expect(0, "extract", *arguments, "-o", self.path("one." + ending), "--quiet")
             for count in counts:
-                self.extract_by(count, *arguments, "-o", self.path("all." + ending), "--quiet")
+                self.extract_by(count, *arguments, *ranks, "-o", self.path("all." + ending), "--quiet")
                 self.assertTrue(read(self.path("all." + ending)) == read(self.path("one." + ending)),
-                                f"{arguments}: {count} ranks, {ending}")
+                                f"{arguments}: {count} ranks, {ranks}, {ending}")
 
 
 class SameBytes(RankCase):
@@ -80,6 +81,35 @@ class SameBytes(RankCase):
         volume = self.generate("gyroid", "g.nrrd", "21,17,10")
         counts = (1, 2, 3, 5, 8) if IS_LONG else (5,)
         self.compare(counts, volume, "--iso", "127.5", "--nodata", "140", *self.engine, formats=("vtp", "stl"))
+
+    def test_cuts(self):
+        """Planes shared out evenly, by cost and as the user says: odd sizes, missing data, ranks that have nothing."""
+        volume = self.generate("noise", "n.nrrd", "21,17,30", "f32")
+        given = {1: "even", 2: "24", 3: "4,4", 5: "0,4,20,30", 8: "4,8,12,16,20,24,28"}
+        counts, methods = ((1, 2, 3, 5, 8), ("tetra", "hybrid", "snap")) if IS_LONG else ((3,), ("snap",))
+        for count, method in itertools.product(counts, methods):
+            for cut in ("even", "cost", given[count])[0 if IS_LONG else 1:]:
+                self.compare((count,), volume, "--iso", "127.5", "--method", method, "--nodata", "3", *self.engine,
+                             ranks=["--cut", cut], formats=None if IS_LONG else ("stl",))
+
+    def test_cut_by_cost(self):
+        """Of a surface in the lowest quarter alone, each rank gets as much as it may."""
+        dims, ranks = (30, 31, 128), 4
+        lattice_values = [(7919 * n) % 251 if z < 32 else 0 for n, (x, y, z) in enumerate(lattice(dims))]
+        volume, *more = self.raw("q.raw", "u8", dims, lattice_values)
+        how = [volume, *more, "--iso", "127.5", *self.engine]
+        done = self.extract_by(ranks, *how, "--cut", "cost", "--json", "-o", self.path("all.ply"))
+        cut = json.loads(done.stdout)["cut"]
+        self.expect(0, "extract", *how, "-o", self.path("one.ply"), "--quiet")
+        self.assertEqual(read(self.path("all.ply")), read(self.path("one.ply")))
+        shares = []
+        for rank in range(ranks):
+            part = self.report("extract", *how, "--cut", ",".join(map(str, cut)), "--part", f"{rank}/{ranks}", "-o",
+                               self.path("p"))
+            shares.append(part["surfaces"][0]["triangles"])
+        self.assertLess(max(shares), 1.5 * sum(shares) / ranks, (cut, shares))
+        even = json.loads(self.extract_by(ranks, *how, "--json").stdout)["cut"]
+        self.assertEqual(even, [32, 64, 96])
 
     def test_carried_fields(self):
         self.needs_xml()
@@ -209,10 +239,11 @@ class Endings(RankCase):
         for status, arguments, says in (
                 (4, [self.path("none.nrrd"), "--iso", "1"], "none.nrrd: cannot be opened"),
                 (2, [self.volume, "--iso", "1", "-o", self.path("x.obj")], "not written piece by piece"),
+                (2, [self.volume, "--iso", "1", "--cut", "4"], "names 1 planes, where .* 2 ranks begin; there are 3"),
                 (2, [self.volume, "--iso", "1", "--part", "0/2", "-o", self.path("x.ply")], "--part"),
                 (2, [self.volume, "--iso", "1", "--check"], "made by several ranks: --check"),
                 (1, [self.volume, "--iso", "1", "-o", self.path("none/x.ply")], "none/x.ply: cannot be written"),
-                (2, [self.volume, "--iso"], "--iso needs a value"))[:None if IS_LONG else 3]:
+                (2, [self.volume, "--iso"], "--iso needs a value"))[:None if IS_LONG else 4]:
             engine = ["--engine", "reference"] if arguments[-1] != "--iso" else []
             done = self.ranks(3, "extract", *engine, *arguments)
             self.assertEqual(done.returncode, status, done.stderr)

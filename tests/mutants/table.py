@@ -30,6 +30,7 @@ TESTS = {
     "test_labels, alone": test("surface/test_labels", "", ("alone",), device=True),
     "test_labels, groups": test("surface/test_labels", "", ("groups",), device=True),
     "test_cli_labels": test("tool/test_cli_labels.py", "", ("reference",)),
+    "test_closed_cells": test("surface/test_closed_cells"),
     "test_grid_pieces, reference": test("surface/test_grid_pieces", arguments=("1", "40")),
     "test_grid_pieces, u8": test("surface/test_grid_pieces", arguments=("1", "40"), device=True),
     "test_mesh_pieces": test("write/test_mesh_pieces"),
@@ -143,6 +144,7 @@ REFERENCE = ["test_patterns, reference", "test_random, reference", "test_curvili
 DEVICE = ["test_random, u8", "test_rare, one sample"]
 SNAPPED = ["test_snap, u8"]
 WHOLE = ["test_whole, alone", "test_whole, refusals", "test_whole, orders", "test_whole, slabs"]
+CAPS = ["test_whole, alone", "test_whole, slabs"]
 READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
 LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
@@ -157,7 +159,7 @@ FILES = {
     "host/lib/labels/": ["test_labels", "test_labels, alone"],
     "kernels/label": ["test_labels, alone"],
     "kernels/tiles.cl": ["test_complex, u8", "test_labels, alone"],
-    "host/lib/reference/complex_border.c": ["test_closed"],
+    "host/lib/reference/complex_border.c": ["test_closed", "test_closed_cells"],
     "host/lib/grid/cell_cases.c": ["test_cell_cases", "test_cells, reference"],
     "host/lib/grid/complex_cells.c": ["test_cells"],
     "host/lib/grid/inside.c": ["test_inside"],
@@ -223,6 +225,10 @@ FILES = {
     "host/common/stored_types.c": READERS,
     "host/lib/tetrahedra/whole": WHOLE,
     "kernels/whole": WHOLE,
+    "host/lib/tetrahedra/border_list.c": CAPS,
+    "host/lib/tetrahedra/caps_host.c": CAPS,
+    "host/lib/tetrahedra/complex_caps.c": CAPS,
+    "kernels/complex_caps.cl": CAPS,
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
     "kernels/snap": SNAPPED,
     "kernels/regular_alone.cl": SNAPPED,

@@ -266,6 +266,14 @@ static void complex_programs(tc_context *context) {
         status_check(program_get(context, PROGRAM_COMPLEX, kind, &found));
         snprintf(name, sizeof name, "whole-%s", type_names[type]);
         status_check(program_get(context, PROGRAM_WHOLE, kind, &found));
+        for (int whole = 0; whole < 2; whole++) {
+            const kernel_kind closed = {.grid = KIND_COMPLEX,
+                                        .type = (tc_type)type,
+                                        .method = whole ? TC_METHOD_HYBRID : TC_METHOD_TETRA,
+                                        .closed = true};
+            snprintf(name, sizeof name, "%s-%s-closed", whole ? "whole" : "complex", type_names[type]);
+            status_check(program_get(context, PROGRAM_COMPLEX_CAPS, closed, &found));
+        }
     }
 }
 

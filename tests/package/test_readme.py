@@ -81,7 +81,8 @@ def test_readme(source, pages, tool):
                           re.MULTILINE)
     expect(len(commands) == 2, f"README.md: two commands expected, found {commands}")
     ci = (source / ".ci" / "run").read_text(encoding="utf-8")
-    expect(re.findall(r"^(bash \S+)", ci, re.MULTILINE) == commands, f".ci/run does not run {commands}")
+    expect(re.findall(r"^(bash \S+)", ci, re.MULTILINE) == [*commands, "bash tests/analysis"],
+           f".ci/run does not run {commands}, then tests/analysis")
     example = re.findall(r"^    (.*)$", section("README.md", text, "## Example", "\n`tetracubes info"), re.MULTILINE)
     calls = [line[2:].split()[1:] for line in example if line.startswith("$ ")]
     with tempfile.TemporaryDirectory() as folder:
@@ -144,7 +145,7 @@ def test_keys(text, tool):
     page = "host/tool/README.md"
     table = section(page, text, "| of `extract` | |", "With `--count`")
     documented = set(re.findall(r"`([a-z_0-9]+)`", table)) - {"extract", "verified"}
-    documented -= {"ranks", "sent_bytes"}  # of tetracubes-mpi: tests/mpi/test_ranks.py
+    documented -= {"ranks", "cut", "sent_bytes"}  # of tetracubes-mpi: tests/mpi/test_ranks.py
     with tempfile.TemporaryDirectory() as folder:
         run(tool, "generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "a.nrrd", cwd=folder)
         extract = [tool, "extract", "a.nrrd", "--iso", "128", "--engine", "reference", "--json", "--quiet"]
@@ -260,7 +261,7 @@ def test_kernels(source, text):
 
 def test_promises(text, build):
     """Every test that a promise names is one of ctest's, and every test is named, or is another run of one that is."""
-    listed = run("ctest", "--test-dir", build, "-N").stdout
+    listed = run("ctest", "--test-dir", build, "-C", "Analysis", "-N").stdout
     known = set(re.findall(r"Test +#\d+: (\w+)", listed))
     cache = (Path(build) / "CMakeCache.txt").read_text(encoding="utf-8")
     if re.search(r"^BUILD_SHARED_LIBS:\w+=(OFF|0|NO|FALSE)$", cache, re.MULTILINE | re.IGNORECASE):

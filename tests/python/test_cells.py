@@ -50,6 +50,17 @@ def test_hybrid():
     assert tetracubes.contour_cells(POINTS, VTK, VALUES, 0.1, method="hybrid").hash == mesh.hash
 
 
+def test_closed():
+    for method in "tetra", "hybrid":
+        mesh = contour(VTK, level=-1000, method=method, closed=True)
+        assert signed_volume(mesh.vertices, mesh.faces) == pytest.approx((SIZE - 1) ** 3)
+        half = contour(VTK, values=POINTS[:, 0], level=0.5, method=method, closed=True, carry={"points": POINTS})
+        assert signed_volume(half.vertices, half.faces) == pytest.approx((SIZE - 1) ** 2 * (SIZE / 2 - 1))
+        np.testing.assert_allclose(half.values["points"], half.vertices, atol=1e-5)
+        assert tetracubes.contour_cells(POINTS, VTK, VALUES, -1.5, method=method, closed=True).hash == contour(
+            VTK, level=-1.5, method=method, closed=True).hash
+
+
 def test_float32_points():
     assert contour(VTK, points=POINTS.astype("f4")).hash == contour(VTK).hash
     assert contour(VTK, points=POINTS.astype(">f4")[::-1][::-1]).hash == contour(VTK).hash

@@ -381,8 +381,8 @@ static void what_is_not_read_is_named(void) {
         const char *name, *bytes;
         int status;
         const char *says;
-    } files[] = {{"a.ex2", "CDF\1....", STATUS_INPUT, "Exodus"}, {"a.e", "?", STATUS_INPUT, "Exodus"},
-                 {"a.nc", "CDF\2....", STATUS_INPUT, "netCDF"},  {"a.cgns", "?", STATUS_INPUT, "CGNS"},
+    } files[] = {{"a.ex2", "CDF\1....", STATUS_INPUT, "Exodus"}, {"a.e", "?", STATUS_INPUT, "contour_cells"},
+                 {"a.nc", "CDF\2....", STATUS_INPUT, "nccopy"},  {"a.cgns", "?", STATUS_INPUT, "CGNS"},
                  {"a.stl", "solid", STATUS_INPUT, "surface"},    {"a.q", "?", STATUS_USAGE, "two inputs"},
                  {"a.bin", "?", STATUS_USAGE, "--dims"},         {"a", "?", STATUS_INPUT, "not known"},
                  {"a.txt", "", STATUS_INPUT, "not known"}};

@@ -132,7 +132,6 @@ int main(int argc, char **argv) {
     for (tc_type type = TC_U8; type <= TC_F64; type++)
         for (int n = 0; n < 4; n++) test_isovalues(type, n & 1, 1, n & 2);
     if (test_chosen("unread")) test_unread();
-    groups_begin();
     test_isovalues(TC_U8, false, 64, true);
     test_isovalues(TC_F32, true, 32, false);
     EXPECT(slab_count_most > 2 || !test_chosen("slabs"), "no more than %u slabs", slab_count_most);

@@ -262,7 +262,6 @@ int main(void) {
     EXPECT(tc_tetrahedralize_grid(&grid, &cut) == TC_OK, "%s", tc_message());
     test_mode(&options, reference, CASES, "whole");
     test_slabs(options, reference, "slabs");
-    groups_begin();
     tc_expert_options expert;
     tc_expert_options_init(&expert);
     options.expert = &expert;

@@ -376,16 +376,9 @@ static void run(uint64_t seed) {
 /* All patterns of two hexahedra with a face in common, under random numbers. */
 static void test_two_hexahedra(void) {
     for (unsigned pattern = 0; pattern < 4096; pattern++) {
-        cell_list list = cell_list_make(12, 2);
-        uint32_t p[12];
+        cell_list list = hexahedra_make((uint32_t[3]){1, 1, 2}, true);
         float values[12];
         char name[60];
-        for (uint32_t n = 0; n < 12; n++) p[n] = cell_list_point(&list, n % 2, n / 2 % 2, n / 4);
-        for (uint32_t z = 0; z < 2; z++) {
-            const uint32_t *q = p + 4 * z, corners[8] = {q[0], q[1], q[3], q[2], q[4], q[5], q[7], q[6]};
-            cell_list_add(&list, 12, 8, corners, random_below(2));
-        }
-        cell_list_renumber(&list);
         for (int n = 0; n < 12; n++) values[n] = (float)(pattern >> n & 1) - 0.5f;
         tc_cells cells = cell_list_view(&list);
         tc_tetrahedra complex = cut(&cells, "two hexahedra");

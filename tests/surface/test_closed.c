@@ -7,6 +7,7 @@
  *
  * Usage: test_closed [COUNT]: so many random grids in place of 3,000
  */
+#include "closed.h"
 #include "engines.h"
 #include "random.h"
 
@@ -14,93 +15,11 @@
 
 enum { PATTERNS = 2 * 256, SAMPLES_MOST = 512 };
 
-typedef struct edge {
-    uint32_t from, to;
-} edge;
-
-static int edges_compare(const void *a, const void *b) {
-    const edge *p = a, *q = b;
-    if (p->from != q->from) return p->from < q->from ? -1 : 1;
-    return p->to < q->to ? -1 : p->to > q->to;
-}
-
-static void edges_fill(const tc_mesh_data *m, uint64_t count, int turned, edge *out) {
-    for (uint64_t n = 0; n < 3 * count; n++) {
-        const uint32_t a = m->triangles[n], b = m->triangles[n % 3 == 2 ? n - 2 : n + 1];
-        out[n] = turned ? (edge){b, a} : (edge){a, b};
-    }
-    qsort(out, 3 * count, sizeof *out, edges_compare);
-}
-
-/* Whether the first `count` triangles have no border. */
-static int is_closed(const tc_mesh_data *m, uint64_t count) {
-    edge *forth = malloc((3 * count + 1) * sizeof *forth), *back = malloc((3 * count + 1) * sizeof *back);
-    int closed = forth && back;
-    if (closed) edges_fill(m, count, 0, forth), edges_fill(m, count, 1, back);
-    for (uint64_t n = 0; n < 3 * count && closed; n++) closed = edges_compare(&forth[n], &back[n]) == 0;
-    free(forth);
-    free(back);
-    return closed;
-}
-
-static double volume_between(const double *a, const double *b, const double *c, const double *d) {
-    double u[3], v[3], w[3];
-    for (int n = 0; n < 3; n++) u[n] = b[n] - a[n], v[n] = c[n] - a[n], w[n] = d[n] - a[n];
-    return ((u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
-            (u[0] * v[1] - u[1] * v[0]) * w[2]) /
-           6;
-}
-
-static double enclosed(const tc_mesh_data *m) {
-    static const double zero[3];
-    double sum = 0, p[3][3];
-    for (uint64_t n = 0; n < m->triangle_count; n++) {
-        for (int k = 0; k < 9; k++)
-            p[k / 3][k % 3] = m->positions[3 * m->triangles[3 * n + (uint64_t)k / 3] + (uint64_t)k % 3];
-        sum += volume_between(zero, p[0], p[1], p[2]);
-    }
-    return sum;
-}
-
-static void cross(const double *p, const double *q, double f, double g, double iso, double out[3]) {
-    for (int n = 0; n < 3; n++) out[n] = p[n] + (iso - f) / (g - f) * (q[n] - p[n]);
-}
-
-/* Of the inside part of a tetrahedron; the corners inside come first. */
-static double part_inside(double p[4][3], const double f[4], int inside, double iso) {
-    const double whole = fabs(volume_between(p[0], p[1], p[2], p[3]));
-    double x[4][3];
-    if (inside == 0 || inside == 4) return inside ? whole : 0;
-    if (inside == 2) {
-        for (int n = 0; n < 4; n++) cross(p[n / 2], p[2 + n % 2], f[n / 2], f[2 + n % 2], iso, x[n]);
-        return fabs(volume_between(p[0], x[0], x[1], p[1])) + fabs(volume_between(x[0], x[1], p[1], x[3])) +
-               fabs(volume_between(x[0], p[1], x[2], x[3]));
-    }
-    const int tip = inside == 1 ? 0 : 3;
-    for (int n = 0, k = 0; n < 4; n++)
-        if (n != tip) cross(p[tip], p[n], f[tip], f[n], iso, x[k++]);
-    const double cut = fabs(volume_between(p[tip], x[0], x[1], x[2]));
-    return inside == 1 ? cut : whole - cut;
-}
-
 /* points: where samples are, x, y, z each. */
-static double inside_of_tetrahedra(const tc_grid_options *g, const float *points, double iso) {
+static double inside_of_grid(const tc_grid_options *g, const float *points, double iso) {
     tc_tetrahedra t = {.struct_size = sizeof t};
-    const float *samples = g->samples;
-    double sum = 0;
     if (tc_tetrahedralize_grid(g, &t)) return NAN;
-    for (uint64_t n = 0; n < t.tetrahedron_count; n++) {
-        double p[4][3], f[4];
-        int at = 0, inside = 0;
-        for (int side = 1; side >= 0; side--)
-            for (int v = 0; v < 4; v++) {
-                const int64_t s = t.tetrahedra[4 * n + (uint64_t)v];
-                if ((samples[s] >= iso) != side) continue;
-                for (int axis = 0; axis < 3; axis++) p[at][axis] = points[3 * s + axis];
-                f[at++] = samples[s], inside += side;
-            }
-        sum += part_inside(p, f, inside, iso);
-    }
+    const double sum = inside_of_tetrahedra(&t, points, g->samples, iso);
     tc_tetrahedra_release(&t);
     return sum;
 }
@@ -120,28 +39,12 @@ static void grid_try(tc_context *context, const tc_grid_options *g, const float 
     if (m.triangle_count)
         EXPECT(!is_closed(&m, m.triangle_count - 1), "grid %d, %s: a missing triangle is not seen", number,
                tc_method_name(method));
-    const double inside = inside_of_tetrahedra(g, points, iso);
+    const double inside = inside_of_grid(g, points, iso);
     if (method == TC_METHOD_TETRA)
         EXPECT(fabs(enclosed(&m) - inside) < 1e-3, "grid %d: volume %g, of the tetrahedra %g", number, enclosed(&m),
                inside);
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
-}
-
-/* The open surface comes first, with the same numbers. */
-static int begins_with(const tc_mesh_data *whole, const tc_mesh_data *open) {
-    int same = open->vertex_count <= whole->vertex_count && open->triangle_count <= whole->triangle_count;
-    for (uint64_t n = 0; n < 3 * open->vertex_count && same; n++) same = open->positions[n] == whole->positions[n];
-    for (uint64_t n = 0; n < 3 * open->triangle_count && same; n++) same = open->triangles[n] == whole->triangles[n];
-    return same;
-}
-
-/* Points that are carried are where the vertices are, but for rounding. */
-static int carried_are_positions(const float *carried, const tc_mesh_data *m) {
-    int same = 1;
-    for (uint64_t n = 0; n < 3 * m->vertex_count && same; n++)
-        same = fabs((double)carried[n] - (double)m->positions[n]) < 1e-5;
-    return same;
 }
 
 /* The same cut into tetrahedra: closed, counted, with points carried to where they are. */
@@ -175,7 +78,7 @@ static void complex_try(tc_context *context, const tc_grid_options *g, const flo
            "tetrahedra %d: points that are carried are not the vertices", number);
     EXPECT(!made || begins_with(&m[1], &m[0]), "tetrahedra %d: the open surface is another", number);
     EXPECT(is_closed(&m[1], m[1].triangle_count), "tetrahedra %d: not closed", number);
-    const double inside = inside_of_tetrahedra(g, points, how.isovalue);
+    const double inside = inside_of_grid(g, points, how.isovalue);
     EXPECT(fabs(enclosed(&m[1]) - inside) < 1e-3, "tetrahedra %d: volume %g, of the tetrahedra %g", number,
            enclosed(&m[1]), inside);
     free(carried);

@@ -252,7 +252,6 @@ int main(int argc, char **argv) {
     const uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
     const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 40 : 300;
     if (!device_exists()) return SKIPPED;
-    if (groups) groups_begin();
     contexts_open(groups ? 64 : 1);
     for (uint64_t n = 0; n < count; n++) run(first + n, n % 16 == 15);
     if (argc < 3 && test_chosen("bricks inside")) test_inside_bricks();

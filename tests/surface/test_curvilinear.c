@@ -414,7 +414,6 @@ int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups"), alone = argc > 1 && !strcmp(argv[1], "alone");
     random_state = 5;
     reference = reference_open();
-    if (groups) groups_begin();
     if (device_exists())
         for (int n = 0; n < CONTEXTS; n++) {
             if (n == IN_ROWS ? alone : groups) continue;

@@ -494,7 +494,6 @@ static void test_device(bool groups, bool copies, uint64_t seed, uint64_t count)
     tc_context_options options;
     tc_expert_options expert;
     options_init(&options, &expert);
-    if (groups) groups_begin();
     expert.work_items = groups ? 64 : 1;
     expert.always_copy = copies;
     device = context_open(&options);

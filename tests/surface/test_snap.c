@@ -492,7 +492,7 @@ int main(int argc, char **argv) {
     tc_context_options options;
     tc_expert_options expert;
     options_init(&options, &expert);
-    if (groups) groups_begin(), expert.work_items = 32;
+    if (groups) expert.work_items = 32;
     reference = reference_open();
     if (device_exists()) device = context_open(&options);
     test_slabs(options);

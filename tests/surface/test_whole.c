@@ -1,5 +1,6 @@
 /*
- * test_whole.c - method hybrid on cells of all types: kernels against the reference, bit for bit
+ * test_whole.c - method hybrid on cells of all types, and closed surfaces of these by both methods: kernels against the
+ * reference, bit for bit
  *
  * Blocks of mixed cells under random point numbers, whole or with collapsed cells, prisms, and blocks of hexahedra; of
  * all sample types, with ties and missing samples. Each is counted, extracted and has a field carried, by both variants
@@ -38,44 +39,58 @@ typedef struct subject {
     void *values;
     float *field;
     double isovalues[ISOVALUES];
+    tc_method method;
+    int closed;
     tc_mesh *wanted[ISOVALUES];
     float *carried[ISOVALUES];
 } subject;
 
-/* Hexahedra alone: the list may be read in one sweep. */
-static cell_list hexahedra_make(uint32_t size, bool renumbered) {
-    const uint32_t n = size + 1;
-    cell_list list = cell_list_make((uint64_t)n * n * n, (uint64_t)size * size * size);
-    for (uint32_t p = 0; p < n * n * n; p++) cell_list_point(&list, p % n, p / n % n, p / n / n);
-    for (uint32_t c = 0; c < size * size * size; c++) {
-        const uint32_t first = (c / size / size * n + c / size % size) * n + c % size, up = n * n;
-        const uint32_t corners[8] = {first,      first + 1,      first + n + 1,      first + n,
-                                     first + up, first + up + 1, first + up + n + 1, first + up + n};
-        cell_list_add(&list, 12, 8, corners, renumbered && random_below(2));
+/* Gives a corner of every fourth cell a point of its own, so that cells share half a quadrilateral, or nothing. */
+static void cells_tear(cell_list *list) {
+    const uint64_t room = list->point_count + list->cell_count;
+    list->points = realloc(list->points, 12 * room + 1);
+    if (!list->points) exit(EXIT_FAILURE);
+    for (uint64_t c = 0; c < list->cell_count; c++) {
+        const uint32_t corners = (uint32_t)(list->offsets[c + 1] - list->offsets[c]), n = random_below(4 * corners);
+        int64_t *point = list->connectivity + list->offsets[c] + n;
+        const float *p = n < corners ? list->points + 3 * *point : NULL;
+        if (p) *point = cell_list_point(list, p[0], p[1], p[2]);
     }
-    if (renumbered) cell_list_renumber(&list);
-    return list;
+    cell_list_renumber(list);
+}
+
+enum { MIXED, COLLAPSED, PRISMS, HEXAHEDRA, IN_ORDER, TORN, KINDS };
+
+/* Begins the random numbers of a seed. */
+static uint32_t kind_of(uint64_t seed) {
+    random_state = seed * 0x2545f4914f6cdd1du;
+    return random_below(KINDS);
 }
 
 static cell_list list_make(uint64_t seed, char *name) {
-    static const char *const kinds[5] = {"mixed block", "collapsed", "prisms", "hexahedra", "hexahedra in order"};
-    random_state = seed * 0x2545f4914f6cdd1du;
-    const uint32_t kind = random_below(5), size = 1 + random_below(6);
+    static const char *const kinds[KINDS] = {"mixed block", "collapsed",          "prisms",
+                                             "hexahedra",   "hexahedra in order", "torn"};
+    const uint32_t kind = kind_of(seed), size = 1 + random_below(6);
     const uint64_t block_seed = random_u64();
-    cell_list list = kind == 2  ? honeycomb_make(size, block_seed)
-                     : kind > 2 ? hexahedra_make(size, kind == 3)
-                                : mixed_block_make(size, block_seed);
-    if (kind == 1) cell_list_collapse(&list);
-    if (kind == 2) cell_list_drop_polyhedra(&list);
+    cell_list list = kind == PRISMS      ? honeycomb_make(size, block_seed)
+                     : kind >= HEXAHEDRA ? hexahedra_make((uint32_t[3]){size, size, size}, kind != IN_ORDER)
+                                         : mixed_block_make(size, block_seed);
+    if (kind == COLLAPSED) cell_list_collapse(&list);
+    if (kind == PRISMS) cell_list_drop_polyhedra(&list);
+    if (kind == TORN) cells_tear(&list);
     random_state = block_seed;
     sprintf(name, "seed %" PRIu64 ": %s of %u", seed, kinds[kind], size);
     return list;
 }
 
+/* Half of the surfaces are closed, half of these by method tetra. */
+static int closed_of(uint64_t seed) { return seed / 3 % 2 == 1; }
+static tc_method method_of(uint64_t seed) { return seed / 3 % 4 == 3 ? TC_METHOD_TETRA : TC_METHOD_HYBRID; }
+
 /* The quick tier builds kernels for some types only. */
 static tc_type type_of(uint64_t seed) {
     static const tc_type quick[3] = {TC_U8, TC_F32, TC_F64};
-    return tier_is_quick() ? quick[seed % 3] : (tc_type)(seed % 8);
+    return tier_is_quick() ? quick[seed % (closed_of(seed) ? 2 : 3)] : (tc_type)(seed % 8);
 }
 
 /* Of a few values, or noise, or distances; some missing. */
@@ -90,7 +105,8 @@ static void values_choose(subject *s, tc_type type) {
         s->field[n] = (float)random_between(-1, 1);
     }
     const double middle = kind == 0 ? 2 : kind == 1 ? 50.5 : 3.25;
-    for (int n = 0; n < ISOVALUES; n++) s->isovalues[n] = n == 1 ? 1.5 * middle : n == 3 ? 1000 : middle;
+    const double none = s->closed ? -1000 : 1000; /* all inside: of closed surfaces the border alone */
+    for (int n = 0; n < ISOVALUES; n++) s->isovalues[n] = n == 1 ? 1.5 * middle : n == 3 ? none : middle;
     s->isovalues[0] = kind == 1 ? 30 : middle / 2;
 }
 
@@ -102,7 +118,7 @@ static void field_carry(const subject *s, tc_grid *grid, const tc_extract_option
 static tc_extract_options how_of(const subject *s, int n) {
     tc_extract_options how;
     tc_extract_options_init(&how);
-    how.isovalue = s->isovalues[n], how.method = TC_METHOD_HYBRID;
+    how.isovalue = s->isovalues[n], how.method = s->method, how.closed = s->closed;
     return how;
 }
 
@@ -126,13 +142,14 @@ static void surfaces_of_reference(subject *s) {
 }
 
 static void subject_make(subject *s, uint64_t seed, tc_type type) {
-    *s = (subject){.name = ""};
+    *s = (subject){.name = "", .method = method_of(seed), .closed = closed_of(seed)};
     s->list = list_make(seed, s->name);
     s->values = memory_get(8 * s->list.point_count), s->field = memory_get(4 * s->list.point_count);
     s->cells = cell_list_view(&s->list);
     s->complex = cut(&s->cells, s->name);
     values_choose(s, type);
-    snprintf(s->name + strlen(s->name), sizeof s->name - strlen(s->name), ", %s", tc_type_name(type));
+    snprintf(s->name + strlen(s->name), sizeof s->name - strlen(s->name), ", %s, %s%s", tc_type_name(type),
+             tc_method_name(s->method), s->closed ? ", closed" : "");
     tc_tetrahedra_grid_options_init(&s->options);
     s->options.point_count = s->list.point_count, s->options.points = s->list.points;
     s->options.type = type, s->options.samples = s->values;
@@ -349,12 +366,14 @@ int main(int argc, char **argv) {
     reference = reference_open();
     tc_context *device = device_open(0, false);
     for (uint64_t n = seed; n < seed + count && test_chosen("alone"); n++) run(n, type_of(n), device, "alone");
-    for (uint64_t n = seed; n < seed + count / 20 && test_chosen("slabs"); n++) budgets_run(n, false);
+    for (uint64_t n = seed; n < seed + count / 4 && test_chosen("slabs"); n++) {
+        const bool halves = closed_of(n) && method_of(n) == TC_METHOD_HYBRID && kind_of(n) == TORN;
+        if (n < seed + count / 20 || halves) budgets_run(n, false);
+    }
     if (test_chosen("refusals")) refusals_run(device);
     if (test_chosen("orders")) orders_run(device);
     tc_context_destroy(device);
     if (test_chosen("groups")) {
-        groups_begin();
         device = device_open(0, true);
         for (uint64_t n = seed; n < seed + count / 2; n++) run(n, TC_F32, device, "groups");
         tc_context_destroy(device);

@@ -145,6 +145,7 @@ def suite_try(tier, suite, folder):
     if tier == "whole":
         sources_copy(f"{chroot}/root/tetracubes")
         try_it("bash tests/all, by root", "cd /root/tetracubes && bash tests/all")
+        try_it("bash tests/analysis, by root", "cd /root/tetracubes && bash tests/analysis")
         try_it("drivers", f"apt-get install -y --no-install-recommends {' '.join(DRIVERS)} && cd /root/tetracubes && "
                f"python3 tests/systems/drivers.py build/tests/bytes/test_bytes --out /drivers.json")
         if os.path.exists(f"{chroot}/drivers.json"):

@@ -110,22 +110,24 @@ class Unstructured(GridCase):
                 self.assertEqual(surfaces[-1]["hash"], hybrid["hash"], more)
 
     def test_closed(self):
-        """By method tetra, which is the reference engine's: the inside of the surface, and with --iso below all the grid."""
+        """The inside of the surface, and with --iso below all the grid; by kernels the same, in slabs too."""
         grid = self.write_hexahedra("a.vtu")
         how = ["--field", "bump", "--check", "--closed"]
-        for iso in ("0.5", "3", "-1000"):
-            closed, = self.report("extract", grid, *how, "--iso", iso, "--engine", "reference")["surfaces"]
+        for method, iso in itertools.product(("tetra", "hybrid"), ("0.5", "3", "-1000")):
+            closed, = self.report("extract", grid, *how, "--iso", iso, "--engine", "reference", "--method",
+                                  method)["surfaces"]
             for key in ("boundary_edges", "nonmanifold_edges", "nonmanifold_vertices", "misoriented_edges"):
-                self.assertEqual(closed[key], 0, (iso, key))
-            self.assertEqual(closed["euler_characteristic"], 2, iso)
+                self.assertEqual(closed[key], 0, (method, iso, key))
+            self.assertEqual(closed["euler_characteristic"], 2, (method, iso))
         self.assertAlmostEqual(closed["volume"], 448, delta=25)  # as many cells, each a little out of shape
-        for method, says in (("hybrid", "unstructured.*tetra only"), ("snap", "unstructured.*snap")):
-            self.refuses(2, "extract", grid, *how, "--iso", "0.5", "--method", method, says=says)
+        self.refuses(2, "extract", grid, *how, "--iso", "0.5", "--method", "snap", says="unstructured.*snap")
         if tool_case.HAS_DEVICE:
-            self.refuses(1, "extract", grid, *how, "--iso", "0.5", says="reference engine for grids of tetrahedra")
-            told = self.expect(0, "extract", grid, *how, "--iso", "0.5", "--engine", "auto")
-            self.assertRegex(told.stderr, "reference engine takes over")
-            self.assertIn("closed: 0 boundary edges", told.stdout)
+            for method, more in itertools.product(("tetra", "hybrid"), ([], ["--max-memory", "100K"])):
+                surfaces = self.report("extract", grid, *how, "--iso", "0.5,-1000", "--verify", "--method", method,
+                                       *more)["surfaces"]
+                for surface in surfaces:
+                    self.assertTrue(surface["verified"], (method, more))
+                    self.assertEqual(surface["boundary_edges"], 0, (method, more))
 
     def test_polyhedra_are_not_kept_whole(self):
         faces = [[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]]

@@ -40,13 +40,13 @@ class JoinCase(GridCase):
         self.expect(0, "join", *parts, "-o", self.path("all." + ending), "--quiet", *more)
         return read(self.path("all." + ending))
 
-    def compare(self, counts, *arguments, formats=FORMATS, seed=1):
+    def compare(self, counts, *arguments, formats=FORMATS, seed=1, cut=()):
         chance = random.Random(seed)
         if formats == FORMATS and "VTKHDF" in self.expect(0, "--version").stdout:
             formats = (*FORMATS, "vtkhdf")
         wanted = {ending: self.one(ending, *arguments) for ending in formats}
         for count in counts:
-            parts = self.parts(count, *arguments)
+            parts = self.parts(count, *arguments, *cut)
             chance.shuffle(parts)
             for ending in formats:
                 self.assertTrue(self.joined(ending, parts) == wanted[ending], f"{arguments}: {count} parts, {ending}")
@@ -128,6 +128,15 @@ class Joined(JoinCase):
             parts = [self.path(f"p{number}-{iso}.part") for number in (1, 0)]
             self.assertEqual(self.joined("ply", parts), self.one("ply", volume, "--iso", iso, *self.engine()))
 
+    def test_cut(self):
+        """Parts of planes that are named, one of them empty."""
+        volume = self.generate("noise", "n.nrrd", "20,19,18", "f32")
+        how = [volume, "--iso", "127.5", *self.engine()]
+        for cut in ("12", "4,4,16", "0,8,18"):
+            self.compare((cut.count(",") + 2,), *how, "--method", "snap", cut=["--cut", cut], formats=("ply", "stl"))
+        part = self.report("extract", *how, "--cut", "4,4,16", "--part", "2/4", "-o", self.path("x"))
+        self.assertEqual((part["part"], part["planes"]), ([2, 4], [4, 16]))
+
     def test_report(self):
         volume = self.generate("sphere", "s.nrrd", "15,14,18")
         parts = self.parts(3, volume, "--iso", "100", *self.engine())
@@ -157,7 +166,7 @@ class OnDevice(Joined):
         self.assertEqual(self.joined("ply", [reference[0], device[1]]), self.one("ply", volume, "--iso", "127.5"))
 
     test_normals_and_missing_data = test_more_parts_than_layers = test_far_from_zero = None
-    test_carried_fields = test_curvilinear = test_space_and_units = test_isovalues = test_report = None
+    test_carried_fields = test_curvilinear = test_space_and_units = test_isovalues = test_cut = test_report = None
 
 
 class Refused(JoinCase):
@@ -187,6 +196,8 @@ class Refused(JoinCase):
             self.refused([other[0], *good[1:]], f'"{key}" is ')
         volume = self.generate("torus", "t.nrrd", "15,14,18")
         self.refused([self.parts(3, volume, *how[1:], name="v")[0], *good[1:]], "another volume")
+        cut = self.parts(3, *how, "--cut", "8,12", name="c")
+        self.refused([good[0], *cut[1:]], "begins at plane 8, but .* ends at 4: parts of one surface need one --cut")
         moved = self.parts(3, *how, "--spacing", "1,1,2", name="m")
         self.refused([moved[0], *good[1:]], "another volume")
 
@@ -235,7 +246,7 @@ class Refused(JoinCase):
                 head, rest = data.split(b"\n", 1)
                 head = head.replace(old, new, 1).rstrip()
                 return head + b" " * (63 - len(head) % 64) + b"\n" + rest
-            self.refused(self.changed(1, change), "damaged|cut short|too long|no parts of one|no part of a surface")
+            self.refused(self.changed(1, change), "damaged|need one --cut|cut short|too long|no parts of one|no part of a surface")
 
     def test_usage(self):
         out, how = self.path("x.part"), self.how
@@ -248,6 +259,14 @@ class Refused(JoinCase):
                            (["-o", out, "--soup"], "made in parts"), (["-o", out, "--verify"], "made in parts|--verify"),
                            (["-o", self.volume], "input itself")):
             self.refuses(2, "extract", *how, *(["--part", "1/2"] if "--part" not in more else []), *more, says=says)
+        for cut, says in (("x", "neither even nor cost, nor planes"), ("4,", "neither even"), ("-4", "neither even"),
+                          ("", "neither even"), ("4,8", "names 2 planes, where all but the first of 3 parts begin"),
+                          ("6", "6 is no multiple of 4, as layers are: give 4"), ("20", "20 is not from 0 to 18"),
+                          ("cost", "for ranks, which count together")):
+            self.refuses(2, "extract", *how, "--part", "1/2", "--cut", cut, "-o", out, says=says)
+        self.refuses(2, "extract", *how, "--part", "1/3", "--cut", "8,4", "-o", out, says="plane 4 is not from 8 to 18")
+        for cut in ("even", "cost", "4"):
+            self.refuses(2, "extract", *how, "--cut", cut, "-o", self.path("x.ply"), says="--cut says where ranks or parts begin")
         self.refuses(2, "join", *self.good, says="needs -o")
         self.refuses(2, "join", "-o", self.path("x.ply"), says="needs the files of all parts")
         self.refuses(2, "join", *self.good, "-o", self.path("x.obj"), says="not written piece by piece")

@@ -9,46 +9,15 @@ import os
 import struct
 import subprocess
 import sys
-import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
 from grid_files import HEXAHEDRON, bump, hexahedra, lattice, vtu_text
+from png import png_read
 from tool_case import GridCase
 
 REFERENCE = ("--engine", "reference")
 WHITE = (255, 255, 255)
-
-
-def paeth(a, b, c):
-    """The predictor of that name, of the PNG specification."""
-    return min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
-
-
-def png_read(content):
-    """(width, height, rows of pixels); every chunk's check sum is looked at."""
-    assert content[:8] == b"\x89PNG\r\n\x1a\n"
-    at, chunks = 8, []
-    while at < len(content):
-        size, = struct.unpack_from(">I", content, at)
-        kind, body = content[at + 4:at + 8], content[at + 8:at + 8 + size]
-        assert struct.unpack_from(">I", content, at + 8 + size)[0] == zlib.crc32(kind + body)
-        chunks.append((kind, body))
-        at += 12 + size
-    assert chunks[0][0] == b"IHDR" and chunks[-1] == (b"IEND", b"")
-    width, height, *form = struct.unpack(">IIBBBBB", chunks[0][1])
-    assert form == [8, 2, 0, 0, 0]
-    data = zlib.decompress(b"".join(body for kind, body in chunks if kind == b"IDAT"))
-    assert len(data) == height * (3 * width + 1)
-    above, rows = bytearray(3 * width), []
-    for y in range(height):
-        kind, *line = data[y * (3 * width + 1):(y + 1) * (3 * width + 1)]
-        for n in range(3 * width):
-            left, corner = (line[n - 3], above[n - 3]) if n > 2 else (0, 0)
-            line[n] = line[n] + (0, left, above[n], (left + above[n]) // 2, paeth(left, above[n], corner))[kind] & 255
-        above = line
-        rows.append([tuple(line[n:n + 3]) for n in range(0, 3 * width, 3)])
-    return width, height, rows
 
 
 def seen(rows):

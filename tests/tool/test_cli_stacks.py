@@ -86,6 +86,7 @@ class Stacks(GridCase):
                                             "1,2,1"))
         self.refuses(2, "extract", self.path("slices"), "--iso", "99.5", *REFERENCE, "-o",
                      self.path("slices/99.tif"), "--format", "ply", says="read as part of it")
+        self.refuses(2, "info", self.path("slices/%d.raw"), "--dims", "4,4,4", "--type", "u8", says="by a line as 'data file: ")
         os.remove(self.path("slices/100.tif"))
         self.refuses(4, "info", self.path("slices/%d.tif"), says="slices 99 and 101")
 

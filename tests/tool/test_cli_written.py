@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_cli_written.py TOOL [reference] - GLB, NPZ and OFF against PLY, by code that knows their formats; numpy
+"""test_cli_written.py TOOL [reference] - GLB, NPZ, HTML and OFF against PLY, by code that knows their formats; numpy
 
 What glTF asks for is checked here: chunks, alignment, views, accessors, exact bounds, indices. NPZ is read by zipfile,
 which looks at every check sum, and by numpy where Python has it; so are .npy files that numpy has written. Where trimesh
@@ -17,7 +17,7 @@ import zipfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
-from meshes import glb_parts, npz_arrays, ply_vertices, read_ply, READERS
+from meshes import glb_parts, html_scripts, npz_arrays, ply_vertices, read_ply, READERS
 from tool_case import GridCase
 
 REFERENCE = ("--engine", "reference")
@@ -47,7 +47,7 @@ class Written(GridCase):
     def test_same_mesh(self):
         for more in ([], ["--soup"]):
             points, faces, _ = read_ply(self.written("ply", *more))
-            for ending in ("off", "glb", "npz"):
+            for ending in ("off", "glb", "npz", "html"):
                 is_points, is_faces, _ = READERS[ending](self.written(ending, *more))
                 exact = [tuple(struct.unpack("<3f", struct.pack("<3f", *p))) for p in is_points]
                 self.assertEqual((exact, is_faces), (points, faces), (ending, more))
@@ -145,8 +145,20 @@ class Written(GridCase):
         arrays = npz_arrays(self.written("npz", iso="300"))
         self.assertEqual({name: shape for name, (_, shape, _) in arrays.items()}, {"vertices": (0, 3), "faces": (0, 3)})
 
+    def test_page(self):
+        """A page loads nothing: no address stands in it, and its own policy forbids to ask for any."""
+        path = self.written("html", "--normals")
+        with open(path, encoding="utf-8") as file:
+            page = file.read()
+        self.assertRegex(page, r"""content="default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'""")
+        for fetches in (r"\b(https?|wss?|ftp):", r"\bsrc=", r"url\(", r"@import", r"\bimport\b", r"\bfetch\(", "XMLHttp",
+                        r'href="(?!data:,)'):
+            self.assertNotRegex(page, fetches)
+        normals = struct.iter_unpack("<3f", html_scripts(path)["normals"])
+        self.assertTrue(all(abs(math.hypot(*normal) - 1) < 1e-4 for normal in normals))
+
     def test_stream(self):
-        for ending in ("glb", "npz", "off", *(["vtkhdf"] if self.has_vtkhdf() else [])):
+        for ending in ("glb", "npz", "html", "off", *(["vtkhdf"] if self.has_vtkhdf() else [])):
             with open(self.written(ending), "rb") as file:
                 good = file.read()
             with open(self.path("stream"), "wb") as out:
@@ -164,12 +176,14 @@ class Written(GridCase):
     def notes(self, source, *more):
         """What each format says of space and units."""
         found = {}
-        for ending in ("ply", "stl", "obj", "vtp", "glb", "off", "npz"):
+        for ending in ("ply", "stl", "obj", "vtp", "glb", "html", "off", "npz"):
             with open(self.written(ending, *more, source=source, iso="127.5"), "rb") as file:
                 content = file.read()
             text = content.decode("latin-1")
             if ending == "glb":
                 notes = glb_parts(self.path("out.glb"))[0]["asset"].get("extras", {})
+            elif ending == "html":
+                notes = dict(note.split("=") for note in html_scripts(self.path("out.html"))["mesh"]["notes"])
             elif ending == "vtp":
                 arrays = re.findall(r'<Array type="String" Name="(\w+)" NumberOfTuples="1" format="ascii">([\d ]+)<', text)
                 notes = {name: "".join(map(chr, map(int, codes.split()[:-1]))) for name, codes in arrays}

@@ -31,7 +31,7 @@ class Streams(GridCase):
         return subprocess.run([*self.words, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=400, **how)
 
     def test_mesh_on_standard_output(self):
-        for ending in ("stl", "ply", "vtp", "obj", "off", "glb", "npz"):
+        for ending in ("stl", "ply", "vtp", "obj", "off", "glb", "html", "npz"):
             good = self.expected(ending)
             for name in ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"):
                 for more in ([], ["--json"], ["--quiet"]):

@@ -95,11 +95,11 @@ static int holds(const char *path, const char *text) {
 static const struct {
     const char *ending;
     tc_mesh_data (*parse)(const char *text, size_t bytes);
-} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl}, {"vtp", parse_vtp}, {"off", parse_off},
-               {"glb", parse_glb}, {"npz", parse_npz}, {"PLY", parse_ply}, {"Obj", parse_obj}, {"sTL", parse_stl},
-               {"VTP", parse_vtp}, {"Off", parse_off}, {"GLB", parse_glb}, {"nPZ", parse_npz}};
+} formats[] = {{"ply", parse_ply}, {"obj", parse_obj}, {"stl", parse_stl},   {"vtp", parse_vtp}, {"off", parse_off},
+               {"glb", parse_glb}, {"npz", parse_npz}, {"html", parse_html}, {"PLY", parse_ply}, {"Obj", parse_obj},
+               {"sTL", parse_stl}, {"VTP", parse_vtp}, {"Off", parse_off},   {"GLB", parse_glb}, {"nPZ", parse_npz}};
 
-enum { FORMAT_COUNT = 7 }; /* in lower case */
+enum { FORMAT_COUNT = 8 }; /* in lower case */
 
 /* The right-hand rule in long double. Slivers are let pass: rounding decides where they face. */
 static int is_facet_normal(const float normal[3], const float *corners, uint64_t *sliver_count) {
@@ -238,7 +238,7 @@ static void test_formats_named(const tc_mesh_data *mesh) {
     mesh_write_options vtk = {.format = "vtk"}, stl = {.format = "STL"};
     expect_failure("format vtk", mesh_write_check("mesh.ply", &vtk), STATUS_USAGE, "\"vtk\"");
     expect_failure("format vtk", mesh_write("mesh.ply", mesh, &vtk), STATUS_USAGE,
-                   "ply, vtp, stl, obj, off, glb or npz");
+                   "ply, vtp, stl, obj, off, glb, html or npz");
     EXPECT(mesh_write_check("a.b/mesh.Ply", NULL) == 0, "ending in mixed case");
     EXPECT(mesh_write_check("/dev/stdout", &stl) == 0, "named format without an ending");
 
@@ -264,6 +264,11 @@ static void test_limits(void) {
     expect_failure("4 GiB", mesh_write(path_of("a.glb"), &large, NULL), STATUS_FAILED,
                    "write ply, vtp, obj, off or npz");
     expect_failure("4 GiB", mesh_write(path_of("a.glb"), &third, &soup), STATUS_FAILED, "2^32 - 1");
+    tc_mesh_data page = {.vertex_count = 1 << 24, .triangle_count = (1 << 24) + 1}; /* 2^28 characters, and more */
+    expect_failure("page", mesh_write(path_of("a.html"), &page, NULL), STATUS_FAILED,
+                   "are more than html holds; write ply");
+    page.triangle_count--;
+    expect_failure("page", mesh_write(path_of("none/a.html"), &page, NULL), STATUS_FAILED, "create the folder");
     fits.vertex_count = 177900000; /* its file would have 4,294,800,000 bytes and a few: the folder is looked for */
     expect_failure("less", mesh_write(path_of("none/a.glb"), &fits, NULL), STATUS_FAILED, "create the folder");
     EXPECT(count_files() == 0, "%d files", count_files());

@@ -92,6 +92,7 @@ tc_status complex_point_fail(const complex_grid *c) {
     return (tc_status)fail(TC_ERROR_DATA, "a tetrahedron has changed since the grid was made");
 }
 
-kernel_kind complex_kind(const tc_grid *grid, tc_method method, bool emits) {
-    return (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type, .method = method, .emits = emits};
+kernel_kind complex_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
+    return (kernel_kind){
+        .grid = KIND_COMPLEX, .type = grid->type, .method = options->method, .emits = emits, .closed = options->closed};
 }

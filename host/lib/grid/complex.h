@@ -23,6 +23,7 @@ typedef struct complex_part {
 /* Counts of a surface in the workspace. */
 typedef struct surface_size {
     uint64_t vertex_count;
+    uint64_t cap_vertices; /* the last ones of these, at the border's points */
     uint32_t active_count, tile_actives;
 } surface_size;
 
@@ -44,13 +45,15 @@ typedef struct complex_grid {
     struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
     double classified_isovalue;  /* where context->classified_grid is this grid */
     tc_method classified_method;
-    surface_size size;         /* of the surface there */
-    struct whole_cells *whole; /* cells as method hybrid takes them; NULL: not asked for yet */
-    bool carries;              /* a field was carried to a surface of the complex */
+    bool classified_closed;
+    surface_size size;              /* of the surface there */
+    struct whole_cells *whole;      /* cells as method hybrid takes them; NULL: not asked for yet */
+    struct border_list *borders[2]; /* of tetrahedra, of whole cells; NULL: not asked for yet */
+    bool carries;                   /* a field was carried to a surface of the complex */
 } complex_grid;
 
 /* The kind of its kernels: one program for each method, tried with emission or without. */
-kernel_kind complex_kind(const tc_grid *grid, tc_method method, bool emits);
+kernel_kind complex_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
 
 /* Whether there are kernels for the method; hybrid needs the cells. */
 bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options);
@@ -87,16 +90,18 @@ tc_status complex_point_fail(const complex_grid *c);
 /* The device path (complex_device.c); the sample type has values on both sides of the isovalue. */
 tc_status complex_device_create(tc_grid *grid);
 void complex_device_destroy(tc_grid *grid);
-tc_status complex_device_count(tc_grid *grid, tc_method method, double isovalue, double share, tc_counts *counts);
-tc_status complex_device_extract(tc_grid *grid, tc_method method, double isovalue, tc_mesh *mesh);
+tc_status complex_device_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts);
+tc_status complex_device_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
 /* As complex_device_carry, by method hybrid. */
-tc_status whole_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+tc_status whole_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                             uint64_t *vertex_count);
 
 /* True where this surface was the last to be counted or extracted, which complex_device_carry needs. That carries a
  * field to the *vertex_count vertices; to none where the caller's room is for another number (complex_carry.c). */
 bool complex_is_classified(const tc_grid *grid, const tc_extract_options *options);
-tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count);
+tc_status complex_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                               uint64_t *vertex_count);
 
 /* The same by the scalar reference (reference_complex.c). */
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);

@@ -52,7 +52,8 @@ enum { ARRAY_SAMPLES, ARRAY_POINTS, ARRAY_BLANKED_SAMPLES, ARRAY_BLANKED_CELLS, 
 typedef struct complex_buffers {
     device_buffer clusters, active_clusters, state, cases;
     device_buffer active, entries, table, tiles;
-    device_buffer whole_cases; /* method hybrid */
+    device_buffer whole_cases;                        /* method hybrid */
+    device_buffer cap_numbers, cap_firsts, cap_tiles; /* closed surfaces */
 } complex_buffers;
 
 /* Of label maps: samples of a slab, results of kernel 1, and the mesh. */

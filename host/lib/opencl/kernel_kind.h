@@ -16,7 +16,7 @@ typedef struct kernel_kind {
     tc_method method;
     channel_set made;    /* by kernel 2 */
     bool missing, emits; /* emits: kernel 2 too */
-    bool closed;         /* of structured grids: surfaces are closed */
+    bool closed;         /* surfaces are closed */
 } kernel_kind;
 
 enum { KIND_COMPLEX = 3, KIND_LABELS = 4, KERNEL_KINDS = (2 * 5 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };

@@ -235,7 +235,8 @@ static tc_status cell_run(reference *r) {
 /* Which points of a face are inside, a bit each. */
 static unsigned face_pattern(const reference *r, const border_face *face) {
     unsigned pattern = 0;
-    for (int n = 0; n < 3; n++) pattern |= (unsigned)(grid_value_at(r->grid, face->points[n]) >= r->isovalue) << n;
+    for (int n = 0; n < face->corner_count; n++)
+        pattern |= (unsigned)(grid_value_at(r->grid, face->points[n]) >= r->isovalue) << n;
     return pattern;
 }
 
@@ -244,7 +245,7 @@ static tc_status border_vertices(reference *r) {
     const uint64_t point_count = r->grid->complex->point_count;
     memset(r->point_numbers, 0xff, (size_t)point_count * sizeof *r->point_numbers);
     for (const border_face *f = r->border.faces; f < r->border.faces + r->border.face_count; f++)
-        for (unsigned n = 0; n < 3; n++)
+        for (int n = 0; n < f->corner_count; n++)
             if (face_pattern(r, f) >> n & 1) r->point_numbers[f->points[n]] = 0;
     for (uint64_t n = 0; n < point_count; n++) {
         if (r->point_numbers[n] == NO_NUMBER) continue;
@@ -263,12 +264,22 @@ static tc_status border_vertex_number(const reference *r, border_vertex v, uint3
     return *number == NO_NUMBER ? change_fail() : TC_OK;
 }
 
+/* Whether the diagonal of a quadrilateral, or the one that a half begins with, has a vertex where it is crossed. */
+static bool has_diagonal(const reference *r, const border_face *f, unsigned pattern) {
+    const unsigned end = f->is_half ? 1 : 2;
+    const uint32_t a = f->points[0], b = f->points[end];
+    if (!is_crossed(pattern, 0, end) || (f->corner_count == 3 && !f->is_half)) return true;
+    return edge_find(r, a < b ? a : b, a < b ? b : a)->taken;
+}
+
 static tc_status border_run(reference *r) {
     static const uint8_t in_order[3] = {0, 1, 2};
     tc_status status = border_vertices(r);
-    for (uint64_t f = 0; f < r->border.face_count && !status; f++) {
-        border_vertex triangles[2][3];
-        const int count = border_face_cut(&r->border.faces[f], face_pattern(r, &r->border.faces[f]), triangles);
+    for (const border_face *f = r->border.faces; f < r->border.faces + r->border.face_count && !status; f++) {
+        border_vertex triangles[BORDER_TRIANGLES_MAX][3];
+        const unsigned pattern = face_pattern(r, f);
+        const bool has = has_diagonal(r, f, pattern);
+        const int count = f->is_half && !has ? 0 : border_face_cut(f, pattern, has, triangles);
         for (int n = 0; n < count && !status; n++) {
             uint32_t numbers[3] = {0};
             for (int m = 0; m < 3 && !status; m++) status = border_vertex_number(r, triangles[n][m], &numbers[m]);
@@ -309,7 +320,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
     if (!r->closed) return TC_OK;
     r->point_numbers = malloc((size_t)grid->complex->point_count * sizeof *r->point_numbers);
     if (!r->point_numbers) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the border's vertices");
-    return complex_border_find(grid, options->isovalue, &r->border);
+    return complex_border_find(grid, options->isovalue, r->keeps_cells, &r->border);
 }
 
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {

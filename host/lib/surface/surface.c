@@ -6,7 +6,7 @@
 #include "structured/structured.h"
 
 kernel_kind surface_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
-    return grid->complex ? complex_kind(grid, options->method, emits) : structured_kind(grid, options, emits);
+    return grid->complex ? complex_kind(grid, options, emits) : structured_kind(grid, options, emits);
 }
 
 bool surface_needs_kernels(const tc_grid *grid, const tc_extract_options *options) {

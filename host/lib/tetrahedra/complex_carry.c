@@ -3,6 +3,7 @@
  * that they own, in the order of their vertices. For a complex in slabs the host has joined the edges; it keeps them
  * after the first field has been carried. Threads of the host process shares of tetrahedra or of edges.
  */
+#include "tetrahedra/complex_caps.h"
 #include "tetrahedra/whole_run.h"
 
 #include "failure.h"
@@ -23,6 +24,7 @@ typedef struct carry_job {
     const uint32_t *tiles;
     const uint8_t *whole_cases;
     surface_size size;
+    uint64_t edge_vertices; /* those that are not at points of the border */
     uint8_t cases[16][CASE_BYTES];
     _Atomic uint64_t next; /* tile, or share of edges */
     uint64_t end;
@@ -75,7 +77,7 @@ static void tile_carry(carry_job *j, uint64_t tile, edge_batch *batch) {
 static void share_carry(carry_job *j, uint64_t share, edge_batch *batch) {
     const uint64_t first = share * SHARE_EDGES, end = first + SHARE_EDGES;
     batch->vertex = first;
-    for (uint64_t n = first; n < end && n < j->size.vertex_count; n++)
+    for (uint64_t n = first; n < end && n < j->edge_vertices; n++)
         edge_add(j, (uint32_t)(j->edges[n] >> 32), (uint32_t)j->edges[n], batch);
     j->vertices += batch->vertex + batch->count - first;
     carry_batch(j->carry, j->grid, j->isovalue, batch);
@@ -100,7 +102,7 @@ static tc_status job_run(carry_job *j, uint64_t share_count) {
         if (j->next < j->end) parallel_run(j->end - j->next, shares_carry, j);
         status = context_progress(j->grid->context, "carry", 0.5 + 0.5 * (double)(step + 1) / STEPS);
     }
-    if (!status && (j->wrong || j->vertices != j->size.vertex_count))
+    if (!status && (j->wrong || j->vertices != j->edge_vertices))
         status = (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a field was carried, or the "
                                                 "device computes wrongly");
     return status;
@@ -132,29 +134,37 @@ bool complex_is_classified(const tc_grid *grid, const tc_extract_options *option
     const bool whole = options->method == TC_METHOD_HYBRID;
     const bool is_cut = whole ? c->whole && c->whole->is_cut : c->slabs != NULL;
     if (grid->context->classified_grid != grid || c->classified_isovalue != options->isovalue ||
-        c->classified_method != options->method)
+        c->classified_method != options->method || c->classified_closed != (options->closed != 0))
         return false;
-    return !is_cut || !c->size.vertex_count || (whole ? c->whole->edges.edges : c->slabs->edges.edges);
+    return !is_cut || c->size.vertex_count == c->size.cap_vertices ||
+           (whole ? c->whole->edges.edges : c->slabs->edges.edges);
 }
 
 static tc_status surface_carry_to(carry_job *j, const edge_numbers *edges, bool whole, uint64_t *vertex_count) {
     *vertex_count = j->size.vertex_count;
-    if (j->carry->room != *vertex_count || !*vertex_count) return TC_OK; /* the caller compares the two */
-    if (!edges) return workspace_carry(j, whole);
-    j->edges = edges->edges;
-    return job_run(j, (*vertex_count + SHARE_EDGES - 1) / SHARE_EDGES);
+    if (j->carry->room != *vertex_count) return TC_OK; /* the caller compares the two */
+    tc_status status = TC_OK;
+    j->edge_vertices = *vertex_count - j->size.cap_vertices;
+    if (edges) j->edges = edges->edges;
+    if (j->edge_vertices)
+        status = edges ? job_run(j, (j->edge_vertices + SHARE_EDGES - 1) / SHARE_EDGES) : workspace_carry(j, whole);
+    if (!status && j->size.cap_vertices)
+        caps_carry(j->grid, j->grid->complex->borders[whole], j->isovalue, j->carry, j->edge_vertices);
+    return status;
 }
 
-tc_status complex_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+tc_status complex_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                               uint64_t *vertex_count) {
     const struct complex_slabs *slabs = grid->complex->slabs;
-    carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
+    carry_job j = {.grid = grid, .carry = c, .isovalue = options->isovalue, .size = grid->complex->size};
     complex_cases(j.cases);
     return surface_carry_to(&j, slabs ? &slabs->edges : NULL, false, vertex_count);
 }
 
-tc_status whole_device_carry(const tc_grid *grid, double isovalue, const carry *c, uint64_t *vertex_count) {
+tc_status whole_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
+                             uint64_t *vertex_count) {
     const struct whole_cells *w = grid->complex->whole;
-    carry_job j = {.grid = grid, .carry = c, .isovalue = isovalue, .size = grid->complex->size};
+    carry_job j = {.grid = grid, .carry = c, .isovalue = options->isovalue, .size = grid->complex->size};
     uint64_t bytes;
     if (grid->context->whole_cases) j.whole_cases = whole_cases_bytes(grid->context->whole_cases, &bytes);
     return surface_carry_to(&j, w->is_cut ? &w->edges : NULL, true, vertex_count);

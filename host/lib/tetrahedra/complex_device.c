@@ -2,6 +2,7 @@
  * Complexes on a device: in one go where the device has room (count, allocate the mesh, emit); else slab by slab, from
  * then on always. What methods do otherwise is in their complex_method.
  */
+#include "tetrahedra/complex_caps.h"
 #include "tetrahedra/whole_run.h"
 
 #include "failure.h"
@@ -34,6 +35,7 @@ void complex_device_destroy(tc_grid *grid) {
     part_tetrahedra_release(grid);
     part_points_release(grid);
     whole_cells_release(grid);
+    for (int n = 0; n < 2; n++) border_list_release(grid->context, grid->complex->borders[n]);
     if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
     if (slabs) free(slabs->ranges);
     if (slabs) edge_numbers_release(&slabs->edges);
@@ -52,8 +54,8 @@ static tc_status tetrahedra_cut(complex_run *r) {
 }
 
 /* All stages before emission; head has the counts then. */
-static tc_status tetrahedra_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
-    tc_status status = complex_run_begin(r, grid, isovalue);
+static tc_status tetrahedra_count(complex_run *r, tc_grid *grid, const tc_extract_options *options, double share) {
+    tc_status status = complex_run_begin(r, grid, options);
     if (!status) status = surface_classify(r);
     if (!status) status = context_progress(r->context, "classify", 0.6 * share);
     if (!status && r->job.active_count) status = surface_number(r);
@@ -74,26 +76,44 @@ static const complex_method *method_of(tc_method method) {
     return method == TC_METHOD_HYBRID ? &method_cells : &method_tetrahedra;
 }
 
-static void surface_note(const complex_run *r, double isovalue, tc_method method) {
-    complex_classified_note(r->grid, isovalue, method,
-                            (surface_size){r->head[HEAD_VERTICES], r->job.active_count, r->job.tile_actives});
+/* Of the surface and, where it is closed, the border. */
+static uint64_t vertex_count_of(const complex_run *r) {
+    return (uint64_t)r->head[HEAD_VERTICES] + r->head[HEAD_CAP_VERTICES];
 }
 
-tc_status complex_device_count(tc_grid *grid, tc_method method, double isovalue, double share, tc_counts *counts) {
-    const complex_method *m = method_of(method);
+static uint64_t triangle_count_of(const complex_run *r) {
+    return (uint64_t)r->head[HEAD_TRIANGLES] + r->head[HEAD_CAP_TRIANGLES];
+}
+
+static tc_status stages_count(complex_run *r, const complex_method *m, tc_grid *grid, const tc_extract_options *options,
+                              double share) {
+    tc_status status = m->count(r, grid, options, share);
+    return status || !options->closed ? status : caps_count(r, options);
+}
+
+static void surface_note(const complex_run *r, const tc_extract_options *options) {
+    complex_classified_note(r->grid, options,
+                            (surface_size){.vertex_count = vertex_count_of(r),
+                                           .cap_vertices = r->head[HEAD_CAP_VERTICES],
+                                           .active_count = r->job.active_count,
+                                           .tile_actives = r->job.tile_actives});
+}
+
+tc_status complex_device_count(tc_grid *grid, const tc_extract_options *options, double share, tc_counts *counts) {
+    const complex_method *m = method_of(options->method);
     complex_run r;
-    if (m->is_cut(grid)) return m->slabs_count(grid, isovalue, 0, share, counts);
-    tc_status status = m->count(&r, grid, isovalue, share);
+    if (m->is_cut(grid)) return m->slabs_count(grid, options, 0, share, counts);
+    tc_status status = stages_count(&r, m, grid, options, share);
     if (r.too_large) {
         status = m->cut(&r);
-        return status ? status : m->slabs_count(grid, isovalue, 0.6 * share, share, counts);
+        return status ? status : m->slabs_count(grid, options, 0.6 * share, share, counts);
     }
-    counts->vertex_count = r.head[HEAD_VERTICES];
-    counts->triangle_count = r.head[HEAD_TRIANGLES];
+    counts->vertex_count = vertex_count_of(&r);
+    counts->triangle_count = triangle_count_of(&r);
     counts->active_cell_count = r.job.active_count;
     counts->classify_ms = clock_ms() - r.start_ms;
     cl->Finish(r.context->queue);
-    if (!status) surface_note(&r, isovalue, method);
+    if (!status) surface_note(&r, options);
     return status;
 }
 
@@ -130,7 +150,8 @@ static tc_status mesh_emit(complex_run *r, const complex_method *method, tc_mesh
     tc_status status =
         mesh_open(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes, "positions");
     if (!status) status = mesh_open(r, &m->triangles, &mesh->triangles, triangle_bytes, "triangles");
-    if (!status) status = method->emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
+    if (!status && r->head[HEAD_TRIANGLES]) status = method->emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
+    if (!status && r->border) status = caps_emit(r, &m->channels[CHANNEL_POSITIONS], &m->triangles);
     double emitted = clock_ms();
     if (!status)
         status = mesh_close(r, &m->channels[CHANNEL_POSITIONS], &mesh->channels[CHANNEL_POSITIONS], vertex_bytes);
@@ -139,17 +160,17 @@ static tc_status mesh_emit(complex_run *r, const complex_method *method, tc_mesh
     return status;
 }
 
-tc_status complex_device_extract(tc_grid *grid, tc_method method, double isovalue, tc_mesh *mesh) {
-    const complex_method *m = method_of(method);
+tc_status complex_device_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
+    const complex_method *m = method_of(options->method);
     complex_run r;
-    if (m->is_cut(grid)) return m->slabs_extract(grid, isovalue, 0, mesh);
-    tc_status status = m->count(&r, grid, isovalue, 0.8);
+    if (m->is_cut(grid)) return m->slabs_extract(grid, options, 0, mesh);
+    tc_status status = stages_count(&r, m, grid, options, 0.8);
     double classified = clock_ms();
-    if (!status) status = mesh_allocate(mesh, r.head[HEAD_VERTICES], r.head[HEAD_TRIANGLES], POSITIONS_ALONE);
-    if (!status && r.head[HEAD_TRIANGLES]) status = mesh_emit(&r, m, mesh);
+    if (!status) status = mesh_allocate(mesh, vertex_count_of(&r), triangle_count_of(&r), POSITIONS_ALONE);
+    if (!status && mesh->triangle_count) status = mesh_emit(&r, m, mesh);
     if (r.too_large) {
         status = m->cut(&r);
-        return status ? status : m->slabs_extract(grid, isovalue, 0.8, mesh);
+        return status ? status : m->slabs_extract(grid, options, 0.8, mesh);
     }
     if (!status) status = context_progress(r.context, "emit", 1);
     mesh->active_cell_count = r.job.active_count;
@@ -157,6 +178,6 @@ tc_status complex_device_extract(tc_grid *grid, tc_method method, double isovalu
     mesh->timings.total_ms = clock_ms() - r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
     cl->Finish(r.context->queue);
-    if (!status) surface_note(&r, isovalue, method);
+    if (!status) surface_note(&r, options);
     return status;
 }

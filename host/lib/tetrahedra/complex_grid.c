@@ -10,14 +10,6 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
     if (channels_asked(options) != POSITIONS_ALONE)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "normals are made on structured grids only, not on grids of tetrahedra");
-    if (options->closed && options->method != TC_METHOD_TETRA)
-        return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "method %s does not close surfaces of grids of tetrahedra: use method tetra",
-                               tc_method_name(options->method));
-    if (options->closed && grid->context->options.engine != TC_ENGINE_REFERENCE)
-        return (tc_status)fail(TC_ERROR_DEVICE,
-                               "kernels close surfaces of structured grids only: use the reference engine for grids of "
-                               "tetrahedra");
     if (options->method == TC_METHOD_TETRA) return TC_OK;
     if (options->method != TC_METHOD_HYBRID)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "method %s is for structured grids only, not for grids of tetrahedra",
@@ -30,7 +22,6 @@ static tc_status complex_request_check(const tc_grid *grid, const tc_extract_opt
 }
 
 bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options) {
-    if (options->closed) return false;
     return options->method == TC_METHOD_TETRA || (options->method == TC_METHOD_HYBRID && grid->complex->has_cells);
 }
 
@@ -51,14 +42,14 @@ tc_status complex_count(tc_grid *grid, const tc_extract_options *options, double
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_count(grid, options, counts);
-    return device_end(grid->context, complex_device_count(grid, options->method, options->isovalue, share, counts));
+    return device_end(grid->context, complex_device_count(grid, options, share, counts));
 }
 
 tc_status complex_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     tc_status status = complex_request_check(grid, options);
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE) return reference_complex_extract(grid, options, mesh);
-    return device_end(grid->context, complex_device_extract(grid, options->method, options->isovalue, mesh));
+    return device_end(grid->context, complex_device_extract(grid, options, mesh));
 }
 
 tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const carry *c, uint64_t *vertex_count) {
@@ -66,6 +57,6 @@ tc_status complex_carry(tc_grid *grid, const tc_extract_options *options, const 
     if (status || !surface_possible(grid, options)) return status;
     if (grid->context->options.engine == TC_ENGINE_REFERENCE)
         return reference_complex_carry(grid, options, c, vertex_count);
-    return options->method == TC_METHOD_HYBRID ? whole_device_carry(grid, options->isovalue, c, vertex_count)
-                                               : complex_device_carry(grid, options->isovalue, c, vertex_count);
+    return options->method == TC_METHOD_HYBRID ? whole_device_carry(grid, options, c, vertex_count)
+                                               : complex_device_carry(grid, options, c, vertex_count);
 }

@@ -45,6 +45,7 @@ tc_status part_points_provide(tc_grid *grid, const float *points, const void *sa
 void part_tetrahedra_release(tc_grid *grid) {
     buffer_release(grid->context, &grid->complex->part.tetrahedra);
     buffer_release(grid->context, &grid->complex->part.ranges);
+    border_buffers_release(grid->context, grid->complex->borders[0]);
 }
 
 void part_points_release(tc_grid *grid) {

@@ -13,6 +13,7 @@
 
 #include "grid/complex.h"
 #include "opencl/kernels.h"
+#include "tetrahedra/border_list.h"
 #include "tetrahedra/edge_numbers.h"
 
 /* How a complex is cut, and what is known of its clusters; the host has the ranges that the device has of a slab. */
@@ -81,10 +82,12 @@ typedef struct complex_run {
     complex_part *part;
     tc_context *context;
     complex_buffers *work;
-    sized_kernel kernels[WHOLE_KERNELS];
+    border_list *border; /* where the surface is closed */
+    sized_kernel kernels[CLOSED_KERNELS];
     isovalue_test test;
     complex_job job;
     uint32_t head[HEAD_WORDS];
+    bool keeps_cells;
     bool is_cut;     /* into slabs, which fit */
     bool too_large;  /* the surface of a complex that is not cut does not fit */
     double start_ms; /* kernels are built by then */
@@ -97,13 +100,14 @@ typedef struct complex_method {
     bool (*is_cut)(const tc_grid *grid); /* it goes slab by slab, and does so from then on */
 
     /* All stages before emission, in one go; then r->head and r->job have the counts. */
-    tc_status (*count)(complex_run *r, tc_grid *grid, double isovalue, double share);
+    tc_status (*count)(complex_run *r, tc_grid *grid, const tc_extract_options *options, double share);
     tc_status (*emit)(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
 
     /* Cuts the complex into slabs, after a run that was too large. */
     tc_status (*cut)(complex_run *r);
-    tc_status (*slabs_count)(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
-    tc_status (*slabs_extract)(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
+    tc_status (*slabs_count)(tc_grid *grid, const tc_extract_options *options, double before, double share,
+                             tc_counts *counts);
+    tc_status (*slabs_extract)(tc_grid *grid, const tc_extract_options *options, double before, tc_mesh *mesh);
 } complex_method;
 
 extern const complex_method method_cells; /* whole_device.c */
@@ -112,7 +116,7 @@ extern const complex_method method_cells; /* whole_device.c */
 complex_job complex_job_of(const complex_run *r, uint32_t cluster_count);
 
 /* Kernels, and the workspace for this grid. */
-tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue);
+tc_status complex_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
 /* Finds the active tetrahedra of the part; then numbers its vertices. head has the counts. */
 tc_status surface_classify(complex_run *r);
@@ -122,10 +126,10 @@ tc_status surface_number(complex_run *r);
 tc_status surface_emit(complex_run *r, const device_buffer *positions, const device_buffer *triangles);
 
 /* Notes that the workspace, or the slabs, know this surface. */
-void complex_classified_note(tc_grid *grid, double isovalue, tc_method method, surface_size size);
+void complex_classified_note(tc_grid *grid, const tc_extract_options *options, surface_size size);
 
 /* What both methods begin a run with: kernels, and the workspace. */
-tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue, tc_method method);
+tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
 /* Parts of a run: fills a buffer from byte `first` on; reads the head back; the table of edges, whose entries are a
  * power of two. */
@@ -146,7 +150,8 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]);
 /* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
 
 /* before, share: the parts of the whole call that are done before, and after the count, for progress. */
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
-tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
+tc_status complex_slabs_count(tc_grid *grid, const tc_extract_options *options, double before, double share,
+                              tc_counts *counts);
+tc_status complex_slabs_extract(tc_grid *grid, const tc_extract_options *options, double before, tc_mesh *mesh);
 
 #endif

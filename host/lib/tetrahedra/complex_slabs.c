@@ -7,7 +7,7 @@
  * is the order of a complex in one piece. The slab's triangles are then renumbered in the mesh; of its positions the
  * mesh takes those that are new.
  */
-#include "tetrahedra/complex_run.h"
+#include "tetrahedra/complex_caps.h"
 
 #include "failure.h"
 
@@ -29,6 +29,7 @@ typedef struct slabs_run {
     uint32_t *numbers; /* in the mesh, of the vertices of each slab, one slab after the other */
     uint64_t number_count, number_room, active_room;
     uint64_t triangle_count, active_count;
+    cap_sizes caps; /* of the border */
 } slabs_run;
 
 static uint32_t slab_first_cluster(const slabs_run *t, uint32_t slab_index) {
@@ -47,11 +48,11 @@ static uint32_t slab_tetrahedron_count(const slabs_run *t, uint32_t slab_index) 
     return (uint32_t)(rest < most ? rest : most);
 }
 
-static tc_status slabs_begin(slabs_run *t, tc_grid *grid, double isovalue) {
+static tc_status slabs_begin(slabs_run *t, tc_grid *grid, const tc_extract_options *options) {
     struct complex_slabs *slabs = grid->complex->slabs;
     *t = (slabs_run){.slabs = slabs};
     complex_cases(t->cases);
-    tc_status status = complex_run_begin(&t->r, grid, isovalue);
+    tc_status status = complex_run_begin(&t->r, grid, options);
     t->totals = calloc(slabs->slab_count, sizeof *t->totals);
     if (!status && !t->totals) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
     if (!status && !slabs->points_whole) status = local_points_allocate(grid, slab_tetrahedron_count(t, 0), &t->local);
@@ -174,7 +175,7 @@ static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
 }
 
 /* before, after: where this stage begins and ends in the whole call, for progress. */
-static tc_status slabs_classify(slabs_run *t, double before, double after) {
+static tc_status slabs_classify(slabs_run *t, const tc_extract_options *options, double before, double after) {
     const uint32_t count = t->slabs->slab_count;
     tc_status status = TC_OK;
     for (uint32_t n = 0; n < count && !status; n++) {
@@ -182,26 +183,30 @@ static tc_status slabs_classify(slabs_run *t, double before, double after) {
         if (!status) status = context_progress(t->r.context, "classify", before + (after - before) * (n + 1) / count);
     }
     if (!status) t->slabs->ranges_known = true;
-    return status;
+    return status ? status : caps_host_count(t->r.grid, options, &t->edges, &t->caps);
 }
 
+static uint64_t vertex_count_of(const slabs_run *t) { return t->edges.count + t->caps.vertices; }
+
 /* Keeps the joined edges, from which fields are carried. */
-static void edges_keep(slabs_run *t, double isovalue, uint64_t vertex_count) {
-    complex_classified_note(t->r.grid, isovalue, TC_METHOD_TETRA, (surface_size){.vertex_count = vertex_count});
+static void edges_keep(slabs_run *t, const tc_extract_options *options, uint64_t vertex_count) {
+    complex_classified_note(t->r.grid, options,
+                            (surface_size){.vertex_count = vertex_count, .cap_vertices = t->caps.vertices});
     if (!t->r.complex->carries) return;
     t->slabs->edges = t->edges;
     t->edges = (edge_numbers){0};
 }
 
-tc_status complex_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts) {
+tc_status complex_slabs_count(tc_grid *grid, const tc_extract_options *options, double before, double share,
+                              tc_counts *counts) {
     slabs_run t;
-    tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = slabs_classify(&t, before, share);
-    counts->vertex_count = t.edges.count;
-    counts->triangle_count = t.triangle_count;
+    tc_status status = slabs_begin(&t, grid, options);
+    if (!status) status = slabs_classify(&t, options, before, share);
+    counts->vertex_count = vertex_count_of(&t);
+    counts->triangle_count = t.triangle_count + t.caps.triangles;
     counts->active_cell_count = t.active_count;
     counts->classify_ms = clock_ms() - t.r.start_ms;
-    if (!status) edges_keep(&t, isovalue, t.edges.count);
+    if (!status) edges_keep(&t, options, vertex_count_of(&t));
     slabs_end(&t);
     return status;
 }
@@ -269,10 +274,11 @@ static tc_status slab_emit(slabs_run *t, uint32_t slab_index, joined_mesh *e) {
     return status;
 }
 
-static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
+static tc_status slabs_emit_all(slabs_run *t, const tc_extract_options *options, tc_mesh *mesh, double before) {
     const uint32_t count = t->slabs->slab_count;
     joined_mesh e = {.mesh = mesh, .numbers = t->numbers};
-    tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, POSITIONS_ALONE);
+    tc_status status = mesh_allocate(mesh, vertex_count_of(t), t->triangle_count + t->caps.triangles, POSITIONS_ALONE);
+    if (!status) status = caps_host_emit(t->r.grid, options, &t->edges, t->caps, mesh);
     if (!t->r.complex->carries) edge_numbers_release(&t->edges);
     if (!status) status = positions_allocate(t, &e);
     for (uint32_t n = 0; n < count && !status; n++) {
@@ -284,19 +290,19 @@ static tc_status slabs_emit_all(slabs_run *t, tc_mesh *mesh, double before) {
     return status;
 }
 
-tc_status complex_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh) {
+tc_status complex_slabs_extract(tc_grid *grid, const tc_extract_options *options, double before, tc_mesh *mesh) {
     const double middle = before + 0.7 * (1 - before);
     slabs_run t;
-    tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = slabs_classify(&t, before, middle);
+    tc_status status = slabs_begin(&t, grid, options);
+    if (!status) status = slabs_classify(&t, options, before, middle);
     double classified = clock_ms();
-    if (!status) status = slabs_emit_all(&t, mesh, middle);
+    if (!status) status = slabs_emit_all(&t, options, mesh, middle);
     mesh->active_cell_count = t.active_count;
     mesh->slab_count = t.slabs->slab_count;
     mesh->timings.classify_ms = classified - t.r.start_ms;
     mesh->timings.total_ms = clock_ms() - t.r.start_ms - mesh->timings.readback_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    if (!status) edges_keep(&t, isovalue, mesh->vertex_count);
+    if (!status) edges_keep(&t, options, mesh->vertex_count);
     slabs_end(&t);
     return status;
 }

@@ -95,12 +95,13 @@ complex_job complex_job_of(const complex_run *r, uint32_t cluster_count) {
                          .cluster_tiles = (cluster_count + tile_clusters - 1) / tile_clusters};
 }
 
-tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue, tc_method method) {
+tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     tc_context *context = grid->context;
     r->work = &context->work.complex;
-    r->test = isovalue_test_of(inside_range_of(grid->type, isovalue), isovalue);
+    r->keeps_cells = options->method == TC_METHOD_HYBRID;
+    r->test = isovalue_test_of(inside_range_of(grid->type, options->isovalue), options->isovalue);
     context->counted_grid = context->classified_grid = NULL;
-    tc_status status = complex_kernels_get(context, complex_kind(grid, method, false), r->kernels);
+    tc_status status = complex_kernels_get(context, complex_kind(grid, options, false), r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
     if (context->workspace_grid != grid && (context->options.max_memory_bytes || r->is_cut)) {
@@ -111,20 +112,21 @@ tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, double isovalue
     return TC_OK;
 }
 
-tc_status complex_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
+tc_status complex_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     complex_grid *c = grid->complex;
     *r = (complex_run){.grid = grid, .complex = c, .part = &c->part, .context = grid->context, .is_cut = c->slabs};
     if (c->slabs) edge_numbers_release(&c->slabs->edges);
     whole_part_release(grid);
-    tc_status status = complex_workspace_begin(r, grid, isovalue, TC_METHOD_TETRA);
+    tc_status status = complex_workspace_begin(r, grid, options);
     if (!status && !c->slabs) status = complex_arrays_provide(grid);
     return status ? status : cases_provide(grid->context, &r->work->cases);
 }
 
-void complex_classified_note(tc_grid *grid, double isovalue, tc_method method, surface_size size) {
+void complex_classified_note(tc_grid *grid, const tc_extract_options *options, surface_size size) {
     grid->context->classified_grid = grid;
-    grid->complex->classified_isovalue = isovalue;
-    grid->complex->classified_method = method;
+    grid->complex->classified_isovalue = options->isovalue;
+    grid->complex->classified_method = options->method;
+    grid->complex->classified_closed = options->closed;
     grid->complex->size = size;
 }
 

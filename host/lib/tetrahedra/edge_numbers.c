@@ -47,8 +47,8 @@ tc_status edge_numbers_find(edge_numbers *n, uint32_t low, uint32_t high, uint32
     return TC_OK;
 }
 
-bool edge_numbers_has(const edge_numbers *n, uint32_t low, uint32_t high) {
-    return n->slot_count && *slot_find(n, (uint64_t)low << 32 | high) != SLOT_FREE;
+uint32_t edge_numbers_get(const edge_numbers *n, uint32_t low, uint32_t high) {
+    return n->slot_count ? *slot_find(n, (uint64_t)low << 32 | high) : SLOT_FREE;
 }
 
 void edge_numbers_release(edge_numbers *n) {

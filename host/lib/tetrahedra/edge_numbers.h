@@ -22,8 +22,8 @@ typedef struct edge_numbers {
  * where 32 bits do not suffice. */
 tc_status edge_numbers_find(edge_numbers *n, uint32_t low, uint32_t high, uint32_t *number);
 
-/* Whether the edge has a number. */
-bool edge_numbers_has(const edge_numbers *n, uint32_t low, uint32_t high);
+/* The edge's number, UINT32_MAX where it has none. */
+uint32_t edge_numbers_get(const edge_numbers *n, uint32_t low, uint32_t high);
 
 void edge_numbers_release(edge_numbers *n);
 

@@ -54,6 +54,7 @@ void whole_part_release(tc_grid *grid) {
     buffer_release(context, &w->begins_buffer);
     buffer_release(context, &w->codes_buffer);
     buffer_release(context, &w->shapes_buffer);
+    border_buffers_release(context, grid->complex->borders[1]);
     w->part.ranges_known = false;
 }
 
@@ -115,9 +116,9 @@ static tc_status stages_run(complex_run *r, tc_grid *grid, double share, bool *d
     return status;
 }
 
-static tc_status cells_count(complex_run *r, tc_grid *grid, double isovalue, double share) {
+static tc_status cells_count(complex_run *r, tc_grid *grid, const tc_extract_options *options, double share) {
     bool differ = false;
-    tc_status status = whole_run_begin(r, grid, isovalue);
+    tc_status status = whole_run_begin(r, grid, options);
     if (!status && !grid->complex->whole->is_cut && !whole_fits(grid)) {
         r->too_large = true;
         return (tc_status)fail(TC_ERROR_MEMORY, "the grid's cells do not fit the device");

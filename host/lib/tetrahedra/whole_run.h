@@ -67,7 +67,7 @@ void whole_part_release(tc_grid *grid);
 
 /* ------------------------------------------------------------------------------------ stages (whole_surface.c) */
 
-tc_status whole_run_begin(complex_run *r, tc_grid *grid, double isovalue);
+tc_status whole_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
 /* Finds and lists the active cells of the part. */
 tc_status whole_classify(complex_run *r);
@@ -86,7 +86,8 @@ tc_status active_cells_give(complex_run *r, active_cell *cells);
 /* ------------------------------------------------------------------------------- slab by slab (whole_slabs.c) */
 
 tc_status whole_cut_into_slabs(tc_grid *grid);
-tc_status whole_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts);
-tc_status whole_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh);
+tc_status whole_slabs_count(tc_grid *grid, const tc_extract_options *options, double before, double share,
+                            tc_counts *counts);
+tc_status whole_slabs_extract(tc_grid *grid, const tc_extract_options *options, double before, tc_mesh *mesh);
 
 #endif

@@ -5,6 +5,7 @@
  *
  * A slab is a run of clusters. Its samples are those of its own points, numbered in the order of the grid's.
  */
+#include "tetrahedra/complex_caps.h"
 #include "tetrahedra/whole_run.h"
 
 #include "failure.h"
@@ -25,6 +26,7 @@ typedef struct slabs_run {
     active_cell *cells; /* of all slabs */
     uint64_t cell_count, cell_room, triangle_count;
     edge_numbers edges;
+    cap_sizes caps; /* of the border */
 } slabs_run;
 
 /* --------------------------------------------------------------------------------------------------------- memory */
@@ -82,9 +84,9 @@ tc_status whole_cut_into_slabs(tc_grid *grid) {
 
 /* ---------------------------------------------------------------------------------------------------------- slabs */
 
-static tc_status slabs_begin(slabs_run *t, tc_grid *grid, double isovalue) {
+static tc_status slabs_begin(slabs_run *t, tc_grid *grid, const tc_extract_options *options) {
     *t = (slabs_run){.w = grid->complex->whole};
-    tc_status status = whole_run_begin(&t->r, grid, isovalue);
+    tc_status status = whole_run_begin(&t->r, grid, options);
     t->slab_clusters = clusters_fit(grid);
     if (status) return status;
     /* four points for each of so many tetrahedra: those of the cells of a slab */
@@ -218,7 +220,7 @@ static uint64_t diagonals_find(slabs_run *t) {
         for (uint32_t m = 0; m < c[WHOLE_CANDIDATES]; m++) {
             if (whole_case_edges(c) >> m & 1) continue;
             candidate_ends(&t->cells[n], c, m, ends);
-            if (edge_numbers_has(&t->edges, ends[0], ends[1])) t->cells[n].owned |= 1u << m;
+            if (edge_numbers_get(&t->edges, ends[0], ends[1]) != UINT32_MAX) t->cells[n].owned |= 1u << m;
         }
         cut += t->cells[n].owned != 0;
     }
@@ -226,7 +228,7 @@ static uint64_t diagonals_find(slabs_run *t) {
 }
 
 /* before, after: where this stage begins and ends in the whole call, for progress. */
-static tc_status surface_find(slabs_run *t, double before, double after) {
+static tc_status surface_find(slabs_run *t, const tc_extract_options *options, double before, double after) {
     const uint32_t count = slab_count(t);
     tc_status status = TC_OK;
     for (uint32_t n = 0; n < count && !status; n++) {
@@ -242,26 +244,29 @@ static tc_status surface_find(slabs_run *t, double before, double after) {
     }
     for (uint64_t n = 0; n < t->cell_count && !status; n++)
         t->triangle_count += case_of(t, &t->cells[n])[WHOLE_TRIANGLES];
-    return status;
+    return status ? status : caps_host_count(t->r.grid, options, &t->edges, &t->caps);
 }
 
 /* Keeps the edges, from which fields are carried. */
-static void edges_keep(slabs_run *t, double isovalue) {
-    complex_classified_note(t->r.grid, isovalue, TC_METHOD_HYBRID, (surface_size){.vertex_count = t->edges.count});
+static void edges_keep(slabs_run *t, const tc_extract_options *options) {
+    complex_classified_note(
+        t->r.grid, options,
+        (surface_size){.vertex_count = t->edges.count + t->caps.vertices, .cap_vertices = t->caps.vertices});
     if (!t->r.complex->carries) return;
     t->w->edges = t->edges;
     t->edges = (edge_numbers){0};
 }
 
-tc_status whole_slabs_count(tc_grid *grid, double isovalue, double before, double share, tc_counts *counts) {
+tc_status whole_slabs_count(tc_grid *grid, const tc_extract_options *options, double before, double share,
+                            tc_counts *counts) {
     slabs_run t;
-    tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = surface_find(&t, before, share);
-    counts->vertex_count = t.edges.count;
-    counts->triangle_count = t.triangle_count;
+    tc_status status = slabs_begin(&t, grid, options);
+    if (!status) status = surface_find(&t, options, before, share);
+    counts->vertex_count = t.edges.count + t.caps.vertices;
+    counts->triangle_count = t.triangle_count + t.caps.triangles;
     counts->active_cell_count = t.cell_count;
     counts->classify_ms = clock_ms() - t.r.start_ms;
-    if (!status) edges_keep(&t, isovalue);
+    if (!status) edges_keep(&t, options);
     slabs_end(&t);
     return status;
 }
@@ -310,10 +315,12 @@ static tc_status cell_emit(slabs_run *t, const active_cell *cell, uint32_t **out
     return status;
 }
 
-static tc_status surface_emit_all(slabs_run *t, double isovalue, tc_mesh *mesh) {
-    tc_status status = mesh_allocate(mesh, t->edges.count, t->triangle_count, POSITIONS_ALONE);
+static tc_status surface_emit_all(slabs_run *t, const tc_extract_options *options, tc_mesh *mesh) {
+    tc_status status =
+        mesh_allocate(mesh, t->edges.count + t->caps.vertices, t->triangle_count + t->caps.triangles, POSITIONS_ALONE);
+    if (!status) status = caps_host_emit(t->r.grid, options, &t->edges, t->caps, mesh);
     if (status || !t->triangle_count) return status;
-    vertex_job j = {.grid = t->r.grid, .edges = &t->edges, .isovalue = isovalue};
+    vertex_job j = {.grid = t->r.grid, .edges = &t->edges, .isovalue = options->isovalue};
     j.positions = mesh->channels[CHANNEL_POSITIONS].memory;
     parallel_run((t->edges.count + BATCH_EDGES - 1) / BATCH_EDGES, shares_emit, &j);
     uint32_t *out = mesh->triangles.memory;
@@ -321,18 +328,18 @@ static tc_status surface_emit_all(slabs_run *t, double isovalue, tc_mesh *mesh) 
     return status ? status : context_progress(t->r.context, "emit", 1);
 }
 
-tc_status whole_slabs_extract(tc_grid *grid, double isovalue, double before, tc_mesh *mesh) {
+tc_status whole_slabs_extract(tc_grid *grid, const tc_extract_options *options, double before, tc_mesh *mesh) {
     slabs_run t;
-    tc_status status = slabs_begin(&t, grid, isovalue);
-    if (!status) status = surface_find(&t, before, before + 0.9 * (1 - before));
+    tc_status status = slabs_begin(&t, grid, options);
+    if (!status) status = surface_find(&t, options, before, before + 0.9 * (1 - before));
     double classified = clock_ms();
-    if (!status) status = surface_emit_all(&t, isovalue, mesh);
+    if (!status) status = surface_emit_all(&t, options, mesh);
     mesh->active_cell_count = t.cell_count;
     mesh->slab_count = t.slab_clusters ? slab_count(&t) : 0;
     mesh->timings.classify_ms = classified - t.r.start_ms;
     mesh->timings.total_ms = clock_ms() - t.r.start_ms;
     mesh->timings.emit_ms = mesh->timings.total_ms - mesh->timings.classify_ms;
-    if (!status) edges_keep(&t, isovalue);
+    if (!status) edges_keep(&t, options);
     slabs_end(&t);
     return status;
 }

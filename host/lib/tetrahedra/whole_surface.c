@@ -18,13 +18,13 @@ static const char *const kernel_names[WHOLE_KERNELS] = {
     kernel_launch((r)->context, (r)->kernels[kernel], kernel_names[kernel], arguments,                                 \
                   sizeof(arguments) / sizeof *(arguments))
 
-tc_status whole_run_begin(complex_run *r, tc_grid *grid, double isovalue) {
+tc_status whole_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     complex_grid *c = grid->complex;
     *r = (complex_run){.grid = grid, .complex = c, .context = grid->context, .is_cut = c->whole && c->whole->is_cut};
     if (c->whole) edge_numbers_release(&c->whole->edges);
     part_tetrahedra_release(grid);
     part_points_release(grid);
-    tc_status status = complex_workspace_begin(r, grid, isovalue, TC_METHOD_HYBRID);
+    tc_status status = complex_workspace_begin(r, grid, options);
     if (!status) status = whole_cells_provide(grid);
     if (!status) r->part = &c->whole->part;
     return status;

@@ -127,7 +127,7 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
 
 /* Builds the kernels apart from running them, so that the report can tell which of the two failed. */
 static tc_status kernels_build(tc_context *context, kernel_kind kind) {
-    sized_kernel of_complexes[WHOLE_KERNELS];
+    sized_kernel of_complexes[CLOSED_KERNELS];
     kernels k;
     tc_status status =
         kind.grid == KIND_COMPLEX ? complex_kernels_get(context, kind, of_complexes) : kernels_get(context, kind, &k);

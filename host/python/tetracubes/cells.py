@@ -53,8 +53,9 @@ def _vtk(cells):
 
 
 def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, level: float, *,
-                  method: str = "tetra", carry: Mapping[str, npt.ArrayLike] | None = None, skip_unsupported: bool = False,
-                  device: int | str | None = None, engine: str = "auto", max_memory: int | None = None,
+                  method: str = "tetra", closed: bool = False, carry: Mapping[str, npt.ArrayLike] | None = None,
+                  skip_unsupported: bool = False, device: int | str | None = None, engine: str = "auto",
+                  max_memory: int | None = None,
                   progress: Callable[[str, float], object] | None = None) -> Mesh:
     """The surface that separates values >= level from those below, in an unstructured grid of any cells.
 
@@ -70,6 +71,7 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
     by their corners; cells of fewer dimensions are left out.
     values: (n,), one per point. Where one is not finite, the tetrahedra there are left out.
     method: "tetra"; or "hybrid", which makes fewer triangles of cells that are no tetrahedra.
+    closed: whether the surface is closed at the grid's border: by the faces that one cell has.
     skip_unsupported: whether cells that cannot be cut are left out instead of refused.
     The rest as for ``isosurface``. Vertices are x, y, z.
     """
@@ -98,6 +100,6 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
         with GridBase(context, tc.tc_tetrahedra_grid_create, how, (place, samples), "xyz", samples.shape) as grid:
-            return grid.extract(level, method=method, carry=carry)
+            return grid.extract(level, method=method, closed=closed, carry=carry)
     finally:
         tc.tc_tetrahedra_release(ctypes.byref(cut))

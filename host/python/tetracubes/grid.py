@@ -113,7 +113,7 @@ class GridBase:
         method: "tetra"; of volumes also "hybrid" (fewer triangles) or "snap" (fewest, of good shape).
         snap: of method "snap", how far a sample may move, as a part of an edge: 0 to 0.5.
         normals: whether vertices have unit normals; of volumes only.
-        closed: whether the surface is closed at the grid's border and beside missing samples; by the reference engine.
+        closed: whether the surface is closed at the grid's border and beside missing samples.
         carry: {name: array}: other fields of the grid, interpolated at the vertices into ``mesh.values``; arrays have
         the volume's shape, or one axis more, of components.
         """
@@ -306,8 +306,6 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
 
     Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it.
     """
-    if closed and engine == "auto":
-        engine = "reference"  # no kernel closes surfaces
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
         return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)

@@ -117,7 +117,7 @@ class Mesh:
         return data, arrays
 
     def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin
-        """Writes the mesh: .ply, .vtp, .stl, .obj, .off, .glb or .npz, with normals and values where the format has them;
+        """Writes the mesh: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .html, with normals and values where it has them;
         or a picture of it: .png, as of ``preview``.
 
         The bytes are the tool's: coordinates are x, y, z in world space. An older file stays whole until the new one is

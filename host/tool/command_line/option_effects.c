@@ -75,8 +75,6 @@ static int has_no_cells(const situation *s) { return !has_cells(s); }
 
 static int is_snap_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_SNAP; }
 
-static int is_whole_of_cells(const situation *s) { return has_cells(s) && s->o->method == TC_METHOD_HYBRID; }
-
 static int is_not_snap(const situation *s) { return s->o->method != TC_METHOD_SNAP; }
 
 static int has_no_field(const situation *s) { return s->is_open; }
@@ -170,8 +168,6 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--normals", AFTER_READING, has_cells, REFUSED,
      "is unstructured: --normals are made of structured grids only"},
-    {COMMAND_EXTRACT, "--closed", AFTER_READING, is_whole_of_cells, REFUSED,
-     "is unstructured: --closed closes surfaces of --method tetra only"},
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
      "is unstructured: --method snap is for structured grids only"},
     {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},

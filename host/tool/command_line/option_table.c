@@ -39,19 +39,19 @@ const option option_table[] = {
     {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
      "of --preview: isolines to draw, of one value or of several"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
-     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .vtkhdf (left\n"
-     "out: only the report); with several isovalues, % in FILE stands for the\n"
-     "isovalue as typed; - is standard output (give --format): the report then\n"
-     "goes to standard error"},
+     "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz, .vtkhdf or .html,\n"
+     "a page that shows it in a browser (left out: only the report); with several\n"
+     "isovalues, % in FILE stands for the isovalue as typed; - is standard output\n"
+     "(give --format): the report then goes to standard error"},
     {"--labels", NULL, "all|L[,L...]", COMMAND_LABELS, VALUE_LABELS, IN(labels), NULL,
      "labels whose surfaces are made, with commas between (default: all): other\n"
      "samples count as background, which is 0"},
     {"--output", "-o", "FILE", COMMAND_LABELS, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .npz or .vtkhdf, with the two labels of every\n"
-     "triangle; .stl, .obj, .off or .glb (left out: only the report); - is\n"
-     "standard output (give --format)"},
+     "triangle; .stl, .obj, .off, .glb or .html (left out: only the report); -\n"
+     "is standard output (give --format)"},
     {"--format", NULL, "F", COMMAND_LABELS, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--separate", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(separate_labels), NULL,
      "write a file for each label, its whole surface: the label stands for % in\n"
      "FILE, or goes with _ before the ending, as in organs_7.stl"},
@@ -71,7 +71,7 @@ const option option_table[] = {
     {"--format", NULL, "F", COMMAND_JOIN, VALUE_TEXT, IN(format), format_choices,
      "ply, vtp, stl or vtkhdf, whatever FILE ends in"},
     {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
-     "ply, vtp, stl, obj, off, glb, npz or vtkhdf, whatever FILE ends in"},
+     "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
      "picture of the surface to write, as PNG; also without -o; with several\n"
      "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
@@ -122,8 +122,7 @@ const option option_table[] = {
     {"--closed", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(closed), NULL,
      "close the surface where it ends, at the grid's border and beside missing\n"
      "cells, by the inside part of the faces there: the mesh then bounds the\n"
-     "volume of samples >= V; each block by itself. Of unstructured grids with\n"
-     "--method tetra, by --engine reference, or auto"},
+     "volume of samples >= V; each block by itself"},
     {"--engine", NULL, "E", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
@@ -142,6 +141,11 @@ const option option_table[] = {
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
      "join' makes the mesh of all N, which other processes may have made; of what\n"
      "can be streamed"},
+    {"--cut", NULL, "C", COMMAND_EXTRACT, VALUE_CUT, IN(cut), NULL,
+     "of ranks (tetracubes-mpi) and parts, which planes each has: even (default);\n"
+     "cost: as much to read and to write for each rank; or the planes where all\n"
+     "but the first begin, multiples of 4, as in 40,96 for three: all parts of a\n"
+     "surface need the same. It never changes the mesh"},
     {"--verify", NULL, NULL, COMMAND_EXTRACT | COMMAND_LABELS, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,

@@ -27,6 +27,7 @@ typedef enum value_kind {
     VALUE_STEP,      /* int64_t[3], from 1; one number goes for all */
     VALUE_THRESHOLD, /* double, 0 to 0.5 */
     VALUE_PIECE,     /* int64_t[2]: I/N */
+    VALUE_CUT,       /* cut_request */
     VALUE_VIEW,      /* view_angles: one of the choices, or two numbers */
     VALUE_PIXELS,    /* int64_t[2] */
     VALUE_LABELS,    /* labels: none for all */

@@ -30,6 +30,15 @@ enum { READS = COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE | COMMAND
 /* Of --engine: the device, and the reference where there is none or it fails. */
 enum { ENGINE_AUTO = 2 };
 
+/* Of --cut: where the members of a team, or parts, begin. */
+enum { CUT_EVEN, CUT_COST, CUT_PLANES };
+
+typedef struct cut_request {
+    int kind;
+    int64_t *planes; /* of CUT_PLANES: where the second one begins, and those after it; from malloc */
+    size_t count;
+} cut_request;
+
 typedef struct typed_isovalue {
     double value;  /* finite */
     char text[48]; /* as typed */
@@ -61,6 +70,7 @@ typedef struct options {
     int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
     part_request part;
     int64_t piece[2]; /* --part: which, from 0, of how many; 0 of 0 where not given */
+    cut_request cut;
     const char *mask;
     uint32_t *labels; /* those that are wanted; NULL: all */
     size_t label_count;

@@ -89,6 +89,7 @@ int options_parse(enum command_bit command, const char *name, int argc, char **a
 
 void options_release(options *o) {
     free(o->isovalues);
+    free(o->cut.planes);
     free(o->labels);
     free(o->operands);
     *o = (options){0};

@@ -180,6 +180,28 @@ static int parse_piece(const option *spec, const char *text, int64_t out[2]) {
     return 0;
 }
 
+/* even, cost, or planes with commas between. */
+static int parse_cut(const option *spec, const char *text, cut_request *out) {
+    const char *at = text;
+    size_t count = 1;
+    if (strcmp(text, "even") == 0) return 0;
+    out->kind = strcmp(text, "cost") == 0 ? CUT_COST : CUT_PLANES;
+    if (out->kind == CUT_COST) return 0;
+    for (const char *comma = text; (comma = strchr(comma, ',')); comma++) count++;
+    if (!(out->planes = calloc(count, sizeof *out->planes))) return fail(STATUS_FAILED, "out of memory for --cut");
+    for (out->count = 0; out->count < count; out->count++, at++) {
+        uint64_t plane = 0;
+        at = skip_blanks(at);
+        const int good = take_whole(&at, &plane) && plane <= INT64_MAX;
+        at = skip_blanks(at);
+        if (!good || *at != (out->count + 1 < count ? ',' : '\0'))
+            return fail(STATUS_USAGE, "%s: '%s' is neither even nor cost, nor planes with commas between, as in 40,96",
+                        spec->name, text);
+        out->planes[out->count] = (int64_t)plane;
+    }
+    return 0;
+}
+
 /* A name, or azimuth and elevation. */
 static int parse_view(const option *spec, const char *text, view_angles *out) {
     const char *at = text;
@@ -321,6 +343,8 @@ int parse_value(const option *spec, const char *text, options *o) {
         return parse_step(spec, text, place);
     case VALUE_PIECE:
         return parse_piece(spec, text, place);
+    case VALUE_CUT:
+        return parse_cut(spec, text, place);
     case VALUE_VIEW:
         return parse_view(spec, text, place);
     case VALUE_PIXELS:

@@ -3,7 +3,7 @@
 
 #include "input/part_report.h"
 #include "output.h"
-#include "parts/part_header.h"
+#include "planes_cut.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
 #include "terminal/notice.h"
@@ -96,9 +96,20 @@ static void piece_json(json_t *object, const extract_report *r) {
     const int64_t *piece = r->o->piece;
     int64_t planes[2];
     if (!piece[1] || !r->grid) return;
-    part_planes(r->grid->dims[2], piece[0], piece[1], planes);
+    planes_cut_of(r->o, NULL, r->grid->dims[2], piece[0], piece[1], planes);
     json_object_set_new(object, "part", json_pack("[I, I]", (json_int_t)piece[0], (json_int_t)piece[1]));
     json_object_set_new(object, "planes", json_pack("[I, I]", (json_int_t)planes[0], (json_int_t)planes[1]));
+}
+
+/* Where ranks begin, all but the first. */
+static json_t *cut_json(const extract_report *r) {
+    json_t *begins = json_array();
+    int64_t planes[2];
+    for (int rank = 1; rank < r->rank_count; rank++) {
+        planes_cut_of(r->o, r->begins, r->grid->dims[2], rank, r->rank_count, planes);
+        json_array_append_new(begins, json_integer((json_int_t)planes[0]));
+    }
+    return begins;
 }
 
 int extract_report_json(const extract_report *r) {
@@ -112,6 +123,7 @@ int extract_report_json(const extract_report *r) {
     part_report_json(object, r->grid);
     piece_json(object, r);
     if (r->rank_count) json_object_set_new(object, "ranks", json_integer(r->rank_count));
+    if (r->rank_count && r->grid) json_object_set_new(object, "cut", cut_json(r));
     if (r->rank_count) json_object_set_new(object, "sent_bytes", count_json(r->sent_bytes));
     json_object_set_new(object, "cells", count_json(r->cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
@@ -193,7 +205,7 @@ static void piece_text(const extract_report *r) {
     const int64_t *piece = r->o->piece;
     int64_t planes[2];
     if (!piece[1] || !r->grid) return;
-    part_planes(r->grid->dims[2], piece[0], piece[1], planes);
+    planes_cut_of(r->o, NULL, r->grid->dims[2], piece[0], piece[1], planes);
     printf("part %" PRId64 " of %" PRId64 ": ", piece[0], piece[1]);
     if (planes[0] == planes[1])
         printf("no planes: there are fewer layers of four than parts\n");

@@ -61,6 +61,7 @@ typedef struct extract_report {
     char device[160];                                    /* "" for the reference engine */
     double read_ms, upload_ms, write_ms, total_ms;
     int rank_count;         /* processes that made the surfaces together; 0: this one alone */
+    const int64_t *begins;  /* then: as in team.h */
     uint64_t sent_bytes;    /* then: to the others, at most by one of them */
     double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
     surface_report *surfaces;

@@ -7,6 +7,7 @@
 #include "input/input.h"
 #include "library_status.h"
 #include "part_surface.h"
+#include "planes_cut.h"
 #include "progress.h"
 #include "surface_files.h"
 #include "team_files.h"
@@ -245,8 +246,7 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->blanked_samples = from->blanked_points;
     j->blanked_cells = from->blanked_cells;
     j->owned[1] = j->grid.dims[2];
-    if (in->o->piece[1]) part_planes(j->grid.dims[2], in->o->piece[0], in->o->piece[1], j->owned);
-    if (in->team) part_planes(j->grid.dims[2], in->team->rank, in->team->size, j->owned);
+    if (in->o->piece[1]) planes_cut_of(in->o, NULL, j->grid.dims[2], in->o->piece[0], in->o->piece[1], j->owned);
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);
@@ -288,6 +288,16 @@ static tc_status complete_triangles(stream_job *j, engine *e, const tc_stream_op
     return tc_stream(e->context, &o);
 }
 
+/* A member's planes. What was measured before is kept, as others do not measure again. */
+static tc_status share_out(stream_job *j, engine *e, const tc_stream_options *how) {
+    team *t = j->in->team;
+    tc_status status = TC_OK;
+    if (!t) return TC_OK;
+    if (j->in->o->cut.kind == CUT_COST && !t->begins) status = planes_cut_by_cost(t, e->context, how, &t->begins);
+    planes_cut_of(j->in->o, t->begins, j->grid.dims[2], t->rank, t->size, j->owned);
+    return status;
+}
+
 static int run(stream_job *j, engine *e) {
     tc_stream_options o;
     tc_stream_options_init(&o);
@@ -299,10 +309,11 @@ static int run(stream_job *j, engine *e) {
     o.counted = take_counts;
     o.take = j->in->o->count ? NULL : take_piece;
     o.user = j;
-    memcpy(o.owned, j->owned, sizeof o.owned);
-    if (j->owned[0] == j->owned[1]) return run_without_planes(j);
     progress_job_begin();
-    tc_status status = tc_stream(e->context, &o);
+    tc_status status = share_out(j, e, &o);
+    memcpy(o.owned, j->owned, sizeof o.owned);
+    if (!status && j->owned[0] == j->owned[1]) return run_without_planes(j);
+    if (!status) status = tc_stream(e->context, &o);
     if (!status && j->in->team) status = complete_triangles(j, e, &o);
     e->fails_alike = status == TC_ERROR_LIMIT;
     if (j->fits) return 0;
@@ -360,7 +371,10 @@ int stream_may_be_needed(const stream_input *in, int *may) {
                     : o->piece[1] ? "made in parts (--part)"
                                   : "streamed",
                     why_not);
-    const int status = why_not || !o->output || o->piece[1] ? 0 : mesh_file_check(o->output, &how);
+    const int64_t nz = in->data->blocks->dims[2];
+    int status = planes_cut_check(o, in->team, nz, in->team ? in->team->size : o->piece[1]);
+    if (status) return status;
+    if (!why_not && o->output && !o->piece[1]) status = mesh_file_check(o->output, &how);
     if (is_asked_for(in) && status) return status;
     const uint64_t samples = (uint64_t)in->data->blocks->point_count;
     const int is_large = samples > host_memory_available() / (MESH_MOST + ENGINE_KEEPS);

@@ -15,6 +15,8 @@ struct team {
     int rank, size;
     int node_size;  /* members on this machine */
     int has_failed; /* all know of a failure */
+    int64_t
+        *begins; /* where members 1, 2, ... begin, where that was measured (planes_cut.h); NULL: by the command line */
 
     /* status: of this member so far. */
     int (*agree)(team *t, int status);

@@ -87,6 +87,18 @@ static int check_numbers(const part *parts, size_t count) {
     return next < parts[0].header.count ? missing(&parts[0], next, parts[0].header.count) : 0;
 }
 
+/* Where one ends the next one begins. */
+static int check_planes(const part *parts, size_t count) {
+    for (size_t n = 1; n < count; n++) {
+        const int64_t end = parts[n - 1].header.planes[1], begin = parts[n].header.planes[0];
+        if (begin != end)
+            return fail(STATUS_INPUT,
+                        "%s begins at plane %lld, but %s ends at %lld: parts of one surface need one --cut",
+                        parts[n].path, (long long)begin, parts[n - 1].path, (long long)end);
+    }
+    return 0;
+}
+
 int parts_sort(part *parts, size_t count) {
     const part *known = NULL;
     for (size_t n = 1; n < count; n++) {
@@ -102,5 +114,6 @@ int parts_sort(part *parts, size_t count) {
         const int status = check_origin(&parts[n], &known);
         if (status) return status;
     }
-    return check_numbers(parts, count);
+    const int status = check_numbers(parts, count);
+    return status ? status : check_planes(parts, count);
 }

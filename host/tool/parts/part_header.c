@@ -86,12 +86,17 @@ static int take_number(const json_t *all, part_header *h) {
     return part[1] > 0 && part[0] >= 0 && part[0] < part[1] && part[1] <= INT32_MAX;
 }
 
+/* Whole layers; where others begin is for parts_sort to see. */
 static int take_planes(const json_t *all, part_header *h) {
-    int64_t dims[3], planes[2];
+    int64_t dims[3];
     if (!take_integers(json_object_get(h->surface, "dims"), dims, 3) || dims[2] < 1 || dims[2] > count_most) return 0;
     if (!take_integers(json_object_get(all, "planes"), h->planes, 2)) return 0;
-    part_planes(dims[2], h->number, h->count, planes);
-    return planes[0] == h->planes[0] && planes[1] == h->planes[1];
+    for (int end = 0; end < 2; end++)
+        if (h->planes[end] < 0 || h->planes[end] > dims[2] ||
+            (h->planes[end] % LAYER_PLANES && h->planes[end] < dims[2]))
+            return 0;
+    const int is_first = h->number == 0, is_last = h->number + 1 == h->count;
+    return h->planes[0] <= h->planes[1] && (!is_first || h->planes[0] == 0) && (!is_last || h->planes[1] == dims[2]);
 }
 
 static int take_all(const char *path, const json_t *all, part_header *h) {

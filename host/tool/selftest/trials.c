@@ -126,6 +126,7 @@ static const trial complexes[] = {
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F64, .isovalue = 127.5, .kind = KIND_COMPLEX},
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .change = CHANGE_SUBNORMAL},
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .change = CHANGE_MISSING},
+    {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .closed = 1, .change = CHANGE_MISSING},
 };
 
 static const trial whole[] = {
@@ -133,6 +134,7 @@ static const trial whole[] = {
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 128, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .change = CHANGE_STEPS},
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F64, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID},
     {.field = "noise", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .change = CHANGE_MISSING},
+    {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .closed = 1},
 };
 
 static const trial scanned[] = {
