@@ -32,6 +32,7 @@
 
 #define PASTE2(a, b) a##b
 #define PASTE(a, b)  PASTE2(a, b)
+#define BITS8        PASTE(BITS, 8)
 #define BITS16       PASTE(BITS, 16)
 
 #ifndef inline_always /* tools that run kernels unoptimised define it empty */

@@ -88,7 +88,7 @@ inline_always uint2 tile_caps_count(tile_tools tools, uint number, cap_count a, 
             const cap_face f = a.in.faces[n];
             triangles = cap_parts(c, &f, face_inside(c, &f, a), a.in);
         }
-        const uint2 before = group_prefix((uint2)(inside, triangles), &running, tools.sums);
+        const uint2 before = group_prefix((uint2)(inside, triangles), &running, tools.scan.sums);
         if (has_point && !recount) a.numbers[n] = inside ? before.x : EDGE_NONE;
         if (has_face && !recount) a.firsts[n] = before.y;
     }
@@ -98,13 +98,13 @@ inline_always uint2 tile_caps_count(tile_tools tools, uint number, cap_count a, 
 inline_always void cap_tile_settle(tile_tools tools, uint number, cap_count a) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(tools, number, look, &unposted)) {
-        tile_post(tools, unposted, tile_caps_count(tools, unposted, a, true));
+    while (!tile_settle(tools.scan, number, look, &unposted)) {
+        tile_post(tools.scan, unposted, tile_caps_count(tools, unposted, a, true));
         look = true;
     }
     if (get_local_id(0) == 0 && number + 1 == tools.c->cap_tiles) {
-        a.head[HEAD_CAP_VERTICES] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
-        a.head[HEAD_CAP_TRIANGLES] = tile_before(tools.tiles, number + 1, TILE_TRIANGLES);
+        a.head[HEAD_CAP_VERTICES] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
+        a.head[HEAD_CAP_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
     }
 }
 
@@ -115,7 +115,7 @@ kernel void caps_count(complex_job c, global const BITS *samples, global const u
                        global uint *firsts) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools tools = {&c, tiles, shared, sums};
+    tile_tools tools = {&c, {c.spin_limit, tiles, shared, sums}};
     cap_count a = {{points + c.cap_point_offset, faces + c.cap_face_offset, active, cases, table},
                    samples + c.sample_offset,
                    numbers,
@@ -126,7 +126,7 @@ kernel void caps_count(complex_job c, global const BITS *samples, global const u
     while (number < c.cap_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + TICKET_CAPS_COUNT], shared);
         if (number < c.cap_tiles) {
-            tile_post(tools, number, tile_caps_count(tools, number, a, false));
+            tile_post(tools.scan, number, tile_caps_count(tools, number, a, false));
             if (SETTLES_LATER)
                 own_append(&own, number, tiles);
             else

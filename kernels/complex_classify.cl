@@ -11,13 +11,13 @@ inline_always void cluster_tile_settle(tile_tools tools, uint number, cluster_ar
     uint unposted;
     bool look = false;
     cluster_sums none = {0};
-    while (!tile_settle(tools, number, look, &unposted)) {
-        tile_post(tools, unposted, tile_count(tools, unposted, a, true, &none));
+    while (!tile_settle(tools.scan, number, look, &unposted)) {
+        tile_post(tools.scan, unposted, tile_count(tools, unposted, a, true, &none));
         look = true;
     }
     if (get_local_id(0) == 0 && number + 1 == tools.c->cluster_tiles) {
-        a.head[HEAD_ACTIVE] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
-        a.head[HEAD_TRIANGLES] = tile_before(tools.tiles, number + 1, TILE_TRIANGLES);
+        a.head[HEAD_ACTIVE] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
+        a.head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
     }
 }
 
@@ -35,7 +35,7 @@ kernel void complex_classify(complex_job c, global const BITS *samples, global c
                              global uint *state CELL_ARGUMENTS) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools tools = {&c, state + HEAD_WORDS, shared, sums};
+    tile_tools tools = {&c, {c.spin_limit, state + HEAD_WORDS, shared, sums}};
     cluster_arrays a = {
         {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset CELL_ARRAYS}, ranges, clusters, active, state};
     cluster_sums found = {0};
@@ -44,15 +44,15 @@ kernel void complex_classify(complex_job c, global const BITS *samples, global c
     while (number < c.cluster_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_CLASSIFY], shared);
         if (number < c.cluster_tiles) {
-            tile_post(tools, number, tile_count(tools, number, a, false, &found));
+            tile_post(tools.scan, number, tile_count(tools, number, a, false, &found));
             if (SETTLES_LATER)
-                own_append(&own, number, tools.tiles);
+                own_append(&own, number, tools.scan.tiles);
             else
                 cluster_tile_settle(tools, number, a);
         }
     }
     if (LIST_BATCH > 1) clusters_append(a, &found);
-    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tools.tiles[TILE_WORDS * n + TILE_NEXT])
+    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tools.scan.tiles[TILE_WORDS * n + TILE_NEXT])
         cluster_tile_settle(tools, n, a);
     if (found.crossed) atomic_add(&state[HEAD_CROSSED], found.crossed);
     if (found.invalid) atomic_or(&state[HEAD_INVALID], 1u);

@@ -58,7 +58,7 @@ inline_always void cluster_add(tile_tools tools, uint n, bool none, cluster_arra
                                cluster_sums *sums) {
     cluster_report report = {0, 0, 0, 0};
     if (!none) report = cluster_count(tools.c, n, a.in);
-    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, tools.sums);
+    uint2 before = group_prefix((uint2)(report.active, report.triangles), running, tools.scan.sums);
     if (recount || !report.active) return;
     cluster_state state = {report.patterns, before.x, before.y};
     a.clusters[n] = state;

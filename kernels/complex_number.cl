@@ -40,7 +40,7 @@ inline_always uint2 tile_number(tile_tools tools, uint number, global const acti
             for (uint n = 0; n < 4; n++) line_prefetch(table + entries[slot_of(tools.c, a + FETCH_AHEAD, n)]);
         if (exists) owned = owned_edges(tools.c, a, active, cases, table, entries);
         uint triangles = exists ? triangles_of(a, active, cases) : 0;
-        uint2 before = group_prefix((uint2)((uint)popcount(owned), triangles), &running, tools.sums);
+        uint2 before = group_prefix((uint2)((uint)popcount(owned), triangles), &running, tools.scan.sums);
         if (exists && out) out[a].vertex = before.x, out[a].owned = owned;
         if (WHOLE && exists && out) out[a].triangle = before.y;
     }
@@ -52,13 +52,13 @@ inline_always void active_tile_settle(tile_tools tools, uint number, global cons
                                       global uint *head) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(tools, number, look, &unposted)) {
-        tile_post(tools, unposted, tile_number(tools, unposted, active, cases, table, entries, NULL));
+    while (!tile_settle(tools.scan, number, look, &unposted)) {
+        tile_post(tools.scan, unposted, tile_number(tools, unposted, active, cases, table, entries, NULL));
         look = true;
     }
     if (get_local_id(0) == 0 && number + 1 == tools.c->active_tiles) {
-        head[HEAD_VERTICES] = tile_before(tools.tiles, number + 1, TILE_VERTICES);
-        if (WHOLE) head[HEAD_TRIANGLES] = tile_before(tools.tiles, number + 1, TILE_TRIANGLES);
+        head[HEAD_VERTICES] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
+        if (WHOLE) head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
     }
 }
 
@@ -67,14 +67,14 @@ kernel void complex_number(complex_job c, global active_item *active, global con
                            global uint *tiles, global const uint *table, global const uint *entries) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools tools = {&c, tiles, shared, sums};
+    tile_tools tools = {&c, {c.spin_limit, tiles, shared, sums}};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
     if ((WORK_ITEMS == 1 || WHOLE) && state[HEAD_FULL]) return; /* entries are incomplete */
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
         if (number < c.active_tiles) {
-            tile_post(tools, number, tile_number(tools, number, active, cases, table, entries, active));
+            tile_post(tools.scan, number, tile_number(tools, number, active, cases, table, entries, active));
             if (SETTLES_LATER)
                 own_append(&own, number, tiles);
             else

@@ -11,4 +11,6 @@
 #include "lanes_groups.cl"
 #endif
 
+inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
+
 #endif

@@ -11,8 +11,6 @@
 
 #include "lanes.cl"
 
-inline_always uint lowest_bit(ulong word) { return (uint)popcount(~word & (word - 1)); } /* 64 for 0 */
-
 inline_always ulong row_start(const slab *s, uint y, uint z) {
     return s->arrays.sample_offset + ((ulong)(z - s->arrays.sample_z) * s->ny + y) * s->nx;
 }

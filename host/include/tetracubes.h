@@ -21,8 +21,8 @@
  *         use(data.positions, data.vertex_count, data.triangles, data.triangle_count);
  *     tc_mesh_destroy(mesh); tc_grid_destroy(grid); tc_context_destroy(context);
  *
- * Sections: version, status, devices, context, grid, extraction, pieces of a grid, surfaces larger than memory, other
- * fields, unstructured grids, meshes that stay on the device, expert and test settings.
+ * Sections: version, status, devices, context, grid, extraction, label maps, pieces of a grid, surfaces larger than
+ * memory, other fields, unstructured grids, meshes that stay on the device, expert and test settings.
  *
  * What holds for all of it:
  *
@@ -348,7 +348,8 @@ typedef struct tc_mesh_data {
     uint32_t slab_count;        /* parts in which the grid was processed; 1: whole */
     uint32_t reserved;          /* 0 */
     tc_timings timings;
-    double origin[3]; /* as tc_grid_origin tells it: 0, 0, 0 unless the grid lies far from 0 */
+    double origin[3];                /* as tc_grid_origin tells it: 0, 0, 0 unless the grid lies far from 0 */
+    const uint32_t *boundary_labels; /* of label maps: 2 per triangle, see tc_extract_labels; else NULL */
 } tc_mesh_data;
 
 typedef struct tc_mesh tc_mesh;
@@ -367,6 +368,45 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
+
+/* ------------------------------------------------------------------------------------------------------ label maps */
+
+/* Surfaces of a segmentation, whose samples are labels: integers, of which 0 and negative ones are background. */
+typedef struct tc_labels_options {
+    size_t struct_size;     /* set by tc_labels_options_init */
+    const uint32_t *labels; /* those that are wanted, none of them 0, in any order: others count as background. NULL,
+                               with a count of 0: all */
+    uint64_t label_count;
+    uint32_t smoothing; /* sweeps of smoothing, at most 1000; 0 leaves stairs. Uniform grids only */
+    int closed; /* nonzero: around the grid is a layer of background, so that surfaces end half a cell beyond its
+                   border; else they have borders there */
+} tc_labels_options;
+
+/* Defaults: all labels, 8 sweeps, not closed. */
+TC_API void tc_labels_options_init(tc_labels_options *options);
+
+/* Extracts the surfaces between labels, and between labels and background, as one mesh in which neighbours share their
+ * triangles. The grid is structured, of integers in the host's memory, and whole; missing samples are background.
+ *
+ * Where the corners of a tetrahedron have two labels, the surface between them is the one of an isovalue half way. With
+ * three, vertices on its faces are added; with four, one in the middle: there the surfaces of several labels meet. So
+ * the triangles that have one label on a side are the surface that this label alone would give, up to vertices more:
+ * a manifold, with the same Euler characteristic.
+ *
+ * boundary_labels of tc_mesh_data has two labels per triangle: the first is that of the inner side, which is seen
+ * clockwise, and the lower one; the background always comes second (as vtkSurfaceNets3D has it). Vertices follow each
+ * other by bricks, rows, types and x as those of tc_extract do, and so do triangles; if there is one label, the mesh
+ * without smoothing is that of tc_extract of samples 0 and 1 at 0.5, to the byte.
+ *
+ * Smoothing moves every vertex three quarters of the way to the mean of its neighbours, `smoothing` times, but no
+ * farther from its place than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there
+ * count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations",
+ * 2022). It runs on threads of the host, whose number changes nothing.
+ *
+ * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
+ * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1
+ * vertices. */
+TC_API tc_status tc_extract_labels(tc_grid *grid, const tc_labels_options *options, tc_mesh **mesh);
 
 /* ------------------------------------------------------------------------------------------------ pieces of a grid */
 

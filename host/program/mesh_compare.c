@@ -54,6 +54,21 @@ static int same_triangles(const uint32_t *device, const uint32_t *reference, uin
     return 0;
 }
 
+static int same_labels(const tc_mesh_data *device, const tc_mesh_data *reference, char *text, size_t bytes) {
+    const uint32_t *d = device->boundary_labels, *r = reference->boundary_labels;
+    if (!d && !r) return 1;
+    const uint64_t count = d && r ? device->triangle_count : 0, n = first_difference(d, r, count, 2 * sizeof *d);
+    if (d && r && n == count) return 1;
+    if (!d || !r)
+        snprintf(text, bytes, "only one engine made labels");
+    else
+        snprintf(text, bytes,
+                 "triangle %" PRIu64 " has the labels %" PRIu32 " %" PRIu32 " on the device, %" PRIu32 " %" PRIu32
+                 " in the reference",
+                 n, d[2 * n], d[2 * n + 1], r[2 * n], r[2 * n + 1]);
+    return 0;
+}
+
 int meshes_are_same(const tc_mesh_data *device, const tc_mesh_data *reference, char *text, size_t bytes) {
     if (bytes) text[0] = '\0';
     if (device->vertex_count != reference->vertex_count || device->triangle_count != reference->triangle_count ||
@@ -67,5 +82,6 @@ int meshes_are_same(const tc_mesh_data *device, const tc_mesh_data *reference, c
     }
     for (int channel = 0; channel < CHANNEL_COUNT; channel++)
         if (!same_values(device, reference, channel, text, bytes)) return 0;
-    return same_triangles(device->triangles, reference->triangles, device->triangle_count, text, bytes);
+    return same_triangles(device->triangles, reference->triangles, device->triangle_count, text, bytes) &&
+           same_labels(device, reference, text, bytes);
 }

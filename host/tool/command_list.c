@@ -24,6 +24,17 @@ const command command_list[] = {
      "  xz -dc ct.nrrd.xz | tetracubes extract - --iso 300 -o ct.ply\n"
      "  tetracubes extract grid.xyz flow.q --field density --iso 2 --carry energy -o shock.vtp\n"
      "  tetracubes extract engine.vtu --field temperature --iso 400 -o hot.ply"},
+    {"labels", COMMAND_LABELS, labels_run, NULL, "surfaces of the labels of a segmentation",
+     "tetracubes labels INPUT [-o FILE] [options]",
+     "Extracts the surfaces between the labels of a segmentation, and between labels and background,\n"
+     "as one mesh in which neighbours share their triangles. Labels are whole numbers; 0, negative and\n"
+     "missing samples are background. Every triangle has two labels: its inner side's, then its outer\n"
+     "side's, of which the lower is inside and the background outside. The surface of each label by\n"
+     "itself is a manifold. Surfaces are smoothed.\n"
+     "\n"
+     "  tetracubes labels organs.nii.gz -o organs.vtp\n"
+     "  tetracubes labels organs.nii.gz --labels 1,4,7 --closed --separate -o organ-%.stl\n"
+     "  tetracubes labels cells.tif --smooth 0 --check --json"},
     {"join", COMMAND_JOIN, join_run, NULL, "the parts of a surface as one mesh",
      "tetracubes join PARTS... -o FILE [options]",
      "Makes the mesh of the files that 'extract --part I/N' has written, of all N in any order: to the\n"

@@ -31,6 +31,7 @@ typedef struct shown_mesh {
     int array_count;
     const shown_part *parts;
     int part_count;            /* at least 1 */
+    const uint32_t *labels;    /* two per triangle of s->mesh; NULL: none, or none that the format has */
     int is_moved;              /* some offset is not 0: coordinates are doubles where the format has them */
     const char *world, *units; /* of coordinates: texts of letters and digits, or "" */
 } shown_mesh;

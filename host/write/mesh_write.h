@@ -17,7 +17,7 @@
  *     ROW(name, label, roles, has_doubles, counts, fits, pieces)
  *
  *     name         of --format, and the ending; the writer of a mesh is name_write (formats.h)
- *     roles        of values that vertices have beside their positions
+ *     roles        of values that vertices have beside their positions; HAS_LABELS: triangles have their labels
  *     has_doubles  of coordinates
  *     counts       what the format counts in 32 bits: vertices, triangles or nothing
  *     fits         of a format whose files have a limit of size: the function that tells whether a mesh keeps it
@@ -26,21 +26,21 @@
  */
 /* clang-format off */
 #define MESH_FORMATS(ROW)                                                                                              \
-    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NUMBERS)                                                \
-    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)                                                 \
+    ROW(ply, "PLY", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NUMBERS)                                   \
+    ROW(vtp, "VTP", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)                                    \
     ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                    \
     ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                               \
     ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                         \
     ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                           \
     ROW(html, "HTML", HAS_NORMALS, 0, vertices, html_fits, NOT)                                                        \
-    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA, 1, vertices, NULL, NOT)                                                    \
-    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA, 1, nothing, NULL, NUMBERS)
+    ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NOT)                                       \
+    ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)
 
 /* Of complexes: name and label. */
 #define COMPLEX_FORMATS(ROW) ROW(vtu, "VTU")
 /* clang-format on */
 
-enum { HAS_DATA = 1 << ROLE_DATA, HAS_NORMALS = 1 << ROLE_NORMALS };
+enum { HAS_DATA = 1 << ROLE_DATA, HAS_NORMALS = 1 << ROLE_NORMALS, HAS_LABELS = 1 << ROLE_COUNT };
 
 /* One block's part of a mesh: consecutive vertices, and consecutive triangles that use no others. */
 typedef struct mesh_part {
@@ -79,13 +79,18 @@ int mesh_write_has_doubles(const char *path, const mesh_write_options *options);
 /* Whether the format is known and has no values of that role. */
 int mesh_write_lacks(const char *path, const mesh_write_options *options, vertex_role role);
 
+/* Whether the format is known and has nowhere to put the labels of triangles. */
+int mesh_write_lacks_labels(const char *path, const mesh_write_options *options);
+
 /* Whether the file would hold coordinates relative to the mesh's origin, as its format has float32 alone. */
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options);
 
 /*
  * Writes positions (in double precision where they differ from those of the mesh by an offset), the other channels that
  * the mesh has, as far as the format takes their roles, the fields, and triangles, whose indices must be below
- * vertex_count. Returns 0 or STATUS_FAILED / STATUS_USAGE with its message (failure.h).
+ * vertex_count; of a label map's mesh its labels, where the format has them: of cells as "BoundaryLabels", in PLY as
+ * properties "boundary_labels_0" and "boundary_labels_1" of faces, in NPZ as "boundary_labels". Returns 0 or
+ * STATUS_FAILED / STATUS_USAGE with its message (failure.h).
  *
  * Values that have a name of their own in the format, like normals, get that. In PLY each component of others is a
  * property: NAME, or NAME_0, NAME_1, ...; characters other than letters and digits become '_'. In PLY and VTP '_' is

@@ -4,6 +4,7 @@
  *     vertices    float32 (n, 3), x y z; float64 where the mesh lies far from zero
  *     faces       uint32 (m, 3)
  *     normals     float32 (n, 3), where the mesh has them
+ *     boundary_labels    uint32 (m, 2), of a label map
  *     fields      float32 (n) or (n, components), by their names of letters, digits and '_'
  *
  * Source: "The .npy format", numpy.lib.format: version 1.0, whose header ends at a multiple of 64 bytes.
@@ -17,7 +18,7 @@
 
 enum { HEADER_MOST = 256, ALIGNMENT = 64, BEFORE = 10 };
 
-static const char *const own[] = {"vertices", "faces", "normals", NULL};
+static const char *const own[] = {"vertices", "faces", "normals", "boundary_labels", NULL};
 
 /* Magic, version, length, and the dictionary with what fills it up. */
 static size_t make_header(unsigned char header[HEADER_MOST], const char *type, uint64_t rows, int columns) {
@@ -46,7 +47,7 @@ static void add_array(zip_file *z, const char *name, const char *type, int colum
 }
 
 void npz_write(output *o, const shown_mesh *s) {
-    zip_file z = {.o = o, .members = malloc(((size_t)s->array_count + 2) * sizeof *z.members)};
+    zip_file z = {.o = o, .members = malloc(((size_t)s->array_count + 3) * sizeof *z.members)};
     value_name *names = malloc(((size_t)s->array_count + 1) * sizeof *names);
     size_t named = 0;
     if (z.members && names) {
@@ -59,6 +60,10 @@ void npz_write(output *o, const shown_mesh *s) {
             const int is_normals = s->arrays[n].role == ROLE_NORMALS;
             if (!is_normals) value_name_make(s->arrays[n].name, "", own, names, named++);
             add_array(&z, is_normals ? own[2] : names[named - 1], "f4", s->arrays[n].components, &records);
+        }
+        if (s->labels) {
+            const record_array labels = records_of_labels(s);
+            add_array(&z, own[3], "u4", 2, &labels);
         }
         zip_finish(&z);
     } else {

@@ -4,6 +4,7 @@
  *     vertex  float x y z [nx ny nz] [fields]    4 bytes each; x y z as double, 12 more bytes, where the mesh lies far
  *                                                from zero
  *     face    list uchar uint vertex_indices     13 bytes
+ *             uint boundary_labels_0, _1         8 bytes more, of a label map
  *
  * Indices are uint, as int would end at 2^31. Readers (rply in Open3D, vcglib in MeshLab, vtkPLY in ParaView) take
  * either.
@@ -20,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4 };
+enum { VECTOR_BYTES = 3 * 4, FACE_BYTES = 1 + 3 * 4, LABEL_BYTES = 2 * 4 };
 
 /* The properties that the format knows; others are called like their array. */
 static const char *const known[] = {"x", "y", "z", "nx", "ny", "nz", NULL}, *const normals[] = {"nx", "ny", "nz"};
@@ -58,8 +59,9 @@ static void make_header(const shown_mesh *s, file_text *header) {
     text_add(header, "element vertex %llu\nproperty %s x\nproperty %s y\nproperty %s z\n",
              (unsigned long long)file_vertex_count(s), type, type, type);
     add_properties(header, s);
-    text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
-             (unsigned long long)s->triangle_count);
+    text_add(header, "element face %llu\nproperty list uchar uint vertex_indices\n%send_header\n",
+             (unsigned long long)s->triangle_count,
+             s->labels ? "property uint boundary_labels_0\nproperty uint boundary_labels_1\n" : "");
 }
 
 static size_t position_bytes(const shown_mesh *s) { return s->is_moved ? 3 * sizeof(double) : VECTOR_BYTES; }
@@ -91,6 +93,7 @@ static unsigned char *encode_faces(const void *source, uint64_t first, uint64_t 
         for (uint64_t c = 0; c < 3; c++) corners[c] = (uint32_t)corner_vertex(s, 3 * t + c);
         *to++ = 3;
         to = put_bytes(to, corners, sizeof corners);
+        if (s->labels) to = put_bytes(to, s->labels + 2 * (t - s->first_triangle), LABEL_BYTES);
     }
     return to;
 }
@@ -99,17 +102,18 @@ void ply_write(output *o, const shown_mesh *s) {
     file_text header = {0};
     make_header(s, &header);
     size_t vertex_bytes = position_bytes(s) + (size_t)value_count(s) * sizeof(float);
+    const size_t face_bytes = FACE_BYTES + (s->labels ? LABEL_BYTES : 0);
     uint64_t vertex_count = file_vertex_count(s), face_count = s->triangle_count;
     if (header.has_failed) {
         o->error = ENOMEM;
     } else {
-        output_expect(o, header.length + vertex_count * vertex_bytes + face_count * FACE_BYTES);
+        output_expect(o, header.length + vertex_count * vertex_bytes + face_count * face_bytes);
         output_bytes(o, header.bytes, header.length);
         if (s->soup || vertex_bytes > VECTOR_BYTES)
             output_span(o, vertex_span(s), vertex_bytes, encode_vertices, s);
         else
             output_span(o, vertex_span(s), vertex_bytes, NULL, s->mesh->positions);
-        output_span(o, triangle_span(s), FACE_BYTES, encode_faces, s);
+        output_span(o, triangle_span(s), face_bytes, encode_faces, s);
     }
     text_release(&header);
 }

@@ -64,4 +64,8 @@ record_array records_of_triangles(const shown_mesh *s) {
                           .source = is_plain ? (const void *)s->mesh->triangles : s};
 }
 
+record_array records_of_labels(const shown_mesh *s) {
+    return (record_array){.span = triangle_span(s), .record_bytes = 2 * sizeof(uint32_t), .source = s->labels};
+}
+
 void write_records(output *o, const record_array *r) { output_span(o, r->span, r->record_bytes, r->encode, r->source); }

@@ -30,6 +30,9 @@ record_array records_of_values(const shown_array *s);
 record_array records_of_positions(const shown_mesh *s, int as_doubles);
 record_array records_of_triangles(const shown_mesh *s);
 
+/* Of a label map: two labels of uint32 for each triangle. */
+record_array records_of_labels(const shown_mesh *s);
+
 static inline uint64_t record_array_bytes(const record_array *r) { return r->span.count * r->record_bytes; }
 
 void write_records(output *o, const record_array *r);

@@ -22,7 +22,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { COPY_BYTES = 64 << 10, ALIGNED_FROM = 512, ALIGNMENT = 64, OWN_ARRAYS = 3 };
+enum { COPY_BYTES = 64 << 10, ALIGNED_FROM = 512, ALIGNMENT = 64, OWN_ARRAYS = 4 };
 
 /* An array that lies in the file in one piece. */
 typedef struct hdf_array {
@@ -113,6 +113,7 @@ static void list_arrays(hdf_file *f) {
     add_array(f, strdup("Points"), s->is_moved ? H5T_IEEE_F64LE : H5T_IEEE_F32LE, file_vertex_count(s), 3,
               records_of_positions(s, s->is_moved));
     add_values(f);
+    if (s->labels) add_array(f, strdup("CellData/BoundaryLabels"), H5T_STD_U32LE, triangles, 2, records_of_labels(s));
     add_array(f, strdup("Polygons/Connectivity"), type, 3 * triangles, 1,
               (record_array){triangle_span(s), 3 * index, encode_corners, f});
     add_array(f, strdup("Polygons/Offsets"), type, triangles + 1, 1, (record_array){starts, index, encode_starts, f});

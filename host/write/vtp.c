@@ -56,6 +56,20 @@ static void add_arrays(vtk_file *f, const shown_mesh *s, shown_array *shown) {
     text_add(&f->text, "      </PointData>\n");
 }
 
+/* Two of each triangle, as vtkSurfaceNets3D names them. */
+static void add_labels(vtk_file *f, const shown_mesh *s) {
+    const record_array records = records_of_labels(s);
+    if (!s->labels) return;
+    text_add(&f->text, "      <CellData Scalars=\"BoundaryLabels\">\n");
+    vtk_array_add(f, &(vtk_array){.name = "BoundaryLabels",
+                                  .type = TC_U32,
+                                  .components = 2,
+                                  .span = records.span,
+                                  .record_bytes = records.record_bytes,
+                                  .source = records.source});
+    text_add(&f->text, "      </CellData>\n");
+}
+
 /* points: the positions as they are in the mesh; moved ones are in double precision. */
 static void add_positions(vtk_file *f, const shown_mesh *s, const shown_array *points) {
     const vtk_array plain = file_array(points);
@@ -104,6 +118,7 @@ void vtp_write(output *o, const shown_mesh *s) {
              "NumberOfPolys=\"%llu\">\n",
              (unsigned long long)file_vertex_count(s), (unsigned long long)s->triangle_count);
     add_arrays(&f, s, arrays);
+    add_labels(&f, s);
     text_add(&f.text, "      <Points>\n");
     add_positions(&f, s, &points);
     text_add(&f.text, "      </Points>\n      <Polys>\n");

@@ -154,6 +154,11 @@ int mesh_write_lacks(const char *path, const mesh_write_options *options, vertex
     return !choose_format(path, options, &f) && !has_role(f, role);
 }
 
+int mesh_write_lacks_labels(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return !choose_format(path, options, &f) && !(f->roles & HAS_LABELS);
+}
+
 int mesh_write_is_relative(const char *path, const tc_mesh_data *mesh, const mesh_write_options *options) {
     const format *f;
     if (choose_format(path, options, &f)) return 0;
@@ -218,6 +223,7 @@ int mesh_write(const char *path, const tc_mesh_data *mesh, const mesh_write_opti
     if (!status) status = check_counts(path, mesh, shown.soup, f);
     if (!status) status = set_offsets(&shown, options, f, &parts);
     if (!status) status = set_arrays(&shown, options, f, &arrays);
+    if (!status && f->roles & HAS_LABELS) shown.labels = mesh->boundary_labels;
     if (!status) status = check_size(path, &shown, f);
     if (!status) status = output_open(&o, path);
     if (!status) {

@@ -18,6 +18,7 @@ class Ply(NamedTuple):
     layout: str  # their types, as struct names them
     rows: list  # of each vertex, its values
     triangles: list
+    labels: list  # of each triangle, two; empty where the file has none
 
 
 def ply_read(path):
@@ -26,13 +27,19 @@ def ply_read(path):
         head, body = f.read().split(b"end_header\n", 1)
     lines = [line.split() for line in head.decode().splitlines()]
     vertices, faces = (int(words[2]) for words in lines if words[0] == "element")
-    properties = [words[1:] for words in lines if words[0] == "property" and words[1] != "list"]
+    elements = [n for n, words in enumerate(lines) if words[0] == "element"]
+    properties = [words[1:] for words in lines[:elements[1]] if words[0] == "property"]
+    of_faces = [words[1:] for words in lines[elements[1]:] if words[0] == "property"]
+    assert of_faces[0] == ["list", "uchar", "uint", "vertex_indices"]
+    assert of_faces[1:] in ([], [["uint", "boundary_labels_0"], ["uint", "boundary_labels_1"]])
+    step = 13 + 4 * len(of_faces[1:])
     layout = "".join({"float": "f", "double": "d"}[kind] for kind, _ in properties)
     size = struct.calcsize("<" + layout)
     rows = [struct.unpack_from("<" + layout, body, n * size) for n in range(vertices)]
-    triangles = [struct.unpack_from("<3I", body, vertices * size + 13 * n + 1) for n in range(faces)]
-    assert len(body) == vertices * size + 13 * faces
-    return Ply([name for _, name in properties], layout, rows, triangles)
+    triangles = [struct.unpack_from("<3I", body, vertices * size + step * n + 1) for n in range(faces)]
+    labels = [struct.unpack_from("<2I", body, vertices * size + step * n + 13) for n in range(faces) if step > 13]
+    assert len(body) == vertices * size + step * faces
+    return Ply([name for _, name in properties], layout, rows, triangles, labels)
 
 
 def ply_vertices(path):
@@ -160,6 +167,22 @@ def read_html(path):
     assert (len(points), len(corners)) == (3 * scripts["mesh"]["vertices"], 3 * scripts["mesh"]["triangles"])
     assert scripts["mesh"]["normals"] == ("normals" in scripts)
     return list(zip(*[iter(points)] * 3)), list(zip(*[iter(corners)] * 3)), "fff"
+
+
+def read_labels(path):
+    """The two labels of each triangle, of PLY, VTP or NPZ."""
+    if path.endswith(".ply"):
+        return ply_read(path).labels
+    if path.endswith(".npz"):
+        return list(zip(*[iter(npz_arrays(path)["boundary_labels"][2])] * 2))
+    with open(path, "rb") as f:
+        content = f.read()
+    appended = content.index(b"_", content.index(b"<AppendedData")) + 1
+    element = re.search(rb'<CellData Scalars="BoundaryLabels">\s*<DataArray type="UInt32" Name="BoundaryLabels" '
+                        rb'NumberOfComponents="2" format="appended" offset="(\d+)"', content)
+    at = appended + int(element[1])
+    count = struct.unpack_from("<Q", content, at)[0] // 4
+    return list(zip(*[iter(struct.unpack_from(f"<{count}I", content, at + 8))] * 2))
 
 
 READERS = {"ply": read_ply, "vtp": read_vtp, "obj": read_obj, "stl": read_stl, "off": read_off, "glb": read_glb,

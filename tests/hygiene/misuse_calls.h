@@ -22,6 +22,7 @@ typedef struct arguments {
     bool context_place, grid_place, mesh_place;           /* false: no place for what is made */
     tc_grid_options grid_options, *grid_options_at;
     tc_extract_options extract_options, *extract_options_at;
+    tc_labels_options labels_options, *labels_options_at;
     tc_tetrahedra_grid_options tetrahedra_grid_options, *tetrahedra_grid_options_at;
     tc_cells cells, *cells_at;
     tc_field field, *field_at;
@@ -57,6 +58,8 @@ static const int64_t offsets[CELLS + 1] = {0, 8, CORNERS, CORNERS};
 static const int64_t cell_faces[CELLS + 1] = {0, 0, 0, FACES}, face_offsets[FACES + 1] = {0, 3, 6, 9, FACE_CORNERS};
 static const int64_t face_connectivity[FACE_CORNERS] = {8, 9, 10, 8, 9, 11, 9, 10, 11, 8, 10, 11};
 static const int64_t connectivity[CORNERS] = {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 10, 11};
+enum { WANTED = 2 };
+static const uint32_t wanted_labels[WANTED] = {100, 200};
 static const uint32_t tetrahedra[4 * TETRAHEDRA] = {0, 1, 2, 4, 8, 9, 10, 11};
 
 static void arrays_fill(void) {
@@ -93,6 +96,9 @@ static void arguments_fill(const world *w, arguments *a) {
     grid_describe(a->grid_options_at = &a->grid_options);
     tc_extract_options_init(a->extract_options_at = &a->extract_options);
     a->extract_options.isovalue = 127.5;
+    tc_labels_options_init(a->labels_options_at = &a->labels_options);
+    a->labels_options.labels = wanted_labels;
+    a->labels_options.label_count = WANTED;
     tc_tetrahedra_grid_options_init(a->tetrahedra_grid_options_at = &a->tetrahedra_grid_options);
     a->tetrahedra_grid_options.point_count = POINTS;
     a->tetrahedra_grid_options.points = points;
@@ -138,6 +144,7 @@ static void defaults_fill(arguments *a) {
     tc_expert_options_init(&a->expert_options);
     tc_grid_options_init(&a->grid_options);
     tc_extract_options_init(&a->extract_options);
+    tc_labels_options_init(&a->labels_options);
     tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
     tc_stream_options_init(&a->stream_options);
     a->cells = (tc_cells){0};
@@ -248,6 +255,14 @@ static tc_status call_tc_count(arguments *a, bool *zero) {
 static tc_status call_tc_extract(arguments *a, bool *zero) {
     tc_mesh *mesh = NULL;
     tc_status status = tc_extract(a->grid, a->extract_options_at, a->mesh_place ? &mesh : NULL);
+    *zero = !mesh;
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
+static tc_status call_tc_extract_labels(arguments *a, bool *zero) {
+    tc_mesh *mesh = NULL;
+    tc_status status = tc_extract_labels(a->grid, a->labels_options_at, a->mesh_place ? &mesh : NULL);
     *zero = !mesh;
     tc_mesh_destroy(mesh);
     return status;

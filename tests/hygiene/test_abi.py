@@ -22,7 +22,7 @@ NO_STATUS = {"tc_message", "tc_version", "tc_context_options_init", "tc_context_
              "tc_seam_size", "tc_stream_options_init", "tc_context_cl_queue", "tc_context_device_bytes", "tc_type_bytes",
              "tc_type_name", "tc_method_name", "tc_grid_options_init",
              "tc_grid_destroy", "tc_extract_options_init", "tc_mesh_destroy", "tc_tetrahedra_release",
-             "tc_tetrahedra_grid_options_init", "tc_expert_options_init"}
+             "tc_tetrahedra_grid_options_init", "tc_expert_options_init", "tc_labels_options_init"}
 
 
 def header_text(path):

@@ -85,6 +85,7 @@ static const sized sizes[] = {
     SIZED(tc_count, extract_options, false),
     SIZED(tc_count, counts, true),
     SIZED(tc_extract, extract_options, false),
+    SIZED(tc_extract_labels, labels_options, false),
     SIZED(tc_emit, device_mesh, false),
     SIZED(tc_stream, stream_options, false),
     SIZED(tc_mesh_get, mesh_data, true),

@@ -14,6 +14,8 @@ AVX512 = {"needs": "avx512bw"}
 HYBRID = {"tests": ("test_hybrid, u8",)}
 SNAP = {"tests": ("test_snap, u8",)}
 SNAP_GROUPS = {"tests": ("test_device, snap in groups",)}
+LABEL_GROUPS = {"tests": ("test_labels, groups",)}
+LABEL_SLABS = {"tests": ("test_labels, alone",)}
 CLOSED = {"tests": ("test_closed, u8",)}
 CLOSED_HYBRID = {"tests": ("test_closed, u8 hybrid",)}
 CLOSED_SNAP = {"tests": ("test_closed, u8 snap",)}
@@ -375,11 +377,30 @@ MUTANTS = [
            ("if (LIST_BATCH > 1) clusters_append(a, &found);", "", "the last active clusters are not listed"),
            ("triangle += cases[CASE_BYTES * pattern + CASE_TRIANGLES];", "triangle++;", "list: two triangles"),
            ("TILE_TRIANGLES) + cluster.triangles_before;", "TILE_TRIANGLES);", "list: triangles before the cluster")),
-    *group("kernels/complex_tile.cl",
+    *group("kernels/tiles.cl",
            ("tiles[TILE_WORDS * (number - 1) + sum_index]", "tiles[TILE_WORDS * number + sum_index]", "tiles: off by one"),
            ("return *running - value;", "return *running;",
             "prefix sums: off by one"),
-           ("vertices += scan_own_sum(tools.tiles, number, TILE_VERTICES);", "", "tiles: prefixes end before them")),
+           ("vertices += scan_own_sum(scan.tiles, number, TILE_VERTICES);", "", "tiles: prefixes end before them")),
+    *group("kernels/label_words_alone.cl",
+           ("label_differ(a, b1), label_differ(a1, b))", "label_differ(a1, b), label_differ(a, b1))", "diagonals of xy are mirrored"),
+           ("if (n + 64 <= end) return", "if (n + 63 <= end) return", "samples beyond the buffer"),
+           ("(a1[63] != b1[63] ? y1 : 0)", "0", "edges of the next word")),
+    *group("kernels/label_words_groups.cl",
+           ("(is_odd ? b != d1 : b1 != d)", "(is_odd ? b1 != d : b != d1)", "diagonals of xz in the next row", LABEL_GROUPS),
+           ("l->last = differs;", "l->last = false;", "edges of the next word", LABEL_GROUPS)),
+    *group("kernels/label_rows.cl",
+           ("fours & ones, fours & twos", "fours & ones, fours & ones", "cells of four labels count as three"),
+           ("return diagonal & along & label_select(even, across_next, across);",
+            "return diagonal & along & label_select(even, across, across_next);", "faces of the other parity"),
+           ("label_first(s->nx - 64 * p.w - 1) : 0;", "label_first(s->nx - 64 * p.w) : 0;", "cubes beyond the grid")),
+    *group("kernels/label_classify.cl",
+           ("brick < s->own_bricks ? brick / s->tile_bricks :", "true ? brick / s->tile_bricks :", "tiles behind a slab",
+            LABEL_SLABS)),
+    *group("kernels/label_triangles.cl",
+           ("const bool turned = outer - 1 < inner - 1;", "const bool turned = outer < inner;", "the background comes first"),
+           ("if (at == 64) return v.row->next[word];", "", "vertices of the next brick", LABEL_GROUPS),
+           ("to[4] = s->mirrored ? c : b", "to[4] = s->mirrored ? b : c", "the second triangle is turned over")),
     *group("kernels/complex_edges.cl",
            ("return (uint2)(min(a, b), max(a, b));", "return (uint2)(a, b);", "edges of two orders are two edges"),
            ("return x ^ x >> 13;", "return x;", "another hash", {"same": "the slot of an edge in the table is no result"}),

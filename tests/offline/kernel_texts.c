@@ -277,6 +277,16 @@ static void complex_programs(tc_context *context) {
     }
 }
 
+static void label_programs(tc_context *context) {
+    static const tc_type types[] = {TC_U8, TC_U16, TC_U32};
+    const program *found;
+    for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+        const kernel_kind kind = {.grid = KIND_LABELS, .type = types[n], .made = POSITIONS_ALONE, .emits = true};
+        snprintf(name, sizeof name, "labels-%s", type_names[types[n]]);
+        status_check(program_get(context, PROGRAM_LABELS, kind, &found));
+    }
+}
+
 int main(int count, char **arguments) {
     const size_t kinds = sizeof device_kinds / sizeof device_kinds[0];
     tc_context_options options;
@@ -302,6 +312,7 @@ int main(int count, char **arguments) {
     emit_programs(context);
     snap_programs(context);
     complex_programs(context);
+    label_programs(context);
     printf("%d programs, %u work-items\n", written, context->launch.work_items);
     tc_context_destroy(context);
     return 0;

@@ -124,7 +124,7 @@ class Reports(GridCase):
         volume = [self.generate("sphere", "a.nrrd")]
         shared = self.extract(volume, "100")["surfaces"][0]
         soup = self.extract(volume, "100", "--soup", "--check", "-o", self.path("o.ply"))["surfaces"][0]
-        _, _, rows, triangles = ply_read(self.path("o.ply"))
+        _, _, rows, triangles, _ = ply_read(self.path("o.ply"))
         self.assertEqual((soup["vertices"], soup["triangles"]), (len(rows), len(triangles)))
         self.assertEqual(soup["vertices"], 3 * shared["triangles"])
         self.assertEqual((soup["shared_vertices"], soup["hash"]), (shared["vertices"], shared["hash"]))

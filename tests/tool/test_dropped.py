@@ -38,7 +38,7 @@ class Dropped(GridCase):
         meshes = []
         for extra in ([], ["--drop-degenerate"]):
             report = self.extract(grid, iso, *more, *extra, "-o", self.path("o.ply"))
-            _, _, rows, triangles = ply_read(self.path("o.ply"))
+            _, _, rows, triangles, _ = ply_read(self.path("o.ply"))
             [surface] = report["surfaces"]
             self.assertEqual((surface["vertices"], surface["triangles"]), (len(rows), len(triangles)))
             meshes.append((rows, triangles, surface, report["notices"]))

@@ -10,7 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CHANNEL_BYTES = 12, TRIANGLE_BYTES = 12 }; /* per vertex, of each channel; per triangle */
+/* Per vertex, of each channel; per triangle; of a label map's triangle, its two labels. */
+enum { CHANNEL_BYTES = 12, TRIANGLE_BYTES = 12, LABELS_BYTES = 8 };
 
 /* Those that are made: bit n is channel n. */
 typedef uint32_t channel_set;

@@ -25,7 +25,15 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
     return TC_OK;
 }
 
+tc_status mesh_allocate_labelled(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count) {
+    tc_status status = mesh_allocate(mesh, vertex_count, triangle_count, POSITIONS_ALONE);
+    if (!status) status = host_block_reserve(&mesh->boundary_labels, triangle_count * LABELS_BYTES);
+    mesh->has_labels = !status;
+    return status;
+}
+
 void mesh_clear(tc_mesh *mesh) {
+    mesh->has_labels = false;
     mesh->vertex_count = mesh->triangle_count = mesh->active_cell_count = 0;
     mesh->made = 0;
     memset(mesh->origin, 0, sizeof mesh->origin);
@@ -49,6 +57,7 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
                           .slab_count = mesh->slab_count,
                           .timings = mesh->timings,
                           .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
+    if (mesh->has_labels && mesh->triangle_count) found.boundary_labels = mesh->boundary_labels.memory;
     for (int n = 0; n < CHANNEL_COUNT; n++) mesh_values_set(&found, n, channel_values(mesh, n));
     struct_copy_out(data, &found);
     return TC_OK;
@@ -58,5 +67,6 @@ void tc_mesh_destroy(tc_mesh *mesh) {
     if (!mesh) return;
     for (int channel = 0; channel < CHANNEL_COUNT; channel++) host_block_release(&mesh->channels[channel]);
     host_block_release(&mesh->triangles);
+    host_block_release(&mesh->boundary_labels);
     free(mesh);
 }

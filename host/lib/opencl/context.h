@@ -56,6 +56,13 @@ typedef struct complex_buffers {
     device_buffer cap_numbers, cap_firsts, cap_tiles; /* closed surfaces */
 } complex_buffers;
 
+/* Of label maps: samples of a slab, results of kernel 1, and the mesh. */
+typedef struct label_buffers {
+    device_buffer samples, words, offsets, bases, rows, active, state;
+    device_buffer tables[2]; /* [1] for mirrored grids */
+    device_buffer positions, triangles, labels;
+} label_buffers;
+
 /* All buffers of kernels except arrays that the grid keeps whole on the device. The second window is used where copies
  * overlap kernels. */
 typedef struct workspace {
@@ -65,6 +72,7 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
+    label_buffers labels;
     device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */
 } workspace;
 

@@ -11,7 +11,7 @@
 #include <stdbool.h>
 
 typedef struct kernel_kind {
-    unsigned grid; /* as grid_kind, or KIND_COMPLEX; kernel 1 of structured grids is the same for all: 0 */
+    unsigned grid; /* as grid_kind, KIND_COMPLEX, or KIND_LABELS; kernel 1 of structured grids is the same for all: 0 */
     tc_type type;
     tc_method method;
     channel_set made;    /* by kernel 2 */
@@ -19,7 +19,7 @@ typedef struct kernel_kind {
     bool closed;         /* surfaces are closed */
 } kernel_kind;
 
-enum { KIND_COMPLEX = 3, KERNEL_KINDS = (2 * 4 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
+enum { KIND_COMPLEX = 3, KIND_LABELS = 4, KERNEL_KINDS = (2 * 5 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
 
 /* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing; in its upper half: closed. */
 unsigned kind_number(kernel_kind kind);

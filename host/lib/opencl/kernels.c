@@ -38,6 +38,13 @@ tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kerne
     return status;
 }
 
+tc_status label_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[LABEL_KERNELS]) {
+    const program *p;
+    tc_status status = vetted_program_get(context, PROGRAM_LABELS, kind, &p);
+    for (int n = 0; n < LABEL_KERNELS && !status; n++) out[n] = kernel_of(p, n);
+    return status;
+}
+
 tc_status kernel_launch(const tc_context *context, sized_kernel kernel, const char *name,
                         const kernel_argument *arguments, cl_uint argument_count) {
     const size_t local = kernel.work_items, global = local * context->launch.work_groups;

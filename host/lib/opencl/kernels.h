@@ -26,6 +26,10 @@ tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out);
 /* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID. */
 tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[CLOSED_KERNELS]);
 
+/* Of label maps: kernel 1 and kernel 2. */
+enum { LABEL_CLASSIFY, LABEL_EMIT, LABEL_KERNELS };
+tc_status label_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[LABEL_KERNELS]);
+
 typedef struct kernel_argument {
     size_t bytes;
     const void *value;

@@ -64,11 +64,20 @@ static void snap_options_write(const tc_context *context, kernel_kind kind, char
     snprintf(out, bytes, "%s -DSNAP=1", common);
 }
 
+/* Labels are compared as bit patterns. */
+static void labels_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    char common[PROGRAM_OPTIONS_BYTES - 16];
+    classify_options_write(context, kind, common, sizeof common);
+    snprintf(out, bytes, "%s -DLABELS=1", common);
+}
+
 static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
     if (name == PROGRAM_CLASSIFY)
         classify_options_write(context, kind, out, bytes);
     else if (name == PROGRAM_EMIT)
         emit_options_write(context, kind, kind.grid, out, bytes);
+    else if (name == PROGRAM_LABELS)
+        labels_options_write(context, kind, out, bytes);
     else if (name == PROGRAM_SNAP)
         snap_options_write(context, kind, out, bytes);
     else
@@ -114,6 +123,8 @@ static const program_sources programs[PROGRAM_COUNT] = {
     [PROGRAM_COMPLEX_CAPS] =
         {{"caps_count", "caps_emit"},
          {[VARIANT_ALONE] = kernel_complex_caps_alone, [VARIANT_GROUPS] = kernel_complex_caps_groups}},
+    [PROGRAM_LABELS] = {{"label_classify", "label_emit"},
+                        {[VARIANT_ALONE] = kernel_labels_alone, [VARIANT_GROUPS] = kernel_labels_groups}},
 };
 
 uint64_t kernel_sources_hash(void) {

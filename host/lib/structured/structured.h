@@ -25,6 +25,9 @@ tc_status structured_emit(tc_grid *grid, const tc_extract_options *options, cons
                           struct _cl_event **done);
 tc_status structured_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 
+/* The buffer of all samples, where it is on the device whole, else NULL; *offset: of the first one, in samples. */
+struct _cl_mem *structured_samples(const tc_grid *grid, uint64_t *offset);
+
 /* Results of kernel 1 are kept from now on. */
 void structured_keep_results(tc_grid *grid);
 

@@ -31,6 +31,11 @@ static uint64_t array_offset(const tc_grid *grid, int array, uint64_t z) {
     return grid->context->in_place ? before / item_bytes : 0;
 }
 
+struct _cl_mem *structured_samples(const tc_grid *grid, uint64_t *offset) {
+    *offset = array_offset(grid, ARRAY_SAMPLES, 0);
+    return grid->device->arrays[ARRAY_SAMPLES].memory;
+}
+
 /* Makes planes z0 <= z < z1 available: in place where the device can, else by a copy, only enqueued. */
 static tc_status array_provide(tc_grid *grid, const slab_plan *plan, cl_command_queue queue, device_buffer *buffer,
                                int array, uint64_t z0, uint64_t z1) {

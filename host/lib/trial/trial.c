@@ -152,6 +152,7 @@ static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind ki
 }
 
 tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
+    if (kind.grid == KIND_LABELS) return trial_of_labels(context, kind);
     trial_volume v = {.type = kind.type,
                       .kind = kind.grid == KIND_COMPLEX ? GRID_CURVILINEAR : (grid_kind)kind.grid,
                       .unstructured = kind.grid == KIND_COMPLEX,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import arrays, context as contexts
 from .library import (check, options, tc, tc_counts, tc_device_mesh, tc_engine, tc_extract_options, tc_field,
-                      tc_grid_options, tc_mesh_data, tc_method)
+                      tc_grid_options, tc_labels_options, tc_mesh_data, tc_method)
 from .mesh import Mesh
 
 Self = TypeVar("Self", bound="GridBase")
@@ -123,6 +123,7 @@ class GridBase:
     def _extract(self, function, how, carry, *arguments):
         """The surface by tc_extract or tc_extract_piece, whose further arguments stand before the place of the mesh."""
         fields = {name: self._field(name, array) for name, array in carry.items()}
+        labelled = isinstance(how, tc_labels_options)
         handle = ctypes.c_void_p()
         try:
             self._call(function, ctypes.byref(how), *arguments, ctypes.byref(handle))
@@ -133,9 +134,32 @@ class GridBase:
         shape = data.vertex_count, 3
         return Mesh(arrays.owned(data.positions, shape, np.float32, memory),
                     arrays.owned(data.triangles, (data.triangle_count, 3), np.uint32, memory),
-                    arrays.owned(data.normals, shape, np.float32, memory) if how.normals else None,
+                    arrays.owned(data.normals, shape, np.float32, memory) if not labelled and how.normals else None,
                     {name: self._carried(how, field, data.vertex_count) for name, field in fields.items()},
-                    np.array(data.origin), self._axes, data.active_cell_count)
+                    np.array(data.origin), self._axes, data.active_cell_count,
+                    arrays.owned(data.boundary_labels, (data.triangle_count, 2), np.uint32, memory) if labelled else None)
+
+    def labels(self, labels: npt.ArrayLike | None = None, *, smoothing: int | None = None, closed: bool = False) -> Mesh:
+        """The surfaces between the labels of a volume of integers, as one Mesh with ``boundary_labels``.
+
+        labels: those that are wanted; others, 0, negative and missing samples are background. None: all.
+        smoothing: sweeps, 8 unless given; 0 leaves the stairs of the voxels.
+        closed: whether surfaces are closed half a voxel beyond the volume's border.
+        """
+        how = options(tc_labels_options)
+        wanted = None if labels is None else np.ascontiguousarray(np.atleast_1d(labels))
+        if wanted is not None:
+            are_whole = wanted.ndim == 1 and wanted.size and wanted.dtype.kind in "iu"
+            if not are_whole or wanted.min() < 1 or wanted.max() > 0xffffffff:
+                raise ValueError(f"labels is {labels!r}, not whole numbers above 0")
+            wanted = wanted.astype(np.uint32)
+            how.labels, how.label_count = wanted.ctypes.data, wanted.size
+        if smoothing is not None:
+            if not 0 <= int(smoothing) <= 1000:
+                raise ValueError(f"smoothing is {smoothing!r}, not a number of sweeps from 0 to 1000")
+            how.smoothing = int(smoothing)
+        how.closed = bool(closed)
+        return self._extract(tc.tc_extract_labels, how, {})
 
     def _field(self, name, array):
         what = f"carry[{name!r}]"
@@ -285,3 +309,20 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
         return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)
+
+
+def labels(volume: Any, labels: npt.ArrayLike | None = None, *,  # pylint: disable=redefined-outer-name
+           smoothing: int | None = None, closed: bool = False, spacing: npt.ArrayLike = 1, origin: npt.ArrayLike = 0,
+           direction: npt.ArrayLike | None = None, mask: Any = None, nodata: float | None = None, axes: str = "zyx",
+           device: int | str | None = None, engine: str = "auto", max_memory: int | None = None,
+           progress: Progress | None = None) -> Mesh:
+    """The surfaces between the labels of a segmentation (z, y, x), shared by neighbours, as a Mesh.
+
+        mesh = tetracubes.labels(segmentation, spacing=(2, 1, 1))
+        mesh.boundary_labels, mesh.of_label(7)
+
+    Arguments are those of Grid, and of Grid.labels. The surface of each label by itself is a manifold.
+    """
+    with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
+              device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
+        return grid.labels(labels, smoothing=smoothing, closed=closed)

@@ -118,6 +118,11 @@ class tc_extract_options(_Sized):
                 ("snap", c_double), ("closed", c_int), ("reserved", c_int)]
 
 
+class tc_labels_options(_Sized):
+    _fields_ = [("struct_size", c_size_t), ("labels", c_void_p), ("label_count", c_uint64), ("smoothing", c_uint32),
+                ("closed", c_int)]
+
+
 class tc_counts(_Sized):
     _fields_ = [("struct_size", c_size_t), ("vertex_count", c_uint64), ("triangle_count", c_uint64),
                 ("active_cell_count", c_uint64), ("mesh_bytes", c_uint64), ("classify_ms", c_double)]
@@ -131,7 +136,7 @@ class tc_mesh_data(_Sized):
     _fields_ = [("struct_size", c_size_t), ("vertex_count", c_uint64), ("triangle_count", c_uint64),
                 ("active_cell_count", c_uint64), ("positions", c_void_p), ("normals", c_void_p),
                 ("triangles", c_void_p), ("slab_count", c_uint32), ("reserved", c_uint32), ("timings", tc_timings),
-                ("origin", c_double * 3)]
+                ("origin", c_double * 3), ("boundary_labels", c_void_p)]
 
 
 class tc_planes(_Sized):
@@ -219,6 +224,8 @@ FUNCTIONS = {
     "tc_extract_options_init": (None, POINTER(tc_extract_options)),
     "tc_count": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts)),
     "tc_extract": (_STATUS, c_void_p, POINTER(tc_extract_options), _OUT),
+    "tc_labels_options_init": (None, POINTER(tc_labels_options)),
+    "tc_extract_labels": (_STATUS, c_void_p, POINTER(tc_labels_options), _OUT),
     "tc_seam_size": (c_uint64, c_void_p),
     "tc_count_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_counts), c_void_p, c_uint64),
     "tc_extract_piece": (_STATUS, c_void_p, POINTER(tc_extract_options), c_void_p, c_uint64, _OUT),

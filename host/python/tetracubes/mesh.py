@@ -56,7 +56,8 @@ class Mesh:
     """
 
     def __init__(self, positions: np.ndarray, triangles: np.ndarray, normals: np.ndarray | None,
-                 values: dict[str, np.ndarray], origin: np.ndarray, axes: str, active_cells: int) -> None:
+                 values: dict[str, np.ndarray], origin: np.ndarray, axes: str, active_cells: int,
+                 boundary_labels: np.ndarray | None = None) -> None:
         #: float32 (n, 3), **x, y, z**, relative to ``origin``: what ``hash`` is of
         self.positions = positions
         #: uint32 (m, 3), counter-clockwise seen from outside in x, y, z
@@ -67,6 +68,9 @@ class Mesh:
         self.origin = origin
         #: cells that the surface passes through
         self.active_cells = active_cells
+        #: of a label map: uint32 (m, 2), labels of each triangle's inner and outer side: the lower one, then the other; 0,
+        #: the background, is always the other. None: no label map
+        self.boundary_labels = boundary_labels
         self.axes = axes
         self._normals = normals
 
@@ -102,12 +106,14 @@ class Mesh:
     def _data(self):
         """The mesh as the C interface has it, and the arrays that it points into."""
         arrays = [np.ascontiguousarray(self.positions, np.float32), np.ascontiguousarray(self.triangles, np.uint32),
-                  None if self._normals is None else np.ascontiguousarray(self._normals, np.float32)]
+                  None if self._normals is None else np.ascontiguousarray(self._normals, np.float32),
+                  None if self.boundary_labels is None else np.ascontiguousarray(self.boundary_labels, np.uint32)]
         if arrays[1].size and arrays[1].max() >= len(arrays[0]):
             raise ValueError(f"a face has vertex {arrays[1].max()}, and the mesh {len(arrays[0])} vertices")
         places = [None if array is None else array.ctypes.data for array in arrays]
         data = tc_mesh_data(vertex_count=len(arrays[0]), triangle_count=len(arrays[1]), positions=places[0],
-                            triangles=places[1], normals=places[2], origin=tuple(self.origin))
+                            triangles=places[1], normals=places[2], origin=tuple(self.origin),
+                            boundary_labels=places[3])
         return data, arrays
 
     def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin
@@ -167,6 +173,19 @@ class Mesh:
             with open(path, "rb") as file:
                 return file.read()
 
+    def of_label(self, label: int) -> Mesh:
+        """The surface of one label of a label map, as a mesh of its own: triangles are counter-clockwise seen from
+        outside the label, which is the first of their two."""
+        if self.boundary_labels is None:
+            raise ValueError("the mesh has no labels: it is that of an isosurface")
+        own = (self.boundary_labels == label).any(axis=1)
+        sides, triangles = self.boundary_labels[own], self.triangles[own]
+        turned = sides[:, 0] != label
+        triangles[turned], sides[turned] = triangles[turned][:, ::-1], sides[turned][:, ::-1]
+        used, numbers = np.unique(triangles, return_inverse=True)
+        return Mesh(self.positions[used], numbers.reshape(triangles.shape).astype(np.uint32), None, {}, self.origin,
+                    self.axes, self.active_cells, sides)
+
     # Other packages name coordinates x, y, z, and so do files: there the order is always that.
 
     def _world(self):
@@ -187,6 +206,8 @@ class Mesh:
             made.point_data[name] = array
         if self._normals is not None:
             made.point_data.active_normals = self._normals
+        if self.boundary_labels is not None:
+            made.cell_data["BoundaryLabels"] = self.boundary_labels
         return made
 
     def to_meshio(self) -> Any:

@@ -127,9 +127,10 @@ static const effect table[] = {
      "--preview-size is of a picture: give --preview FILE"},
     {COMMAND_INFO, "--iso", BEFORE_READING, has_no_preview, REFUSED,
      "--iso is for the isolines of a picture: give --preview FILE"},
-    {COMMAND_EXTRACT, "--format", BEFORE_READING, has_no_output, REFUSED,
+    {COMMAND_LABELS, "--separate", BEFORE_READING, has_no_output, REFUSED, "--separate names files: give -o FILE"},
+    {COMMAND_EXTRACT | COMMAND_LABELS, "--format", BEFORE_READING, has_no_output, REFUSED,
      "--format is that of the mesh's file: give -o FILE, or -o - for standard output"},
-    {COMMAND_EXTRACT, "--origin-at", BEFORE_READING, has_no_output, REFUSED,
+    {COMMAND_EXTRACT | COMMAND_LABELS, "--origin-at", BEFORE_READING, has_no_output, REFUSED,
      "--origin-at is for the coordinates in the mesh's file: give -o FILE"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_file_nor_reference, TOLD,
      "--normals has no effect without -o FILE, nor --preview FILE, nor --verify"},
@@ -138,11 +139,13 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
      "--normals has no effect on STL, which holds normals of triangles, none of vertices: ply, obj and vtp do"},
 
-    {COMMAND_EXTRACT, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
+    {COMMAND_EXTRACT | COMMAND_LABELS, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
      "--verify compares with the reference engine: it proves nothing about that engine itself; leave out --verify or "
      "--engine"},
-    {COMMAND_EXTRACT, "--device", BEFORE_READING, has_no_device, TOLD,
+    {COMMAND_EXTRACT | COMMAND_LABELS, "--device", BEFORE_READING, has_no_device, TOLD,
      "--device has no effect with --engine reference"},
+    {COMMAND_LABELS, "--max-memory", BEFORE_READING, has_no_device, TOLD,
+     "--max-memory has no effect with --engine reference: it bounds memory of a device"},
     {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device_nor_stream, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device, and of --stream"},
 
@@ -155,9 +158,9 @@ static const effect table[] = {
     {READS, "--endian", BEFORE_READING, has_bytes, TOLD, "--endian has no effect on samples of one byte"},
     {COMMAND_GENERATE, "--seed", BEFORE_READING, is_not_noise, TOLD, "--seed has an effect on noise alone"},
 
-    {COMMAND_EXTRACT | COMMAND_INFO, "--roi", BEFORE_READING, has_world_range, REFUSED,
+    {COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, "--roi", BEFORE_READING, has_world_range, REFUSED,
      "--roi and --roi-world both choose a region: leave one out"},
-    {COMMAND_EXTRACT | COMMAND_INFO, "--step", BEFORE_READING, is_everything, TOLD,
+    {COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, "--step", BEFORE_READING, is_everything, TOLD,
      "--step 1 takes every sample: it has no effect"},
 
     {COMMAND_SELFTEST, "--timeout", BEFORE_READING, has_no_time, REFUSED,

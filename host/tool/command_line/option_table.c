@@ -43,6 +43,24 @@ const option option_table[] = {
      "a page that shows it in a browser (left out: only the report); with several\n"
      "isovalues, % in FILE stands for the isovalue as typed; - is standard output\n"
      "(give --format): the report then goes to standard error"},
+    {"--labels", NULL, "all|L[,L...]", COMMAND_LABELS, VALUE_LABELS, IN(labels), NULL,
+     "labels whose surfaces are made, with commas between (default: all): other\n"
+     "samples count as background, which is 0"},
+    {"--output", "-o", "FILE", COMMAND_LABELS, VALUE_TEXT, IN(output), NULL,
+     "mesh to write: .ply, .vtp, .npz or .vtkhdf, with the two labels of every\n"
+     "triangle; .stl, .obj, .off, .glb or .html (left out: only the report); -\n"
+     "is standard output (give --format)"},
+    {"--format", NULL, "F", COMMAND_LABELS, VALUE_TEXT, IN(format), format_choices,
+     "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
+    {"--separate", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(separate_labels), NULL,
+     "write a file for each label, its whole surface: the label stands for % in\n"
+     "FILE, or goes with _ before the ending, as in organs_7.stl"},
+    {"--smooth", NULL, "N", COMMAND_LABELS, VALUE_NUMBER, IN(smooth), NULL,
+     "sweeps of smoothing (default: 8); vertices stay within their voxel, and\n"
+     "surfaces joined where they meet; 0 leaves the stairs of the voxels"},
+    {"--closed", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(closed), NULL,
+     "close the surfaces of labels that reach the border of the volume, half a\n"
+     "voxel beyond it, as if background were around"},
     {"--output", "-o", "FILE", COMMAND_GENERATE, VALUE_TEXT, IN(output), NULL,
      "volume to write: .nrrd, or .raw for samples without a header; - is NRRD on\n"
      "standard output"},
@@ -83,7 +101,7 @@ const option option_table[] = {
      "STL and OFF); structured grids only"},
     {"--soup", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(soup), NULL,
      "write three vertices of its own for every triangle, none shared"},
-    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT | COMMAND_JOIN, VALUE_POINT, IN(origin_at), NULL,
+    {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT | COMMAND_JOIN | COMMAND_LABELS, VALUE_POINT, IN(origin_at), NULL,
      "write coordinates relative to this point of the input's space (default: the\n"
      "input's own; STL, which holds float32 alone, of data far from zero relative\n"
      "to a point near it, which is told)"},
@@ -105,13 +123,13 @@ const option option_table[] = {
      "close the surface where it ends, at the grid's border and beside missing\n"
      "cells, by the inside part of the faces there: the mesh then bounds the\n"
      "volume of samples >= V; each block by itself"},
-    {"--engine", NULL, "E", COMMAND_EXTRACT, VALUE_CHOICE, IN(engine), engine_choices,
+    {"--engine", NULL, "E", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
-    {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
+    {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST | COMMAND_LABELS, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu, gpu:1 or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
-    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT, VALUE_BOUND, IN(max_memory), NULL,
+    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_BOUND, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024), and\n"
      "of streams on the host's memory too: less means smaller slabs and windows,\n"
      "never another result"},
@@ -128,16 +146,21 @@ const option option_table[] = {
      "cost: as much to read and to write for each rank; or the planes where all\n"
      "but the first begin, multiples of 4, as in 40,96 for three: all parts of a\n"
      "surface need the same. It never changes the mesh"},
-    {"--verify", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(verify), NULL,
+    {"--verify", NULL, NULL, COMMAND_EXTRACT | COMMAND_LABELS, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
      "check the mesh itself: manifold, oriented; Euler characteristic, area, of\n"
      "closed surfaces volume (boundary edges are reported, they are no fault);\n"
      "smallest angles of triangles: median, share below 10 and 20 degrees"},
-    {"--nodata", NULL, "V", READS, VALUE_NODATA, IN(nodata), NULL,
+    {"--check", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(check), NULL,
+     "check the surface of each label by itself: manifold, oriented; Euler\n"
+     "characteristic, components, area, of closed surfaces volume"},
+    {"--nodata", NULL, "V", READS & ~COMMAND_LABELS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are missing, as are NaN and infinities: a cell with\n"
      "a missing corner is left out; of f32 samples and of scaled ones the float\n"
      "nearest to V counts; of vectors one component equal to V is enough"},
+    {"--nodata", NULL, "V", COMMAND_LABELS, VALUE_NODATA, IN(nodata), NULL,
+     "samples equal to V are background"},
     {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
      "leave out cells of types that are not cut, and polyhedra whose faces are\n"
      "not closed, with a notice, instead of refusing the input"},
@@ -146,16 +169,16 @@ const option option_table[] = {
      "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
      "which volume, from 0, of data with a fourth axis"},
-    {"--roi", NULL, "I0:I1,...", COMMAND_EXTRACT | COMMAND_INFO, VALUE_INDICES, IN(part.indices), NULL,
+    {"--roi", NULL, "I0:I1,...", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_INDICES, IN(part.indices), NULL,
      "only the samples of these indices along x, y and z, from I0 to before I1;\n"
      "an end left out, as in 10:,:,:50, is the grid's; regions that share a plane\n"
      "of samples, as 0:65 and 64:129, have surfaces that fit; structured grids"},
-    {"--roi-world", NULL, "X0:X1,...", COMMAND_EXTRACT | COMMAND_INFO, VALUE_RANGES, IN(part.world), NULL,
+    {"--roi-world", NULL, "X0:X1,...", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_RANGES, IN(part.world), NULL,
      "the same by a box in the input's space: the fewest samples that cover it"},
-    {"--step", NULL, "N[,N,N]", COMMAND_EXTRACT | COMMAND_INFO, VALUE_STEP, IN(part.step), NULL,
+    {"--step", NULL, "N[,N,N]", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_STEP, IN(part.step), NULL,
      "only every Nth sample, from the first one on, along x, y and z; points stay\n"
      "where they are; structured grids"},
-    {"--mask", NULL, "FILE", COMMAND_EXTRACT | COMMAND_INFO, VALUE_TEXT, IN(mask), NULL,
+    {"--mask", NULL, "FILE", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_TEXT, IN(mask), NULL,
      "a volume of the input's size, in any format (else raw u8): where it is 0,\n"
      "samples are missing; structured grids"},
     {"--dims", NULL, "NX,NY,NZ", READS, VALUE_DIMS, IN(dims), NULL,

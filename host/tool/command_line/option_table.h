@@ -30,6 +30,7 @@ typedef enum value_kind {
     VALUE_CUT,       /* cut_request */
     VALUE_VIEW,      /* view_angles: one of the choices, or two numbers */
     VALUE_PIXELS,    /* int64_t[2] */
+    VALUE_LABELS,    /* labels: none for all */
 } value_kind;
 
 typedef struct option {
@@ -46,6 +47,6 @@ typedef struct option {
 extern const option option_table[];
 extern const size_t option_table_count;
 
-enum { OPTION_TABLE_MOST = 64 }; /* rows: a bit of options.given each */
+enum { OPTION_TABLE_MOST = 128 }; /* rows: a bit of options.given each */
 
 #endif

@@ -21,10 +21,11 @@ enum command_bit {
     COMMAND_SELFTEST = 16,
     COMMAND_TETRAHEDRALIZE = 32,
     COMMAND_JOIN = 64,
+    COMMAND_LABELS = 256,
 };
 
 /* Commands that read an input. */
-enum { READS = COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE };
+enum { READS = COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE | COMMAND_LABELS };
 
 /* Of --engine: the device, and the reference where there is none or it fails. */
 enum { ENGINE_AUTO = 2 };
@@ -71,6 +72,10 @@ typedef struct options {
     int64_t piece[2]; /* --part: which, from 0, of how many; 0 of 0 where not given */
     cut_request cut;
     const char *mask;
+    uint32_t *labels; /* those that are wanted; NULL: all */
+    size_t label_count;
+    uint64_t smooth; /* sweeps */
+    int separate_labels;
     uint64_t max_memory; /* 0 where not given */
     uint64_t seed;
 
@@ -81,7 +86,7 @@ typedef struct options {
     double spacing[3], origin[3];
     double origin_at[3]; /* where given: coordinates of the output are relative to it */
 
-    uint64_t given;    /* bit n: row n of the table stood on the command line */
+    uint64_t given[2]; /* bit n: row n of the table stood on the command line */
     uint64_t timeout;  /* seconds; 0 where not given */
     const char *junit; /* NULL where not given */
     int quick, vectors;

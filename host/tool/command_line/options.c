@@ -53,10 +53,11 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
     } else {
         value = argv[++*at];
     }
-    const uint64_t bit = (uint64_t)1 << (spec - option_table);
-    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES)
+    const size_t row = (size_t)(spec - option_table);
+    const uint64_t bit = (uint64_t)1 << row % 64;
+    if (o->given[row / 64] & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES)
         return fail(STATUS_USAGE, "%s is given twice: leave one out", spec->name);
-    o->given |= bit;
+    o->given[row / 64] |= bit;
     return parse_value(spec, value, o);
 }
 
@@ -89,13 +90,14 @@ int options_parse(enum command_bit command, const char *name, int argc, char **a
 void options_release(options *o) {
     free(o->isovalues);
     free(o->cut.planes);
+    free(o->labels);
     free(o->operands);
     *o = (options){0};
 }
 
 int options_given(const options *o, const char *name) {
     for (size_t n = 0; n < option_table_count; n++)
-        if (o->given >> n & 1 && strcmp(option_table[n].name, name) == 0) return 1;
+        if (o->given[n / 64] >> n % 64 & 1 && strcmp(option_table[n].name, name) == 0) return 1;
     return 0;
 }
 

@@ -269,6 +269,26 @@ static int parse_number(const option *spec, const char *text, uint64_t most, uin
     return 0;
 }
 
+static int parse_labels(const option *spec, const char *text, options *o) {
+    const char *at = text;
+    if (strcmp(text, "all") == 0) return 0;
+    for (;;) {
+        uint64_t label = 0;
+        at = skip_blanks(at);
+        const int good = take_whole(&at, &label) && label > 0 && label <= UINT32_MAX;
+        at = skip_blanks(at);
+        if (!good || (*at && *at != ','))
+            return fail(STATUS_USAGE,
+                        "%s: '%s' is neither all nor whole numbers above 0 with commas between, as in 1,4,7",
+                        spec->name, text);
+        uint32_t *grown = realloc(o->labels, (o->label_count + 1) * sizeof *grown);
+        if (!grown) return fail(STATUS_FAILED, "out of memory for the labels");
+        o->labels = grown;
+        grown[o->label_count++] = (uint32_t)label;
+        if (!*at++) return 0;
+    }
+}
+
 int parse_value(const option *spec, const char *text, options *o) {
     void *place = (char *)o + spec->place;
     uint64_t number = 0;
@@ -329,6 +349,8 @@ int parse_value(const option *spec, const char *text, options *o) {
         return parse_view(spec, text, place);
     case VALUE_PIXELS:
         return parse_pixels(spec, text, place);
+    case VALUE_LABELS:
+        return parse_labels(spec, text, o);
     }
     return fail(STATUS_USAGE, "%s: not understood", spec->name);
 }

@@ -1,0 +1,173 @@
+/*
+ * Each sweep makes new positions of all old ones, so neither threads nor the order of vertices change a bit. The box of
+ * a vertex lies along the grid's axes, around the place where it was made. Positions have four components while they
+ * are smoothed, as processors take them.
+ */
+#include "labels/smooth.h"
+
+#include "failure.h"
+#include "labels/neighbours.h"
+#include "opencl/context.h"
+#include "parallel.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef float vector __attribute__((vector_size(16)));
+typedef int32_t bits __attribute__((vector_size(16)));
+
+static const float reach = 0.45f; /* cells, along each axis: surfaces on either side of a sample keep apart */
+static const float pull = 0.75f;  /* of the way to the mean of the neighbours */
+
+typedef struct smoothing {
+    const label_volume *v;
+    neighbour_lists lists;
+    float matrix[3][3], inverse[3][3]; /* from index space, and into it */
+    bool is_straight;                  /* the grid's axes are those of space */
+    vector most;                       /* then: how far a vertex may move */
+    float shares[UINT8_MAX + 1];       /* of each of n neighbours */
+    uint8_t *fixed;                    /* one per vertex: bit n, it does not move along axis n */
+    float *mesh;                       /* where vertices were made; the mesh's own positions */
+    vector *places[2];
+    const vector *from;
+    vector *to;
+    _Atomic uint64_t next;
+} smoothing;
+
+static void invert(smoothing *s) {
+    const float *m = s->v->grid->matrix;
+    double a[3][3], determinant = 0;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) s->matrix[r][c] = m[4 * r + c], a[r][c] = (double)m[4 * r + c];
+    for (int c = 0; c < 3; c++)
+        determinant += a[0][c] * (a[1][(c + 1) % 3] * a[2][(c + 2) % 3] - a[1][(c + 2) % 3] * a[2][(c + 1) % 3]);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+            s->inverse[c][r] = (float)((a[r1][c1] * a[r2][c2] - a[r1][c2] * a[r2][c1]) / determinant);
+        }
+    s->is_straight = true;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) s->is_straight = s->is_straight && (r == c || s->matrix[r][c] == 0);
+    for (int axis = 0; axis < 3; axis++) s->most[axis] = reach * fabsf(s->matrix[axis][axis]);
+    for (int n = 1; n <= UINT8_MAX; n++) s->shares[n] = pull / (float)n;
+}
+
+static vector vector_load(const float *from) { return (vector){from[0], from[1], from[2], 0}; }
+
+/* Vertices at the end of a mesh stay in the planes of the grid's border that they lie in. */
+static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
+    const tc_grid *grid = s->v->grid;
+    uint8_t fixed = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double index = 0;
+        for (int r = 0; r < 3; r++)
+            index += (double)s->inverse[axis][r] * ((double)place[r] - (double)grid->matrix[4 * r + 3]);
+        index -= (double)(grid->first[axis] - s->v->before);
+        if (fabs(index) < 0.1 || fabs(index - (double)(s->v->dims[axis] - 1)) < 0.1) fixed |= (uint8_t)(1 << axis);
+    }
+    return fixed;
+}
+
+static void ranges_begin(void *shared) {
+    smoothing *s = shared;
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) {
+        const neighbour_range *r = &s->lists.ranges[n];
+        for (uint64_t v = r->first; v < r->end; v++) {
+            s->places[0][v] = vector_load(s->mesh + 3 * v);
+            s->fixed[v] = r->on_border[v - r->first] ? fixed_axes(s, s->mesh + 3 * v) : 0;
+        }
+    }
+}
+
+static void ranges_end(void *shared) {
+    smoothing *s = shared;
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;)
+        for (uint64_t v = s->lists.ranges[n].first; v < s->lists.ranges[n].end; v++)
+            memcpy(s->mesh + 3 * v, &s->to[v], CHANNEL_BYTES);
+}
+
+/* A vertex that may have left its box, in space or along some axes. */
+static vector constrain(const smoothing *s, uint8_t fixed, vector place, vector at) {
+    const vector moved = at - place;
+    float index[3];
+    bool is_out = false;
+    for (int axis = 0; axis < 3; axis++) {
+        const float *m = s->inverse[axis], most = fixed >> axis & 1 ? 0 : reach;
+        const float i = (m[0] * moved[0] + m[1] * moved[1]) + m[2] * moved[2];
+        index[axis] = i > most ? most : i < -most ? -most : i;
+        is_out |= index[axis] != i;
+    }
+    for (int r = 0; r < 3 && is_out; r++) {
+        const float *m = s->matrix[r];
+        at[r] = place[r] + ((m[0] * index[0] + m[1] * index[1]) + m[2] * index[2]);
+    }
+    return at;
+}
+
+static vector lesser(vector a, vector b) {
+    const bits is = a < b;
+    return (vector)(((bits)a & is) | ((bits)b & ~is));
+}
+
+static vector constrain_straight(const smoothing *s, vector place, vector at) {
+    return place - lesser(-lesser(at - place, s->most), s->most);
+}
+
+static void range_move(const smoothing *s, const neighbour_range *r) {
+    const vector *from = s->from;
+    for (uint32_t n = 0; n < r->end - r->first; n++) {
+        const uint64_t vertex = r->first + (uint64_t)n;
+        const uint32_t *neighbours = r->vertices + r->starts[n], count = r->counts[n];
+        const vector old = from[vertex], place = vector_load(s->mesh + 3 * vertex);
+        vector sum = {0, 0, 0, 0};
+        for (uint32_t m = 0; m < count; m++) sum += from[neighbours[m]] - old;
+        const vector at = old + s->shares[count] * sum;
+        s->to[vertex] = s->is_straight && !s->fixed[vertex] ? constrain_straight(s, place, at)
+                                                            : constrain(s, s->fixed[vertex], place, at);
+    }
+}
+
+static void ranges_move(void *shared) {
+    smoothing *s = shared;
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) range_move(s, &s->lists.ranges[n]);
+}
+
+static void on_ranges(smoothing *s, void (*work)(void *shared)) {
+    atomic_store(&s->next, 0);
+    parallel_run(s->lists.range_count, work, s);
+}
+
+static tc_status sweep(smoothing *s, uint32_t sweeps) {
+    tc_status status = TC_OK;
+    on_ranges(s, ranges_begin);
+    for (uint32_t n = 0; n < sweeps && !status; n++) {
+        s->from = s->places[n & 1];
+        s->to = s->places[~n & 1];
+        on_ranges(s, ranges_move);
+        status = context_progress(s->v->grid->context, "smooth", (double)(n + 1) / (double)sweeps);
+    }
+    if (!status) on_ranges(s, ranges_end);
+    return status;
+}
+
+tc_status labels_smooth(const label_volume *volume, uint32_t sweeps, tc_mesh *mesh) {
+    smoothing s = {.v = volume, .mesh = mesh->channels[CHANNEL_POSITIONS].memory};
+    tc_status status = TC_OK;
+    if (!sweeps || !mesh->vertex_count) return TC_OK;
+    host_block blocks[2] = {{0}};
+    for (int n = 0; n < 2 && !status; n++) status = host_block_reserve(&blocks[n], mesh->vertex_count * sizeof(vector));
+    for (int n = 0; n < 2; n++) s.places[n] = blocks[n].memory;
+    s.fixed = malloc((size_t)mesh->vertex_count);
+    if (status || !s.fixed)
+        status = (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing");
+    invert(&s);
+    if (!status) status = neighbours_find(mesh, &s.lists);
+    if (!status) status = sweep(&s, sweeps);
+    neighbours_release(&s.lists);
+    free(s.fixed);
+    for (int n = 0; n < 2; n++) host_block_release(&blocks[n]);
+    return status;
+}

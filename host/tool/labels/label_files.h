@@ -1,0 +1,27 @@
+/*
+ * label_files.h - the files of labels: one of all surfaces, or with --separate one of each label, named by it
+ */
+#ifndef LABEL_FILES_H
+#define LABEL_FILES_H
+
+#include "command_line/options.h"
+#include "dataset/dataset.h"
+#include "mesh_labels.h"
+#include "output_group.h"
+
+/* STATUS_USAGE where -o and the other options do not fit together, or would overwrite an input; STATUS_FAILED where a
+ * file cannot be written. d is NULL before the input is read. */
+int label_files_check(const options *o, const dataset *d);
+
+/* The file of a label, which stands for % in the name, or goes with _ before its ending; from malloc, NULL with its
+ * failure's text without memory. */
+char *label_file_name(const char *pattern, uint32_t label);
+
+/* Writes the mesh to path; it waits in the group. */
+int label_file_write(const options *o, const dataset *d, const char *path, const tc_mesh_data *mesh,
+                     output_group *group);
+
+/* Notices of what the file's format cannot hold. */
+void label_files_tell(const options *o, const tc_mesh_data *mesh);
+
+#endif

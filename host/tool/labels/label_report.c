@@ -1,0 +1,113 @@
+#include "label_report.h"
+
+#include "input/part_report.h"
+#include "output.h"
+#include "progress.h"
+#include "shortest.h"
+#include "terminal/json_report.h"
+#include "terminal/notice.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* Milliseconds to the microsecond. */
+static json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
+
+static json_t *row_json(const label_report *r, const label_row *row) {
+    const mesh_topology *t = &row->topology;
+    json_t *object =
+        json_pack("{s:o, s:o}", "label", count_json(row->label), "triangles", count_json(row->triangle_count));
+    if (row->path) json_object_set_new(object, "output", string_json(row->path));
+    if (!r->o->check) return object;
+    json_object_set_new(object, "boundary_edges", count_json(t->boundary_edges));
+    json_object_set_new(object, "nonmanifold_edges", count_json(t->nonmanifold_edges));
+    json_object_set_new(object, "nonmanifold_vertices", count_json(t->nonmanifold_vertices));
+    json_object_set_new(object, "misoriented_edges", count_json(t->misoriented_edges));
+    json_object_set_new(object, "euler_characteristic", json_integer((json_int_t)t->euler_characteristic));
+    json_object_set_new(object, "components", count_json(t->components));
+    json_object_set_new(object, "area", real_json(t->area));
+    json_object_set_new(object, "volume", t->unbalanced_edges ? json_null() : real_json(t->volume));
+    return object;
+}
+
+static int print_json(const label_report *r) {
+    char hash[24];
+    json_t *rows = json_array(), *object = json_object();
+    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
+    for (size_t n = 0; n < r->row_count; n++) json_array_append_new(rows, row_json(r, &r->rows[n]));
+    json_object_set_new(object, "input", string_json(r->o->operands[0]));
+    json_object_set_new(object, "output", r->o->output ? string_json(r->o->output) : json_null());
+    json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
+    json_object_set_new(object, "engine", json_string(r->device[0] ? "opencl" : "reference"));
+    json_object_set_new(object, "dims", integers_json(r->grid->dims));
+    part_report_json(object, r->grid);
+    json_object_set_new(object, "smoothing", count_json(r->smoothing));
+    json_object_set_new(object, "closed", json_boolean(r->o->closed));
+    json_object_set_new(object, "vertices", count_json(r->vertex_count));
+    json_object_set_new(object, "triangles", count_json(r->triangle_count));
+    json_object_set_new(object, "active_cells", count_json(r->active_cell_count));
+    json_object_set_new(object, "degenerate_triangles", count_json(r->degenerate_triangles));
+    json_object_set_new(object, "bounds",
+                        r->vertex_count ? json_pack("[o, o]", reals_json(r->bounds[0], 3), reals_json(r->bounds[1], 3))
+                                        : json_null());
+    json_object_set_new(object, "hash", json_string(hash));
+    json_object_set_new(object, "labels", rows);
+    if (r->has_verdict) json_object_set_new(object, "verified", json_boolean(r->verified));
+    json_object_set_new(object, "timings_ms",
+                        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms),
+                                  "device_start", ms_json(r->device_start_ms), "classify",
+                                  ms_json(r->timings.classify_ms), "emit", ms_json(r->timings.emit_ms), "readback",
+                                  ms_json(r->timings.readback_ms), "extract", ms_json(r->timings.total_ms), "write",
+                                  ms_json(r->write_ms), "total", ms_json(r->total_ms)));
+    json_object_set_new(object, "notices", notices_json());
+    return json_report_print(object);
+}
+
+static void print_row(const label_report *r, const label_row *row) {
+    const mesh_topology *t = &row->topology;
+    printf("  label %-5" PRIu32 " %" PRIu64 " triangles", row->label, row->triangle_count);
+    if (r->o->check) {
+        printf(", %s, %s, Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g",
+               t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
+               t->boundary_edges ? "open" : "closed", t->euler_characteristic, t->components, t->area);
+        if (!t->unbalanced_edges) printf(", volume %.7g", t->volume);
+    }
+    if (row->path) printf(", %s", row->path);
+    printf("\n");
+}
+
+static void print_text(const label_report *r) {
+    const int64_t *dims = r->grid->dims;
+    printf("%s: %" PRId64 " x %" PRId64 " x %" PRId64 " %s%s%s\n", r->o->operands[0], dims[0], dims[1], dims[2],
+           r->field, r->field[0] ? " " : "", tc_type_name(r->type));
+    part_report_text("part: ", r->grid);
+    printf("%s\n", r->device[0] ? r->device : "reference engine");
+    printf("surfaces of %zu labels\n", r->row_count);
+    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles (%" PRIu64 " of zero area), through %" PRIu64
+           " cells\n",
+           r->vertex_count, r->triangle_count, r->degenerate_triangles, r->active_cell_count);
+    printf("  bounds     ");
+    for (int end = 0; end < 2 && r->vertex_count; end++)
+        for (int axis = 0; axis < 3; axis++)
+            printf("%s %s", end && !axis ? " to" : "", shortest_coordinate(r->bounds[end][axis]).text);
+    printf(r->vertex_count ? "\n" : " none\n");
+    printf("  hash        %016" PRIx64 "\n", r->hash);
+    printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms, in all %.2f ms", r->timings.classify_ms,
+           r->timings.emit_ms, r->timings.readback_ms, r->timings.total_ms);
+    if (r->slab_count > 1) printf(", in %" PRIu32 " slabs", r->slab_count);
+    printf("\n");
+    for (size_t n = 0; n < r->row_count; n++) print_row(r, &r->rows[n]);
+    if (r->has_verdict) printf("  verify      %s\n", r->verified ? "same bytes as the reference" : "FAILED");
+    if (r->o->output && !r->o->separate_labels)
+        printf("  written     %s\n", output_is_dash(r->o->output) ? "standard output" : r->o->output);
+    printf("read %.2f ms, device start %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms, r->device_start_ms,
+           r->write_ms, r->total_ms);
+}
+
+int label_report_print(const label_report *r) {
+    progress_clear();
+    if (r->o->json) return print_json(r);
+    if (!r->o->quiet) print_text(r);
+    return 0;
+}

@@ -1,0 +1,52 @@
+/*
+ * label_emit_groups.cl - a row of a label map where 32 work-items share it: each has cubes of its own
+ */
+#ifndef LABEL_EMIT_GROUPS_CL
+#define LABEL_EMIT_GROUPS_CL
+
+#include "label_triangles.cl"
+
+/* Triangles of a row before those of the cube at x. */
+inline_always uint label_triangles_before(local const label_row *r, uint x) {
+    const ulong before = (1ul << x) - 1;
+    uint sum = 0;
+    for (uint t = 0; t < 5; t++) sum += label_cell_triangles(label_cells_in(r->cells[t], before));
+    return sum;
+}
+
+inline_always void label_cube_emit(const label_job *s, local const label_row *r, uint x, global const BITS *samples,
+                                   global const uint *tables, label_mesh out) {
+    const label_place p = r->place;
+    const label_numbers v = {r, x};
+    const uint odd = (s->parity + 64 * p.w + x + p.y + p.z) & 1;
+    const ulong plane = (ulong)s->nx * s->ny;
+    global const BITS *first = samples + label_start(s, p.y, p.z, p.w) + x;
+    uint n = r->triangles + label_triangles_before(r, x);
+    for (uint t = 0; t < 5; t++) {
+        if (!(label_cells_any(r->cells[t]) >> x & 1)) continue;
+        const uint corners = tables[LABEL_MAPS + (5 * odd + t) * LABEL_MAP_WORDS + LABEL_MAP_CORNERS];
+#define LABEL_CORNER(n)                                                                                                \
+    first[(corners >> 4 * (n)&1) + (corners >> (4 * (n) + 1) & 1) * s->nx + (corners >> (4 * (n) + 2) & 1) * plane]
+        const uint4 own = (uint4)(LABEL_CORNER(0), LABEL_CORNER(1), LABEL_CORNER(2), LABEL_CORNER(3));
+#undef LABEL_CORNER
+        n += label_cell_emit(s, v, own, t, odd, n, tables, out);
+    }
+}
+
+inline_always void label_row_emit(const label_job *s, local const label_row *r, uint lane, global const BITS *samples,
+                                  global const uint *tables, label_mesh out) {
+    const label_place p = r->place;
+    ulong cubes = 0;
+    for (uint t = 0; t < 5; t++) cubes |= label_cells_any(r->cells[t]);
+    for (uint x = lane; x < 64; x += LABEL_TEAM) {
+        const uint index = 64 * p.w + x, odd = (s->parity + index + p.y + p.z) & 1;
+        const label_numbers v = {r, x};
+        for (uint type = 0; type < LABEL_ROW_TYPES; type++)
+            if (r->words[type] >> x & 1)
+                label_vertex_emit(s, label_line_of(s, p, type, odd, tables), index,
+                                  label_vertex(v, LABEL_VERTEX(type, 0)), out);
+        if (cubes >> x & 1) label_cube_emit(s, r, x, samples, tables, out);
+    }
+}
+
+#endif
