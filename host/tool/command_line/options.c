@@ -54,7 +54,8 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
         value = argv[++*at];
     }
     const uint64_t bit = (uint64_t)1 << (spec - option_table);
-    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES)
+    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES &&
+        spec->kind != VALUE_INTERVALS)
         return fail(STATUS_USAGE, "%s is given twice: leave one out", spec->name);
     o->given |= bit;
     return parse_value(spec, value, o);
@@ -89,6 +90,7 @@ int options_parse(enum command_bit command, const char *name, int argc, char **a
 void options_release(options *o) {
     free(o->isovalues);
     free(o->cut.planes);
+    free(o->ranges);
     free(o->operands);
     *o = (options){0};
 }
