@@ -8,7 +8,11 @@
 #include "grid/complex.h"
 #include "grid/interval.h"
 #include "opencl/context.h"
+#include "opencl/vetting.h"
 #include "reference/reference_interval.h"
+#include "structured/structured.h"
+#include "structured/structured_interval.h"
+#include "trial/trial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,25 +46,62 @@ static tc_status interval_begin(const tc_grid *grid, const tc_interval_options *
 }
 
 static tc_status engine_check(const tc_grid *grid) {
-    if (grid->context->options.engine == TC_ENGINE_REFERENCE) return TC_OK;
-    return (tc_status)fail(TC_ERROR_DEVICE, "there are no kernels for interval volumes of %s: use the reference engine",
-                           grid->complex ? "grids of tetrahedra" : "structured grids");
+    const tc_context *context = grid->context;
+    if (context->options.engine == TC_ENGINE_REFERENCE) return TC_OK;
+    if (grid->complex)
+        return (tc_status)fail(TC_ERROR_DEVICE, "there are no kernels for interval volumes of grids of tetrahedra: use "
+                                                "the reference engine");
+    if (device_makes_vertices(context, grid->type)) return TC_OK;
+    return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: interval volumes of %s samples are made by the reference "
+                                            "engine", context->info.name, tc_type_name(grid->type));
+}
+
+/* Tries the kernels of the grid, where the context's options say so and they have not passed. */
+static tc_status kernels_try(const tc_grid *grid) {
+    const kernel_kind kind = structured_interval_kind(grid);
+    bool *passed = &grid->context->trial_passed[kind_number(kind)];
+    if (!grid->context->options.check_device || *passed) return TC_OK;
+    tc_status status = trial_of_kind(grid->context, kind);
+    *passed = !status;
+    return status;
+}
+
+/* By kernels that are vetted and tried first; again where they were exchanged on the way. interval NULL: counts. */
+static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size, double *classify_ms,
+                             tc_interval *interval) {
+    tc_status status;
+    do {
+        status = call_vet(grid->context, structured_interval_kind(grid));
+        if (!status) structured_reshape(grid);
+        if (!status) status = kernels_try(grid);
+        if (!status)
+            status = interval ? structured_interval_extract(grid, options, interval)
+                              : structured_interval_count(grid, options, size, classify_ms);
+        if (!status) status = kernels_try(grid); /* of other kernels, where missing samples were met */
+    } while (vetting_restarts(grid->context));
+    return status;
 }
 
 /* Without tetrahedra there is nothing within. */
 static bool grid_is_empty(const tc_grid *grid) { return grid->complex && !grid->complex->tetrahedron_count; }
 
-static tc_status size_find(tc_grid *grid, const tc_interval_options *options, interval_size *size) {
+static tc_status size_find(tc_grid *grid, const tc_interval_options *options, interval_size *size, double *classify_ms) {
+    const double start = clock_ms();
     tc_status status = engine_check(grid);
     *size = (interval_size){{0}, 0};
+    *classify_ms = 0;
     if (status || grid_is_empty(grid)) return status;
-    return grid->complex ? reference_complex_interval_count(grid, options, size)
-                         : reference_interval_count(grid, options, size);
+    if (grid->device) return device_make(grid, options, size, classify_ms, NULL);
+    status = grid->complex ? reference_complex_interval_count(grid, options, size)
+                           : reference_interval_count(grid, options, size);
+    *classify_ms = clock_ms() - start;
+    return status;
 }
 
 static tc_status interval_make(tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
     tc_status status = engine_check(grid);
     if (status || grid_is_empty(grid)) return status;
+    if (grid->device) return device_make(grid, options, NULL, NULL, interval);
     return grid->complex ? reference_complex_interval_extract(grid, options, interval)
                          : reference_interval_extract(grid, options, interval);
 }
@@ -70,9 +111,9 @@ tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *options, t
     tc_interval_options o;
     interval_size size = {{0}, 0};
     tc_status status = struct_clear(counts, sizeof *counts, "tc_count_interval: counts");
-    const double start = clock_ms();
+    double classify_ms = 0;
     if (!status) status = interval_begin(grid, options, &o, "tc_count_interval");
-    if (!status) status = size_find(grid, &o, &size);
+    if (!status) status = size_find(grid, &o, &size, &classify_ms);
     if (status) return status;
     const tc_interval_counts found = {.struct_size = sizeof found,
                                       .sample_count = size.vertices[BLOCK_SAMPLES],
@@ -80,7 +121,7 @@ tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *options, t
                                       .high_count = size.vertices[BLOCK_HIGH],
                                       .tetrahedron_count = size.tetrahedra,
                                       .interval_bytes = interval_bytes(&size),
-                                      .classify_ms = clock_ms() - start};
+                                      .classify_ms = classify_ms};
     struct_copy_out(counts, &found);
     return TC_OK;
 }

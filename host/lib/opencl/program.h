@@ -14,6 +14,7 @@ typedef enum program_name {
     PROGRAM_COMPLEX,
     PROGRAM_WHOLE,
     PROGRAM_COMPLEX_CAPS, /* what closes surfaces of these two */
+    PROGRAM_INTERVAL,
     PROGRAM_COUNT
 } program_name;
 
