@@ -17,10 +17,10 @@
 #include <inttypes.h>
 #include <math.h>
 
-enum { SAMPLES_MAX = 60000, RANGES = 3, ALL_WITHIN = RANDOM_FIELDS, FEW_WITHIN, ALL_WITHIN_BUT, FIELDS };
+enum { SAMPLES_MAX = 64 * 40 * 360, RANGES = 3, ALL_WITHIN = RANDOM_FIELDS, FEW_WITHIN, ALL_WITHIN_BUT, FIELDS };
 
 static double memory[SAMPLES_MAX]; /* aligned for every type */
-static float points[3 * SAMPLES_MAX], axes[3][300];
+static float points[3 * SAMPLES_MAX], axes[3][400];
 static uint8_t blanked[SAMPLES_MAX];
 static struct tally { uint64_t volumes, missing, slabs, bounded; } tally;
 
@@ -212,6 +212,28 @@ static void run(uint64_t seed, const tc_context_options *copying) {
     grids_close();
 }
 
+/* Many layers, so that they go in slabs; nearly no samples missing, or none. */
+static void test_slabs(const tc_context_options *copying) {
+    tc_grid_options g;
+    tc_interval_options how;
+    for (int kind = 0; kind < 2; kind++) {
+        const char *name = kind ? "layers of f32, some missing" : "layers of u8";
+        random_state = 5 + (uint64_t)kind;
+        tc_grid_options_init(&g);
+        tc_interval_options_init(&how);
+        g.dims[0] = 64, g.dims[1] = 40, g.dims[2] = 360;
+        g.samples = memory;
+        g.type = kind ? TC_F32 : TC_U8;
+        how.low = 55, how.high = 75;
+        samples_choose(&g, SMOOTH);
+        if (kind) g.points = points, ((float *)memory)[64 * 40 * 300 + 1000] = NAN;
+        grids_open(&g, name);
+        if (interval_make(&engines[REFERENCE], &how, name))
+            expect_bounded(copying, &g, &how, &engines[REFERENCE].data, name);
+        grids_close();
+    }
+}
+
 int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups");
     const uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
@@ -229,6 +251,7 @@ int main(int argc, char **argv) {
     expert.always_copy = 1;
     engines[COPYING].context = context_open(&options);
     for (uint64_t n = 0; n < count; n++) run(first + n, &options);
+    if (argc < 3 && test_chosen("slabs")) test_slabs(&options);
     for (int n = 0; n < CONTEXTS; n++) {
         tc_interval_destroy(engines[n].interval);
         tc_context_destroy(engines[n].context);

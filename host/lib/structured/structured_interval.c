@@ -41,7 +41,7 @@ static tc_status buffers_reserve(interval_run *r) {
     const interval_plan *plan = &r->plan;
     const uint64_t bricks = interval_slab_window(plan, 0) * plan_bricks_per_layer(&plan->tiles);
     const uint64_t planes = interval_slab_window(plan, 0) * (uint64_t)BRICK_PLANES + 2;
-    const uint64_t cells = r->grid->device->missing ? 8 * planes * plan_words_per_plane(&plan->tiles, r->grid) : 0;
+    const uint64_t cells = r->missing ? 8 * planes * plan_words_per_plane(&plan->tiles, r->grid) : 0;
     tc_status status = TC_OK;
     for (int n = 0; n < BOUND_COUNT && !status; n++)
         if (r->exists[n]) status = words_reserve(r, &b->words[n], bricks);
@@ -155,7 +155,7 @@ static tc_status cells_mark(interval_run *r) {
                  blanked_cells = array_memory(r, ARRAY_BLANKED_CELLS);
     const kernel_argument arguments[] = {ARGUMENT(*s),      ARGUMENT(samples), ARGUMENT(blanked), ARGUMENT(blanked_cells),
                                          ARGUMENT(r->buffers->cells.memory), ARGUMENT(planes)};
-    if (!r->grid->device->missing) return TC_OK;
+    if (!r->missing) return TC_OK;
     return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
                          sizeof arguments / sizeof *arguments);
 }
@@ -297,6 +297,7 @@ static tc_status interval_begin(interval_run *r, tc_grid *grid, const tc_interva
         tc_extract_options how = {.struct_size = sizeof how, .isovalue = n == BOUND_LOW ? options->low : options->high};
         r->base[n] = slab_base(grid, &r->plan.tiles, inside[n], &how);
     }
+    r->missing = grid->device->missing;
     r->job.has_low = r->exists[BOUND_LOW], r->job.has_high = r->exists[BOUND_HIGH];
     r->job.high_isovalue64 = r->base[BOUND_HIGH].test.isovalue64;
     r->job.high_isovalue32 = r->base[BOUND_HIGH].test.isovalue32;
@@ -330,13 +331,13 @@ static void size_add(interval_size *sum, const interval_size *one) {
 static tc_status interval_slabs_count(interval_run *r, interval_size *size) {
     tc_status status = TC_OK;
     *size = (interval_size){{0}, 0};
-    for (uint32_t n = 0; n < r->plan.slab_count && !status; n++) {
+    for (uint32_t n = 0; n < r->plan.slab_count && r->missing == r->grid->device->missing && !status; n++) {
         status = interval_classify(r, n);
         if (!status) size_add(size, &r->size);
         if (!status)
             status = context_progress(r->context, "classify", r->share * (n + 1.0) / r->plan.slab_count);
     }
-    if (!status) r->grid->device->ranges_known = true;
+    if (!status && r->missing == r->grid->device->missing) r->grid->device->ranges_known = true;
     return status;
 }
 
@@ -349,10 +350,9 @@ static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_int
     *size = (interval_size){{0}, 0};
     if (!bounds_find(grid, options, inside, r->exists)) return TC_OK;
     if (!r->exists[BOUND_LOW] && !r->exists[BOUND_HIGH] && type_is_real(grid->type)) grid->device->missing = true;
-    const bool missing = grid->device->missing;
     tc_status status = interval_begin(r, grid, options, inside);
     if (!status) status = interval_slabs_count(r, size);
-    if (status || grid->device->missing == missing) return status;
+    if (status || grid->device->missing == r->missing) return status;
     interval_end(r, status);
     status = interval_begin(r, grid, options, inside);
     return status ? status : interval_slabs_count(r, size);

@@ -30,6 +30,7 @@ typedef struct interval_run {
     interval_plan plan;
     kernels kernels;
     bool exists[BOUND_COUNT];
+    bool missing; /* the kernels are those for missing samples */
     slab base[BOUND_COUNT];
     interval_buffers *buffers;
     double share;    /* of counting in the whole call, for progress */
