@@ -3,8 +3,8 @@
  *
  * The number of a vertex is that of kernel 2 (mesh.cl), of a sample within likewise: what bricks, rows and samples
  * before it have. For a row of cubes a table holds the words in which vertices are counted, for each place that owns
- * some: block, row of samples, type of edge. Tetrahedra come from the table of cases; runs of cubes that lie within whole
- * have numbers that rise by one from cube to cube.
+ * some: block, row of samples, type of edge. Tetrahedra come from the table of cases; runs of cubes that lie within
+ * whole have numbers that rise by one from cube to cube.
  */
 #ifndef INTERVAL_EMIT_CL
 #define INTERVAL_EMIT_CL
@@ -91,8 +91,8 @@ inline_always owner bound_owner(const slab *s, const bound *b, uint first, uint 
 
 /* Edges with a vertex that the samples of row n of a row of cubes own. In rows behind the first only those of types are
  * right that the cubes have. */
-inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], uint n, global const ulong *cells, uint y,
-                                      uint z, uint w) {
+inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], uint n, global const ulong *cells,
+                                      uint y, uint z, uint w) {
     const sample_rows none = rows_shifted(0, 0);
     const cube_rows r = cube_rows_of(s, y + (n & 1), z + (n >> 1), w, rows[n], n & 1 ? none : rows[n + 1 & 3],
                                      n >> 1 ? none : rows[n + 2 & 3], n ? none : rows[3]);

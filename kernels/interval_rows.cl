@@ -12,7 +12,7 @@
 typedef struct bound {
     global const ulong *words, *offsets;
     global const brick_state *bricks;
-    ulong fixed;    /* the words of all rows where there is no such bound */
+    ulong fixed; /* the words of all rows where there is no such bound */
     bool exists;
 } bound;
 
@@ -70,16 +70,16 @@ inline_always ulong cubes_present(const slab *s, global const ulong *cells, uint
 /* Samples of a row that a present cube has. */
 inline_always ulong samples_used(const slab *s, global const ulong *cells, uint y, uint z, uint w) {
 #if MISSING
-    return cells_before(s, cells, y, z, w) | cells_before(s, cells, y - 1, z, w) |
-           cells_before(s, cells, y, z - 1, w) | cells_before(s, cells, y - 1, z - 1, w);
+    return cells_before(s, cells, y, z, w) | cells_before(s, cells, y - 1, z, w) | cells_before(s, cells, y, z - 1, w) |
+           cells_before(s, cells, y - 1, z - 1, w);
 #else
     return ~0ul;
 #endif
 }
 
 /* Samples within of a row, which are vertices. */
-inline_always ulong samples_within(const slab *s, const bound *low, const bound *high, global const ulong *cells, uint y,
-                                   uint z, uint w) {
+inline_always ulong samples_within(const slab *s, const bound *low, const bound *high, global const ulong *cells,
+                                   uint y, uint z, uint w) {
     if (y >= s->ny || z >= s->z1) return 0;
     return bound_word(s, low, y, z, w) & ~bound_word(s, high, y, z, w) & word_valid(s, w) &
            samples_used(s, cells, y, z, w);

@@ -489,8 +489,8 @@ TC_API tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *o
  * above, so a tetrahedron of the grid has 81 cases. Vertices are the samples within, and the crossings of low and of
  * high, which are the vertices of these two surfaces as tc_extract makes them, to the bit and in their order. What is
  * within in a tetrahedron is a convex polyhedron. It is cut by cones from its first vertex over the faces without it,
- * and faces likewise, in one order of all vertices: samples by number; then crossings of low, then those of high, by the
- * lower and the higher sample of their edge. So neighbours agree on every face, and no points are added. */
+ * and faces likewise, in one order of all vertices: samples by number; then crossings of low, then those of high, by
+ * the lower and the higher sample of their edge. So neighbours agree on every face, and no points are added. */
 typedef struct tc_interval_options {
     size_t struct_size; /* set by tc_interval_options_init */
     double low, high;   /* low < high; -INFINITY or INFINITY, not both: there is no such bound */
@@ -498,7 +498,7 @@ typedef struct tc_interval_options {
 
 /* The sizes of an interval volume. Vertices are in three blocks: samples, crossings of low, crossings of high. */
 typedef struct tc_interval_counts {
-    size_t struct_size; /* set by the caller: sizeof(tc_interval_counts) */
+    size_t struct_size;                           /* set by the caller: sizeof(tc_interval_counts) */
     uint64_t sample_count, low_count, high_count; /* vertices in each block */
     uint64_t tetrahedron_count;
     uint64_t interval_bytes; /* of positions and tetrahedra */

@@ -25,10 +25,13 @@ void tc_interval_options_init(tc_interval_options *options) {
 
 static tc_status bounds_check(const tc_interval_options *o) {
     if (isnan(o->low) || isnan(o->high) || o->low == INFINITY || o->high == -INFINITY)
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "interval %g to %g: bounds are numbers, low may be -infinity and high "
-                                                  "infinity", o->low, o->high);
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "interval %g to %g: bounds are numbers, low may be -infinity and high "
+                               "infinity",
+                               o->low, o->high);
     if (isinf(o->low) && isinf(o->high))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "an interval without bounds is the whole grid: set low, high or both");
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "an interval without bounds is the whole grid: set low, high or both");
     if (o->low < o->high) return TC_OK;
     return (tc_status)fail(TC_ERROR_ARGUMENT, "interval %g to %g: low has to be less than high", o->low, o->high);
 }
@@ -52,8 +55,10 @@ static tc_status engine_check(const tc_grid *grid) {
         return (tc_status)fail(TC_ERROR_DEVICE, "there are no kernels for interval volumes of grids of tetrahedra: use "
                                                 "the reference engine");
     if (device_makes_vertices(context, grid->type)) return TC_OK;
-    return (tc_status)fail(TC_ERROR_DEVICE, "%s has no fp64: interval volumes of %s samples are made by the reference "
-                                            "engine", context->info.name, tc_type_name(grid->type));
+    return (tc_status)fail(TC_ERROR_DEVICE,
+                           "%s has no fp64: interval volumes of %s samples are made by the reference "
+                           "engine",
+                           context->info.name, tc_type_name(grid->type));
 }
 
 /* Tries the kernels of the grid, where the context's options say so and they have not passed. */
@@ -67,8 +72,8 @@ static tc_status kernels_try(const tc_grid *grid) {
 }
 
 /* By kernels that are vetted and tried first; again where they were exchanged on the way. interval NULL: counts. */
-static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size, double *classify_ms,
-                             tc_interval *interval) {
+static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+                             double *classify_ms, tc_interval *interval) {
     tc_status status;
     do {
         status = call_vet(grid->context, structured_interval_kind(grid));
@@ -85,7 +90,8 @@ static tc_status device_make(tc_grid *grid, const tc_interval_options *options, 
 /* Without tetrahedra there is nothing within. */
 static bool grid_is_empty(const tc_grid *grid) { return grid->complex && !grid->complex->tetrahedron_count; }
 
-static tc_status size_find(tc_grid *grid, const tc_interval_options *options, interval_size *size, double *classify_ms) {
+static tc_status size_find(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+                           double *classify_ms) {
     const double start = clock_ms();
     tc_status status = engine_check(grid);
     *size = (interval_size){{0}, 0};

@@ -77,8 +77,9 @@ static int check_files(const options *o, const dataset *d) {
 
 static int check_usage(volume_job *j) {
     if (!j->o->range_count)
-        return fail(STATUS_USAGE, "isovolume needs --range LO,HI, the values between which the volume lies; 'tetracubes "
-                                  "info INPUT' tells the range of the samples");
+        return fail(STATUS_USAGE,
+                    "isovolume needs --range LO,HI, the values between which the volume lies; 'tetracubes "
+                    "info INPUT' tells the range of the samples");
     int status = input_request(j->o, &j->request);
     return status ? status : check_files(j->o, NULL);
 }
@@ -178,8 +179,8 @@ static int make_volume(volume_job *j, volume_report *r) {
     joined_volume v = {0};
     tc_interval_options_init(&how);
     how.low = r->range->low, how.high = r->range->high;
-    int status = j->o->count ? joined_volume_count(&j->main, &how, r)
-                             : joined_volume_make(&j->main, &how, &j->carried, &v);
+    int status =
+        j->o->count ? joined_volume_count(&j->main, &how, r) : joined_volume_make(&j->main, &how, &j->carried, &v);
     if (status) {
         const typed_range *range = r->range;
         joined_volume_release(&v);

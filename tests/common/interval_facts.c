@@ -51,7 +51,8 @@ static void faces_judge(const keyed_face *faces, uint64_t count, interval_facts 
 /* ---------------------------------------------------------------------------------------------------------- shapes */
 
 static void difference(const float *points, uint32_t from, uint32_t to, double out[3]) {
-    for (int n = 0; n < 3; n++) out[n] = (double)points[3 * (uint64_t)to + (uint64_t)n] - (double)points[3 * (uint64_t)from + (uint64_t)n];
+    for (int n = 0; n < 3; n++)
+        out[n] = (double)points[3 * (uint64_t)to + (uint64_t)n] - (double)points[3 * (uint64_t)from + (uint64_t)n];
 }
 
 static double triple(const double u[3], const double v[3], const double w[3]) {

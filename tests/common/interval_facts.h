@@ -17,9 +17,9 @@ typedef struct outer_face {
 typedef struct interval_facts {
     uint64_t bad_vertices; /* out of range, or twice in a tetrahedron */
     uint64_t unused_vertices;
-    uint64_t bad_faces;    /* of three tetrahedra or more, or passed by two in the same direction */
-    double volume, least;  /* sum, and that of the most negative or smallest tetrahedron */
-    outer_face *outer;     /* faces that one tetrahedron has; from malloc */
+    uint64_t bad_faces;   /* of three tetrahedra or more, or passed by two in the same direction */
+    double volume, least; /* sum, and that of the most negative or smallest tetrahedron */
+    outer_face *outer;    /* faces that one tetrahedron has; from malloc */
     uint64_t outer_count;
 } interval_facts;
 

@@ -188,7 +188,8 @@ static const double case_values[3] = {-1.25, 0.5, 2.75};
 
 /* Two tetrahedra with a common face; corner n of the pair has number order[n]. */
 static void pair_try(const uint32_t order[5], int digits) {
-    static const float places[5][3] = {{0, 0, 0}, {1, 0.125f, 0}, {0.25f, 1, 0}, {0.375f, 0.25f, 1}, {0.25f, 0.375f, -1}};
+    static const float places[5][3] = {
+        {0, 0, 0}, {1, 0.125f, 0}, {0.25f, 1, 0}, {0.375f, 0.25f, 1}, {0.25f, 0.375f, -1}};
     const uint32_t tetrahedra[8] = {order[0], order[1], order[2], order[3], order[0], order[2], order[1], order[4]};
     float at[15], samples[5];
     tc_tetrahedra_grid_options o;
@@ -240,12 +241,12 @@ static void samples_choose(tc_grid_options *g) {
                 sample_set(memory, g->type, n, value);
                 for (int r = 0; r < 3; r++) {
                     const double *m = g->matrix[r];
-                    points[3 * n + r] =
-                        kind == 0 ? (float)(m[0] * (double)(p[0] + g->first_index[0]) +
-                                            m[1] * (double)(p[1] + g->first_index[1]) +
-                                            m[2] * (double)(p[2] + g->first_index[2]) + m[3])
-                        : kind == 1 ? axes[r][p[r]]
-                                    : (float)((r == 0 ? -1 : 1) * ((double)p[r] + random_between(-0.1, 0.1)));
+                    points[3 * n + r] = kind == 0 ? (float)(m[0] * (double)(p[0] + g->first_index[0]) +
+                                                            m[1] * (double)(p[1] + g->first_index[1]) +
+                                                            m[2] * (double)(p[2] + g->first_index[2]) + m[3])
+                                        : kind == 1
+                                            ? axes[r][p[r]]
+                                            : (float)((r == 0 ? -1 : 1) * ((double)p[r] + random_between(-0.1, 0.1)));
                 }
             }
     if (kind == 1)
@@ -268,7 +269,8 @@ static void parts_remove(tc_grid_options *g) {
 
 static void grid_choose(tc_grid_options *g) {
     static const double sheared[3][4] = {{-0.75, 0.125, 0, 1}, {0, 1.5, 0.25, -3}, {0.125, 0, 0.75, 0.5}};
-    static const int64_t xs[] = {2, 3, 5, 9, 63, 64, 65, 66, 130}, ys[] = {2, 3, 8, 9, 10, 17}, zs[] = {2, 3, 4, 5, 6, 9};
+    static const int64_t xs[] = {2, 3, 5, 9, 63, 64, 65, 66, 130}, ys[] = {2, 3, 8, 9, 10, 17},
+                         zs[] = {2, 3, 4, 5, 6, 9};
     tc_grid_options_init(g);
     g->dims[0] = xs[random_below(random_below(4) ? 4 : 9)], g->dims[1] = ys[random_below(random_below(4) ? 3 : 6)];
     g->dims[2] = zs[random_below(6)];
@@ -311,8 +313,9 @@ static void run(uint64_t seed) {
     snprintf(name, sizeof name, "seed %" PRIu64 ": %lldx%lldx%lld %s, %g to %g", seed, (long long)g.dims[0],
              (long long)g.dims[1], (long long)g.dims[2], tc_type_name(g.type), how.low, how.high);
     EXPECT(!tc_tetrahedralize_grid(&g, &t), "%s: %s", name, tc_message());
-    subject s = {name,   NULL,         points,
-                 memory, g.type,       (uint64_t)(g.dims[0] * g.dims[1] * g.dims[2]),
+    subject s = {name,         NULL,
+                 points,       memory,
+                 g.type,       (uint64_t)(g.dims[0] * g.dims[1] * g.dims[2]),
                  t.tetrahedra, t.tetrahedron_count};
     EXPECT(!tc_grid_create(context, &g, &s.grid), "%s: %s", name, tc_message());
     const double step = 2e-7 * (double)(g.dims[0] + g.dims[1] + g.dims[2] + 10);
@@ -356,7 +359,8 @@ static void test_faults(void) {
         EXPECT(sound == (fault == 0), "fault %d of tetrahedra is not seen", fault);
         free(f.outer);
     }
-    const outer_face a[2] = {{{0, 1, 2}}, {{0, 2, 3}}}, b[2] = {{{1, 2, 3}}, {{1, 3, 0}}}, c[2] = {{{0, 1, 2}}, {{0, 3, 2}}};
+    const outer_face a[2] = {{{0, 1, 2}}, {{0, 2, 3}}}, b[2] = {{{1, 2, 3}}, {{1, 3, 0}}},
+                     c[2] = {{{0, 1, 2}}, {{0, 3, 2}}};
     EXPECT(same_sheet(a, b, 2, false) && !same_sheet(a, b, 2, true) && !same_sheet(a, c, 2, false),
            "sheets that differ are not told apart");
 }

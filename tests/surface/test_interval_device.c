@@ -1,13 +1,14 @@
 /*
  * test_interval_device.c - interval volumes by the kernels are those of the reference, byte for byte
  *
- * Random grids of sizes around words, bricks and tiles: noise, smooth fields, ties, samples all within and none; samples
- * and cells missing here and there; uniform, rectilinear and curvilinear, mirrored, from odd indices on. Of each grid
- * several ranges, so that later ones go by the ranges of bricks: counted and extracted; in place; copied, with every sum
- * of the scan made again; in slabs and steps, as little memory as goes. test_interval looks at what the reference makes.
+ * Random grids of sizes around words, bricks and tiles: noise, smooth fields, ties, samples all within and none;
+ * samples and cells missing here and there; uniform, rectilinear and curvilinear, mirrored, from odd indices on. Of
+ * each grid several ranges, so that later ones go by the ranges of bricks: counted and extracted; in place; copied,
+ * with every sum of the scan made again; in slabs and steps, as little memory as goes. test_interval looks at what the
+ * reference makes.
  *
- * Usage: test_interval_device [alone|groups [SEED [COUNT]]]: a failure names the seed of its grid, `test_interval_device
- * groups SEED 1` repeats it.
+ * Usage: test_interval_device [alone|groups [SEED [COUNT]]]: a failure names the seed of its grid,
+ * `test_interval_device groups SEED 1` repeats it.
  */
 #include "engines.h"
 #include "random.h"
@@ -256,7 +257,8 @@ int main(int argc, char **argv) {
         tc_interval_destroy(engines[n].interval);
         tc_context_destroy(engines[n].context);
     }
-    printf("%" PRIu64 " volumes, %" PRIu64 " grids with parts missing, %" PRIu64 " bounded, %" PRIu64 " of them in slabs\n",
+    printf("%" PRIu64 " volumes, %" PRIu64 " grids with parts missing, %" PRIu64 " bounded, %" PRIu64
+           " of them in slabs\n",
            tally.volumes, tally.missing, tally.bounded, tally.slabs);
     if (argc < 3 && !getenv("TEST_ONLY"))
         EXPECT(tally.missing && tally.slabs, "no grid with parts missing, or none in slabs");

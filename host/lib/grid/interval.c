@@ -19,10 +19,11 @@ uint64_t interval_bytes(const interval_size *size) {
 tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
     const uint64_t vertices = interval_first(size, BLOCK_COUNT);
     if (vertices > UINT32_MAX)
-        return (tc_status)fail(TC_ERROR_LIMIT,
-                               "the interval volume has %llu vertices, and indices of 32 bits reach %lu: take a narrower "
-                               "interval, or parts of the grid",
-                               (unsigned long long)vertices, (unsigned long)UINT32_MAX);
+        return (tc_status)fail(
+            TC_ERROR_LIMIT,
+            "the interval volume has %llu vertices, and indices of 32 bits reach %lu: take a narrower "
+            "interval, or parts of the grid",
+            (unsigned long long)vertices, (unsigned long)UINT32_MAX);
     tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float));
     if (!status) status = host_block_reserve(&interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
     if (!status) interval->size = *size;

@@ -156,7 +156,8 @@ static void normal_at(const reference *r, const int64_t a[3], const int64_t b[3]
         normal_f32(r, a, b, t, out);
 }
 
-static channel_make *const makes[CHANNEL_COUNT] = {[CHANNEL_POSITIONS] = reference_position, [CHANNEL_NORMALS] = normal_at};
+static channel_make *const makes[CHANNEL_COUNT] = {
+    [CHANNEL_POSITIONS] = reference_position, [CHANNEL_NORMALS] = normal_at};
 
 /* Not inlined, as few edges have a vertex: the loop over all edges keeps its registers. */
 __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {

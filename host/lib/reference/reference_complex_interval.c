@@ -82,8 +82,8 @@ static tc_status tetrahedron_run(interval_run *v, uint64_t tetrahedron) {
         sorted[n] = points[n];
     }
     if (!points_where(v, points, where)) return TC_OK;
-    tc_status status =
-        reference_complex_vertices(&v->bounds[BOUND_LOW], points, pattern_from(where, SAMPLE_WITHIN), numbers[BOUND_LOW]);
+    tc_status status = reference_complex_vertices(&v->bounds[BOUND_LOW], points, pattern_from(where, SAMPLE_WITHIN),
+                                                  numbers[BOUND_LOW]);
     if (!status)
         status = reference_complex_vertices(&v->bounds[BOUND_HIGH], points, pattern_from(where, SAMPLE_ABOVE),
                                             numbers[BOUND_HIGH]);
@@ -131,8 +131,7 @@ static tc_status run_begin(interval_run *v, const tc_grid *grid, const tc_interv
         status = reference_complex_begin(&v->bounds[n], grid, &surface);
     }
     v->point_numbers = malloc((size_t)(points + 1) * sizeof *v->point_numbers);
-    if (!status && !v->point_numbers)
-        status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the numbers of samples");
+    if (!status && !v->point_numbers) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the numbers of samples");
     for (uint64_t n = 0; n < points && !status; n++) v->point_numbers[n] = NO_NUMBER;
     return status;
 }
@@ -145,8 +144,8 @@ static void run_end(interval_run *v) {
 static tc_status run_count(interval_run *v, double share, interval_size *size) {
     tc_status status = tetrahedra_run(v, "classify", 0, share);
     if (!status) samples_number(v);
-    *size = (interval_size){
-        {v->sample_count, v->bounds[BOUND_LOW].vertex_count, v->bounds[BOUND_HIGH].vertex_count}, v->tetrahedron_count};
+    *size = (interval_size){{v->sample_count, v->bounds[BOUND_LOW].vertex_count, v->bounds[BOUND_HIGH].vertex_count},
+                            v->tetrahedron_count};
     return status;
 }
 

@@ -16,10 +16,10 @@
 enum { BOUND_LOW, BOUND_HIGH, BOUND_COUNT };
 
 typedef struct interval_run {
-    reference bounds[BOUND_COUNT];   /* the surfaces; their signs tell where a sample is */
-    tc_mesh surfaces[BOUND_COUNT];   /* their vertices' place in the interval volume */
-    uint32_t first[BOUND_COUNT];     /* number of the first vertex of each */
-    uint32_t *sample_ids[2];         /* of samples within, for even and odd layers */
+    reference bounds[BOUND_COUNT]; /* the surfaces; their signs tell where a sample is */
+    tc_mesh surfaces[BOUND_COUNT]; /* their vertices' place in the interval volume */
+    uint32_t first[BOUND_COUNT];   /* number of the first vertex of each */
+    uint32_t *sample_ids[2];       /* of samples within, for even and odd layers */
     interval_case cases[INTERVAL_CASES];
     ordered_tetrahedron tetrahedra[2][TETRAHEDRA_PER_CUBE];
     tc_interval *interval; /* NULL: count only */
@@ -72,16 +72,15 @@ static void part_emit(interval_run *v, const int64_t cube[3], const ordered_tetr
     const uint64_t n = v->tetrahedron_count++;
     if (!v->interval || n >= v->interval->size.tetrahedra) return;
     uint32_t *out = (uint32_t *)v->interval->tetrahedra.memory + 4 * n;
-    for (unsigned m = 0; m < 4; m++)
-        out[m] = vertex_number(v, cube, t->corners, part[is_odd && m > 1 ? 5 - m : m]);
+    for (unsigned m = 0; m < 4; m++) out[m] = vertex_number(v, cube, t->corners, part[is_odd && m > 1 ? 5 - m : m]);
 }
 
 static void tetrahedron_emit(interval_run *v, const int64_t cube[3], const ordered_tetrahedron *t) {
     unsigned digits = 0;
     for (unsigned n = 4; n-- > 0;) {
         const unsigned c = t->corners[n];
-        digits = 3 * digits +
-                 sample_where(v, (int64_t[3]){cube[0] + (c & 1), cube[1] + (c >> 1 & 1), cube[2] + (c >> 2)});
+        digits =
+            3 * digits + sample_where(v, (int64_t[3]){cube[0] + (c & 1), cube[1] + (c >> 1 & 1), cube[2] + (c >> 2)});
     }
     const interval_case *found = &v->cases[digits];
     const bool is_odd = t->is_odd != v->bounds[BOUND_LOW].grid->mirrored;
@@ -93,7 +92,8 @@ static void row_tetrahedra(interval_run *v, int64_t x0, int64_t x1, int64_t y, i
     for (int64_t x = x0; x < x1; x++) {
         const int64_t cube[3] = {x, y, z};
         if (!cube_present(r, cube)) continue;
-        for (unsigned n = 0; n < TETRAHEDRA_PER_CUBE; n++) tetrahedron_emit(v, cube, &v->tetrahedra[cube_parity(r, cube)][n]);
+        for (unsigned n = 0; n < TETRAHEDRA_PER_CUBE; n++)
+            tetrahedron_emit(v, cube, &v->tetrahedra[cube_parity(r, cube)][n]);
     }
 }
 
@@ -156,8 +156,8 @@ static void run_end(interval_run *v) {
 }
 
 static interval_size run_size(const interval_run *v) {
-    return (interval_size){
-        {v->sample_count, v->bounds[BOUND_LOW].vertex_count, v->bounds[BOUND_HIGH].vertex_count}, v->tetrahedron_count};
+    return (interval_size){{v->sample_count, v->bounds[BOUND_LOW].vertex_count, v->bounds[BOUND_HIGH].vertex_count},
+                           v->tetrahedron_count};
 }
 
 /* Room for numbers, and where vertices go. */

@@ -133,7 +133,8 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
         arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
         if (bytes > *largest) *largest = bytes;
     }
-    uint64_t cells = grid_can_miss_samples(grid) ? 8 * plan_cell_planes(plan, grid) * plan_words_per_plane(plan, grid) : 0;
+    uint64_t cells =
+        grid_can_miss_samples(grid) ? 8 * plan_cell_planes(plan, grid) * plan_words_per_plane(plan, grid) : 0;
     uint64_t word_window = signs + words + words / 4 + (sizeof(brick_state) + 4) * bricks;
     return arrays * windows + axes_bytes(grid) + word_window * (plan->words_whole ? 1 : windows) + cells + ranges +
            state + scratch + fixed * windows;

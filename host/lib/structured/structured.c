@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside,
-                    const tc_extract_options *options) {
+slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside, const tc_extract_options *options) {
     slab s = {.test = isovalue_test_of(inside, options->isovalue),
               .snapping = {.threshold = (float)options->snap},
               .arrays = {.has_blanked_samples = grid->blanked_samples != NULL,

@@ -28,10 +28,10 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     tc_status status = TC_OK;
     for (int n = 0; n < CHANNEL_COUNT && !status; n++)
         if (channel_in(r->made, n))
-            status =
-                mesh_part_open(r->context, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset,
-                               mesh_channels[n].name);
-    if (!status) status = mesh_part_open(r->context, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
+            status = mesh_part_open(r->context, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset,
+                                    mesh_channels[n].name);
+    if (!status)
+        status = mesh_part_open(r->context, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
 

@@ -81,8 +81,7 @@ static void ordered_table(const interval_case cases[INTERVAL_CASES], ordered_tet
                           uint8_t *digits, uint8_t *entries) {
     const bool is_odd = t.is_odd != mirrored;
     for (unsigned pattern = 0; pattern < 256; pattern++)
-        for (unsigned n = 4; n-- > 0;)
-            digits[pattern] = (uint8_t)(3 * digits[pattern] + (pattern >> t.corners[n] & 1));
+        for (unsigned n = 4; n-- > 0;) digits[pattern] = (uint8_t)(3 * digits[pattern] + (pattern >> t.corners[n] & 1));
     for (unsigned n = 0; n < INTERVAL_CASES; n++, entries += INTERVAL_ENTRY_BYTES) {
         entries[0] = cases[n].count;
         for (unsigned m = 0; m < 4u * cases[n].count; m++) {
@@ -93,7 +92,8 @@ static void ordered_table(const interval_case cases[INTERVAL_CASES], ordered_tet
 }
 
 static tc_status tables_provide(interval_run *r) {
-    _Static_assert((int)INTERVAL_CASE_COUNT == (int)INTERVAL_CASES && 1 + 4 * INTERVAL_PARTS_MOST <= INTERVAL_ENTRY_BYTES,
+    _Static_assert((int)INTERVAL_CASE_COUNT == (int)INTERVAL_CASES &&
+                       1 + 4 * INTERVAL_PARTS_MOST <= INTERVAL_ENTRY_BYTES,
                    "kernels read them so");
     interval_case cases[INTERVAL_CASES];
     uint32_t counts[INTERVAL_COUNTS] = {0};
@@ -153,8 +153,12 @@ static tc_status cells_mark(interval_run *r) {
     const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z;
     const cl_mem samples = array_memory(r, ARRAY_SAMPLES), blanked = array_memory(r, ARRAY_BLANKED_SAMPLES),
                  blanked_cells = array_memory(r, ARRAY_BLANKED_CELLS);
-    const kernel_argument arguments[] = {ARGUMENT(*s),      ARGUMENT(samples), ARGUMENT(blanked), ARGUMENT(blanked_cells),
-                                         ARGUMENT(r->buffers->cells.memory), ARGUMENT(planes)};
+    const kernel_argument arguments[] = {ARGUMENT(*s),
+                                         ARGUMENT(samples),
+                                         ARGUMENT(blanked),
+                                         ARGUMENT(blanked_cells),
+                                         ARGUMENT(r->buffers->cells.memory),
+                                         ARGUMENT(planes)};
     if (!r->missing) return TC_OK;
     return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
                          sizeof arguments / sizeof *arguments);
@@ -166,13 +170,15 @@ static tc_status bound_classify(interval_run *r, int bound) {
     interval_buffers *b = r->buffers;
     word_buffers *w = &b->words[bound];
     slab s = r->window;
-    const cl_uint offset = (cl_uint)((uint64_t)bound * (state_bytes(r) / 4)), scratch_words = r->plan.tiles.scratch_words;
+    const cl_uint offset = (cl_uint)((uint64_t)bound * (state_bytes(r) / 4)),
+                  scratch_words = r->plan.tiles.scratch_words;
     const cl_mem samples = array_memory(r, ARRAY_SAMPLES);
     if (!r->exists[bound]) return TC_OK;
     s.test = r->base[bound].test;
     s.results.head_offset = offset;
     s.results.tiles_offset = offset + STATE_WORDS;
-    s.results.ranges_known = r->grid->device->ranges_known || (bound == BOUND_HIGH && r->exists[BOUND_LOW] && s.z1 == s.nz);
+    s.results.ranges_known =
+        r->grid->device->ranges_known || (bound == BOUND_HIGH && r->exists[BOUND_LOW] && s.z1 == s.nz);
     const kernel_argument arguments[] = {ARGUMENT(s),
                                          ARGUMENT(samples),
                                          ARGUMENT(b->cells.memory),
@@ -197,11 +203,11 @@ static const word_buffers *bound_words(const interval_run *r, int bound) {
 static tc_status window_count(interval_run *r) {
     interval_buffers *b = r->buffers;
     const word_buffers *low = bound_words(r, BOUND_LOW), *high = bound_words(r, BOUND_HIGH);
-    const kernel_argument arguments[] = {ARGUMENT(r->window),          ARGUMENT(r->job),
-                                         ARGUMENT(b->cells.memory),    ARGUMENT(low->words.memory),
-                                         ARGUMENT(low->bricks.memory), ARGUMENT(high->words.memory),
+    const kernel_argument arguments[] = {ARGUMENT(r->window),           ARGUMENT(r->job),
+                                         ARGUMENT(b->cells.memory),     ARGUMENT(low->words.memory),
+                                         ARGUMENT(low->bricks.memory),  ARGUMENT(high->words.memory),
                                          ARGUMENT(high->bricks.memory), ARGUMENT(b->counts.memory),
-                                         ARGUMENT(b->rows.memory),     ARGUMENT(b->bricks.memory)};
+                                         ARGUMENT(b->rows.memory),      ARGUMENT(b->bricks.memory)};
     return kernel_launch(r->context, r->kernels.interval_count, "kernel interval_count", arguments,
                          sizeof arguments / sizeof *arguments);
 }
@@ -286,7 +292,7 @@ static tc_status host_reserve(interval_run *r) {
 }
 
 static tc_status interval_begin(interval_run *r, tc_grid *grid, const tc_interval_options *options,
-                           const inside_range inside[BOUND_COUNT]) {
+                                const inside_range inside[BOUND_COUNT]) {
     tc_context *context = grid->context;
     tc_status status = TC_OK;
     cl->Finish(context->queue);
@@ -334,8 +340,7 @@ static tc_status interval_slabs_count(interval_run *r, interval_size *size) {
     for (uint32_t n = 0; n < r->plan.slab_count && r->missing == r->grid->device->missing && !status; n++) {
         status = interval_classify(r, n);
         if (!status) size_add(size, &r->size);
-        if (!status)
-            status = context_progress(r->context, "classify", r->share * (n + 1.0) / r->plan.slab_count);
+        if (!status) status = context_progress(r->context, "classify", r->share * (n + 1.0) / r->plan.slab_count);
     }
     if (!status && r->missing == r->grid->device->missing) r->grid->device->ranges_known = true;
     return status;
@@ -344,9 +349,13 @@ static tc_status interval_slabs_count(interval_run *r, interval_size *size) {
 /* As structured.c: where kernel 1 meets a NaN or infinity in a grid not known to miss samples, all is classified again,
  * with missing cells. Without any kernel 1 a type that has such values is taken to have them. */
 static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_interval_options *options, double share,
-                           interval_size *size) {
+                                    interval_size *size) {
     inside_range inside[BOUND_COUNT] = {{0}};
-    *r = (interval_run){.grid = grid, .context = grid->context, .buffers = &grid->context->work.interval, .share = share, .start_ms = clock_ms()};
+    *r = (interval_run){.grid = grid,
+                        .context = grid->context,
+                        .buffers = &grid->context->work.interval,
+                        .share = share,
+                        .start_ms = clock_ms()};
     *size = (interval_size){{0}, 0};
     if (!bounds_find(grid, options, inside, r->exists)) return TC_OK;
     if (!r->exists[BOUND_LOW] && !r->exists[BOUND_HIGH] && type_is_real(grid->type)) grid->device->missing = true;

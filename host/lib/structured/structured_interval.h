@@ -41,7 +41,7 @@ typedef struct interval_run {
     interval_job job;
     interval_brick *bricks; /* sums of each brick, then of those before it */
     brick_state *states[BOUND_COUNT];
-    interval_size size; /* of the slab */
+    interval_size size;   /* of the slab */
     interval_size before; /* it */
 } interval_run;
 

@@ -31,8 +31,7 @@ static brick_sums *sums_make(const interval_run *r) {
     const uint32_t bricks = r->job.own_bricks;
     brick_sums *sums = malloc((bricks + (size_t)1) * sizeof *sums);
     if (!sums) return NULL;
-    for (uint32_t n = 0; n < bricks; n++)
-        sums[n] = (brick_sums){{r->bricks[n].samples, 0, 0, r->bricks[n].tetrahedra}};
+    for (uint32_t n = 0; n < bricks; n++) sums[n] = (brick_sums){{r->bricks[n].samples, 0, 0, r->bricks[n].tetrahedra}};
     sums[bricks] = (brick_sums){{r->size.vertices[0], r->size.vertices[1], r->size.vertices[2], r->size.tetrahedra}};
     for (int bound = 0; bound < BOUND_COUNT; bound++) bound_sums(r, bound, sums);
     return sums;
@@ -104,8 +103,8 @@ static tc_status step_launch(interval_run *r) {
     const device_buffer *coordinates =
         r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : &arrays[ARRAY_POINTS];
     const cl_uint zero = 0;
-    cl_int error = cl->EnqueueFillBuffer(r->context->queue, b->ticket.memory, &zero, sizeof zero, 0, sizeof zero, 0,
-                                         NULL, NULL);
+    cl_int error =
+        cl->EnqueueFillBuffer(r->context->queue, b->ticket.memory, &zero, sizeof zero, 0, sizeof zero, 0, NULL, NULL);
     if (error) return context_fail(r->context, "clearing a ticket", error);
     const kernel_argument arguments[] = {ARGUMENT(r->window),
                                          ARGUMENT(r->job),

@@ -35,10 +35,10 @@ static uint64_t window_bytes(const tc_context *context, const tc_grid *grid, int
     slab_plan *tiles = &plan->tiles;
     tiles->slab_layers = layers;
     slab_plan_tiles(context, grid, tiles);
-    const uint64_t bricks = layers * plan_bricks_per_layer(tiles), words = 8ull * BRICK_WORDS * (bricks + UNIFORM_BRICKS);
+    const uint64_t bricks = layers * plan_bricks_per_layer(tiles),
+                   words = 8ull * BRICK_WORDS * (bricks + UNIFORM_BRICKS);
     const uint64_t planes = least_u64(layers * (uint64_t)BRICK_PLANES + 3, (uint64_t)grid->dims[2]);
-    const uint64_t cells =
-        grid_can_miss_samples(grid) ? 8 * (planes + 2) * plan_words_per_plane(tiles, grid) : 0;
+    const uint64_t cells = grid_can_miss_samples(grid) ? 8 * (planes + 2) * plan_words_per_plane(tiles, grid) : 0;
     uint64_t bytes = BOUND_COUNT * (2 * words + words / 4 + (sizeof(brick_state) + 4) * bricks) + cells;
     bytes += bricks * (4ull * BRICK_WORDS + sizeof(interval_brick)) + INTERVAL_TABLE_BYTES;
     bytes += BOUND_COUNT * 4ull * (STATE_WORDS + (uint64_t)TILE_WORDS * tiles->slab_tiles);
@@ -102,15 +102,14 @@ tc_status interval_plan_make(const tc_context *context, const tc_grid *grid, int
     const uint64_t limit = slab_samples_most((plan_needs){0}) / layer_samples, budget = context_budget(context);
     const uint64_t taken = context->device_bytes, left = budget > taken ? budget - taken : 0;
     uint64_t largest;
-    *plan = (interval_plan){.tiles = grid->device->plans[0][0], .samples_whole = grid->device->plans[0][0].samples_whole};
+    *plan =
+        (interval_plan){.tiles = grid->device->plans[0][0], .samples_whole = grid->device->plans[0][0].samples_whole};
     const uint32_t layers = plan->tiles.layer_count, least = layers > 1 ? 2 : 1;
     if (limit < least)
-        return (tc_status)fail(TC_ERROR_LIMIT,
-                               "a plane of %lld x %lld samples is too large: eight planes may have %llu samples",
-                               (long long)grid->dims[0], (long long)grid->dims[1],
-                               (unsigned long long)slab_samples_most((plan_needs){0}));
-    const uint32_t window =
-        layers_fit(context, grid, plan, least, (uint32_t)least_u64(limit, layers), left);
+        return (tc_status)fail(
+            TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: eight planes may have %llu samples",
+            (long long)grid->dims[0], (long long)grid->dims[1], (unsigned long long)slab_samples_most((plan_needs){0}));
+    const uint32_t window = layers_fit(context, grid, plan, least, (uint32_t)least_u64(limit, layers), left);
     if (!window) return plan_refuse(context, grid, plan, least, taken);
     plan->slab_layers = window == layers ? layers : window - 1;
     plan->slab_count = (layers + plan->slab_layers - 1) / plan->slab_layers;

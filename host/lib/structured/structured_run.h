@@ -105,8 +105,8 @@ void run_end(run *r, tc_status status);
 /* The fields that all slabs of a plan share. */
 slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside, const tc_extract_options *options);
 
-/* Makes planes z0 <= z < z1 of an array available, in a buffer of `room` bytes: in place where the device can, else by a
- * copy, only enqueued. */
+/* Makes planes z0 <= z < z1 of an array available, in a buffer of `room` bytes: in place where the device can, else by
+ * a copy, only enqueued. */
 tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queue, device_buffer *buffer, int array,
                              uint64_t z0, uint64_t z1);
 

@@ -149,8 +149,7 @@ static const effect table[] = {
     {MAKES, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
      "--verify compares with the reference engine: it proves nothing about that engine itself; leave out --verify or "
      "--engine"},
-    {MAKES, "--device", BEFORE_READING, has_no_device, TOLD,
-     "--device has no effect with --engine reference"},
+    {MAKES, "--device", BEFORE_READING, has_no_device, TOLD, "--device has no effect with --engine reference"},
     {COMMAND_ISOVOLUME, "--max-memory", BEFORE_READING, has_no_device, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device"},
     {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device_nor_stream, TOLD,
@@ -167,8 +166,7 @@ static const effect table[] = {
 
     {TAKES_PARTS, "--roi", BEFORE_READING, has_world_range, REFUSED,
      "--roi and --roi-world both choose a region: leave one out"},
-    {TAKES_PARTS, "--step", BEFORE_READING, is_everything, TOLD,
-     "--step 1 takes every sample: it has no effect"},
+    {TAKES_PARTS, "--step", BEFORE_READING, is_everything, TOLD, "--step 1 takes every sample: it has no effect"},
 
     {COMMAND_SELFTEST, "--timeout", BEFORE_READING, has_no_time, REFUSED,
      "--timeout 0 leaves no time for a trial; leave it out for no limit"},
@@ -178,8 +176,7 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
      "is unstructured: --method snap is for structured grids only"},
     {TAKES_PARTS, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
-    {TAKES_PARTS, "--roi-world", AFTER_READING, has_cells, REFUSED,
-     "is unstructured: --roi-world" NOT_GRID},
+    {TAKES_PARTS, "--roi-world", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi-world" NOT_GRID},
     {TAKES_PARTS, "--step", AFTER_READING, has_cells, REFUSED, "is unstructured: --step" NOT_GRID},
     {TAKES_PARTS, "--mask", AFTER_READING, has_cells, REFUSED, "is unstructured: --mask" NOT_GRID},
     {MAKES | COMMAND_TETRAHEDRALIZE, "--skip-unsupported", AFTER_READING, has_no_cells, TOLD,

@@ -54,8 +54,7 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
         value = argv[++*at];
     }
     const uint64_t bit = (uint64_t)1 << (spec - option_table);
-    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES &&
-        spec->kind != VALUE_INTERVALS)
+    if (o->given & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES && spec->kind != VALUE_INTERVALS)
         return fail(STATUS_USAGE, "%s is given twice: leave one out", spec->name);
     o->given |= bit;
     return parse_value(spec, value, o);

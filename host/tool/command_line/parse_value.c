@@ -74,8 +74,10 @@ static int append_range(const char *text, options *o) {
                          take_end(text, (size_t)(comma - text), -(double)INFINITY, &fresh.low) &&
                          take_end(comma + 1, strlen(comma + 1), (double)INFINITY, &fresh.high);
     if (!is_range || (isinf(fresh.low) && isinf(fresh.high)))
-        return fail(STATUS_USAGE, "--range: '%.40s' is not two numbers with a comma between, as in 10,20; one may be left "
-                                  "out, as in 10, or ,20", text);
+        return fail(STATUS_USAGE,
+                    "--range: '%.40s' is not two numbers with a comma between, as in 10,20; one may be left "
+                    "out, as in 10, or ,20",
+                    text);
     if (!(fresh.low < fresh.high))
         return fail(STATUS_USAGE, "--range: '%s': the first number has to be less than the second", text);
     strcpy(fresh.text, text);

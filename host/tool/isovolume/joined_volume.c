@@ -152,8 +152,7 @@ int joined_volume_measure(const joined_volume *v, const carried_fields *carried,
     double *integrals = report->integrals;
     int status = tetrahedra_integrate(&view, NULL, 0, &report->volume, NULL);
     for (int n = 0; n < carried->count && !status; integrals += carried->from[n++].components)
-        status =
-            tetrahedra_integrate(&view, v->values[n], carried->from[n].components, &report->volume, integrals);
+        status = tetrahedra_integrate(&view, v->values[n], carried->from[n].components, &report->volume, integrals);
     return status;
 }
 
@@ -186,7 +185,8 @@ static double *world_points(const joined_volume *v, const engine *e, int *status
     for (int n = 0; n < v->block_count && !*status; n++) {
         tc_interval_data one;
         *status = block_get(v, n, &one);
-        for (uint64_t m = 0; m < 3 * one.vertex_count && !*status; m++) *to++ = e->parts[n].origin[m % 3] + (double)*from++;
+        for (uint64_t m = 0; m < 3 * one.vertex_count && !*status; m++)
+            *to++ = e->parts[n].origin[m % 3] + (double)*from++;
     }
     return points;
 }

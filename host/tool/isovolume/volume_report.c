@@ -32,8 +32,8 @@ static json_t *fields_json(const isovolume_report *r, const volume_report *v) {
             json_array_append_new(integrals, real_json(*integral));
             json_array_append_new(means, real_json(mean_of(v, *integral)));
         }
-        json_array_append_new(fields, json_pack("{s:o, s:o, s:o}", "name", string_json(r->carried->from[n].name), "mean",
-                                                means, "integral", integrals));
+        json_array_append_new(fields, json_pack("{s:o, s:o, s:o}", "name", string_json(r->carried->from[n].name),
+                                                "mean", means, "integral", integrals));
     }
     return fields;
 }
@@ -119,8 +119,8 @@ static void fields_text(const isovolume_report *r, const volume_report *v) {
 
 static void volume_text(const isovolume_report *r, const volume_report *v) {
     printf("range %s\n", v->range->text);
-    printf("  tetrahedra  %" PRIu64 ", with %" PRIu64 " vertices: %" PRIu64 " samples, %" PRIu64 " on the low bound, %" PRIu64
-           " on the high one\n",
+    printf("  tetrahedra  %" PRIu64 ", with %" PRIu64 " vertices: %" PRIu64 " samples, %" PRIu64
+           " on the low bound, %" PRIu64 " on the high one\n",
            v->tetrahedron_count, vertex_count(v), v->sample_count, v->low_count, v->high_count);
     printf("  memory      %" PRIu64 " bytes\n", v->bytes);
     if (v->has_volume) printf("  volume      %.9g\n", v->volume);
