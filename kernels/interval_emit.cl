@@ -43,16 +43,15 @@ inline_always void samples_store(const slab *s, corner first, uint y, uint z, ul
 }
 
 /* Vertices of a bound that a row's samples own. */
-inline_always void crossings_store(const slab *s, const bound *b, corner first, uint y, uint z,
-                                   global const ulong *cells, REAL isovalue, grid_arrays in, global float *out) {
+inline_always void crossings_store(const slab *s, corner first, uint y, uint z, const crossings *edges, REAL isovalue,
+                                   grid_arrays in, global float *out) {
     const uint row = (y - first.y) << 7 | (z - first.z) << 11;
     const ulong even = even_cubes(s, y, z);
-#pragma unroll 1
+#pragma unroll
     for (uint type = 0; type < 6; type++) {
         const uint odd_code = row + edge_code(type, true), even_code = row + edge_code(type, false);
 #pragma unroll 1
-        for (ulong crossed = edges_word(s, b, cells, y, z, first.x / 64, type); crossed;
-             crossed &= crossed - 1, out += 3) {
+        for (ulong crossed = edges->type[type]; crossed; crossed &= crossed - 1, out += 3) {
             const uint bit = lowest_bit(crossed);
             vertex_store(s, first, (even >> bit & 1 ? even_code : odd_code) + bit, false, isovalue, in, out);
         }
@@ -76,10 +75,7 @@ inline_always global uint *cube_store(const places_row *at, const row_places *p,
 #pragma unroll 1
     for (uint n = 5 * odd; n < 5 * odd + 5; n++) {
         const uint index = (uint)cases[256 * n + low] + cases[256 * n + high];
-        global const uchar *entry = interval_entry(cases, n, index);
-        const uint count = 4 * (uint)entry[0];
-        for (uint m = 0; m < count; m++) out[m] = place_number(at, p, entry[1 + m], bit);
-        out += count;
+        out = entry_store(at, p, interval_entry(cases, n, index), bit, out);
     }
     return out;
 }
@@ -99,7 +95,7 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
     ulong left = cubes_reached(r, present);
     row_places p;
     if (!left) return;
-    const places_row at = {s, job, low, high, sums, cells, y, z, w};
+    const places_row at = {s, job, low, high, sums, r, cells, y, z, w};
     places_begin(&at, left & ~whole, &p);
     while (left) {
         const uint bit = lowest_bit(left), odd = (uint)(~even >> bit & 1);
@@ -118,11 +114,12 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
  */
 
 /* Vertices of a bound that a row owns, into the buffer of the bound's block. */
-inline_always void bound_store(const slab *s, const interval_job *job, const bound *b, uint block, corner first, uint y,
-                               uint z, global const ulong *cells, REAL isovalue, grid_arrays in,
-                               global float *positions) {
+inline_always void bound_store(const slab *s, const interval_job *job, const bound *b, const sample_rows rows[4],
+                               uint block, corner first, uint y, uint z, global const ulong *cells, REAL isovalue,
+                               grid_arrays in, global float *positions) {
     const owner o = bound_owner(s, b, job->first[block], y, z, first.x / 64);
-    crossings_store(s, b, first, y, z, cells, isovalue, in, positions + 3ul * (number_of(o, 0) - job->window[block]));
+    const crossings edges = row_crossings(s, rows, 0, cells, y, z, first.x / 64);
+    crossings_store(s, first, y, z, &edges, isovalue, in, positions + 3ul * (number_of(o, 0) - job->window[block]));
 }
 
 /* Emits row n of brick `number`. */
@@ -144,10 +141,10 @@ inline_always void interval_row(const slab *s, const interval_job *job, const bo
     const REAL high_isovalue = job->high_isovalue32;
 #endif
     if (low->exists && low->bricks[number].rows >> n & 1)
-        bound_store(s, job, low, INTERVAL_LOW_BOUND, first, y, z, cells, ISOVALUE(&s->test), in,
+        bound_store(s, job, low, r.low, INTERVAL_LOW_BOUND, first, y, z, cells, ISOVALUE(&s->test), in,
                     mesh->positions[INTERVAL_LOW_BOUND]);
     if (high->exists && high->bricks[number].rows >> n & 1)
-        bound_store(s, job, high, INTERVAL_HIGH_BOUND, first, y, z, cells, high_isovalue, in,
+        bound_store(s, job, high, r.high, INTERVAL_HIGH_BOUND, first, y, z, cells, high_isovalue, in,
                     mesh->positions[INTERVAL_HIGH_BOUND]);
     const uint before = sums.bricks[number].tetrahedra + (sums.rows[BRICK_WORDS * number + n] >> 16);
     row_tetrahedra(s, job, low, high, sums, &r, cells, y, z, w, cases,

@@ -39,11 +39,15 @@ enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
 
 /* The table of cases. First, for each of 2 parities x 5 tetrahedra, what a pattern of a cube's corners is to the base 3
  * in the tetrahedron: the digits of the corners that are not below, added to those of the ones above, are its case.
- * Then for each of them 81 entries: how many tetrahedra there are, and their vertices. */
+ * Then for each of them 81 entries: how many tetrahedra there are, and how many vertices; these; and for each corner of a
+ * tetrahedron which of them it is. */
 enum {
     INTERVAL_ORDERED = 10,
     INTERVAL_CASE_COUNT = 81,
-    INTERVAL_ENTRY_BYTES = 32,
+    INTERVAL_ENTRY_VERTICES = 2,
+    INTERVAL_VERTICES_MOST = 8,
+    INTERVAL_ENTRY_CORNERS = INTERVAL_ENTRY_VERTICES + INTERVAL_VERTICES_MOST,
+    INTERVAL_ENTRY_BYTES = INTERVAL_ENTRY_CORNERS + 6 * 4 + 2,
     INTERVAL_DIGIT_BYTES = INTERVAL_ORDERED * 256,
     INTERVAL_TABLE_BYTES = INTERVAL_DIGIT_BYTES + INTERVAL_ORDERED * INTERVAL_CASE_COUNT * INTERVAL_ENTRY_BYTES,
     INTERVAL_WITHIN = 40 /* the case of a tetrahedron that lies within whole */

@@ -23,6 +23,7 @@ typedef struct places_row {
     const interval_job *job;
     const bound *low, *high;
     interval_sums sums;
+    const interval_rows *rows;
     global const ulong *cells;
     uint y, z, w;
 } places_row;
@@ -41,6 +42,21 @@ inline_always owner bound_owner(const slab *s, const bound *b, uint first, uint 
     return o;
 }
 
+/* Edges with a vertex that the samples of row n of a row of cubes own. In rows behind the first only those of types are
+ * right that the cubes have. */
+inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], uint n, global const ulong *cells,
+                                      uint y, uint z, uint w) {
+    const sample_rows none = rows_shifted(0, 0);
+    const cube_rows r = cube_rows_of(s, y + (n & 1), z + (n >> 1), w, rows[n], n & 1 ? none : rows[n + 1 & 3],
+                                     n >> 1 ? none : rows[n + 2 & 3], n ? none : rows[3]);
+    crossings edges = crossings_owned(&r);
+#if MISSING
+    crossings_keep(s, cells, y + (n & 1), z + (n >> 1), w, &edges);
+#endif
+    return edges;
+}
+
+#if WORK_ITEMS >= 32
 #if MISSING
 
 /* Edges of a type that a present cube has. */
@@ -81,6 +97,8 @@ inline_always ulong place_word(const places_row *r, uint place) {
     return edges_word(r->s, block == INTERVAL_LOW_BOUND ? r->low : r->high, r->cells, y, z, r->w, place & 7);
 }
 
+#endif
+
 /* The number of the first vertex of a place, in word w of its row. */
 inline_always uint place_first(const places_row *r, uint place, uint w) {
     const uint block = place >> 5, y = r->y + (place >> 3 & 1), z = r->z + (place >> 4 & 1);
@@ -97,7 +115,8 @@ inline_always global const uchar *interval_entry(global const uchar *cases, uint
 
 /* Vertex m, of 40, of two cubes side by side that lie within whole. */
 inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
-    return interval_entry(cases, 5 * (odd ^ (m >= 20)) + m / 4 % 5, INTERVAL_WITHIN)[1 + m % 4];
+    global const uchar *entry = interval_entry(cases, 5 * (odd ^ (m >= 20)) + m / 4 % 5, INTERVAL_WITHIN);
+    return entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m % 4]];
 }
 
 #if WORK_ITEMS < 32
@@ -108,33 +127,52 @@ typedef struct row_places {
     uint first[INTERVAL_PLACES], next[INTERVAL_PLACES];
 } row_places;
 
-inline_always void place_fill(const places_row *r, uint place, row_places *p) {
-    p->word[place] = place_word(r, place);
+/* Types of edges that cubes have of row n of their rows of samples: a bit each. */
+#define ROW_TYPES(n) ((n) == 0 ? 0x3fu : (n) == 1 ? 0x15u : (n) == 2 ? 0x0bu : 0x01u)
+
+inline_always void place_fill(const places_row *r, uint place, ulong word, row_places *p) {
+    p->word[place] = word;
     p->first[place] = place_first(r, place, r->w);
     p->next[place] = r->w + 1 < r->s->words_x ? place_first(r, place, r->w + 1) : 0;
 }
 
-/* Types of edges that cubes have of row n of their rows of samples: a bit each. */
-#define ROW_TYPES(n) ((n) == 0 ? 0x3fu : (n) == 1 ? 0x15u : (n) == 2 ? 0x0bu : 0x01u)
+inline_always void places_of_bound(const places_row *r, const bound *b, const sample_rows rows[4], uint block,
+                                   row_places *p) {
+    if (!b->exists) return;
+#pragma unroll
+    for (uint n = 0; n < 4; n++) {
+        const crossings edges = row_crossings(r->s, rows, n, r->cells, r->y, r->z, r->w);
+#pragma unroll
+        for (uint type = 0; type < 6; type++)
+            if (ROW_TYPES(n) >> type & 1) place_fill(r, INTERVAL_PLACE(block, n, type), edges.type[type], p);
+    }
+}
 
 /* partial: cubes that are not within whole, so that their vertices are on edges too. */
 inline_always void places_begin(const places_row *r, ulong partial, row_places *p) {
-#pragma unroll 1
-    for (uint n = 0; n < 4; n++) {
-        place_fill(r, INTERVAL_PLACE(INTERVAL_SAMPLES, n, 0), p);
-#pragma unroll 1
-        for (uint type = 0; type < 6 && partial; type++) {
-            if (!(ROW_TYPES(n) >> type & 1)) continue;
-            if (r->low->exists) place_fill(r, INTERVAL_PLACE(INTERVAL_LOW_BOUND, n, type), p);
-            if (r->high->exists) place_fill(r, INTERVAL_PLACE(INTERVAL_HIGH_BOUND, n, type), p);
-        }
-    }
+#pragma unroll
+    for (uint n = 0; n < 4; n++)
+        place_fill(r, INTERVAL_PLACE(INTERVAL_SAMPLES, n, 0),
+                   samples_within(r->s, r->low, r->high, r->cells, r->y + (n & 1), r->z + (n >> 1), r->w), p);
+    if (!partial) return;
+    places_of_bound(r, r->low, r->rows->low, INTERVAL_LOW_BOUND, p);
+    places_of_bound(r, r->high, r->rows->high, INTERVAL_HIGH_BOUND, p);
 }
 
 /* The number of a vertex (INTERVAL_VERTEX) of the cube at a bit of the row. */
 inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
     const uint place = vertex >> 1, x = bit + (vertex & 1);
     return x == 64 ? p->next[place] : p->first[place] + (uint)popcount(p->word[place] & ((1ul << x) - 1));
+}
+
+/* The tetrahedra of an entry, for the cube at a bit. */
+inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
+                                       global uint *out) {
+    uint numbers[INTERVAL_VERTICES_MOST];
+    const uint corners = 4 * (uint)entry[0], vertices = entry[1];
+    for (uint n = 0; n < vertices; n++) numbers[n] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
+    for (uint m = 0; m < corners; m++) out[m] = numbers[entry[INTERVAL_ENTRY_CORNERS + m]];
+    return out + corners;
 }
 
 /* Cubes that lie within whole, `length` of them from a bit on; the last is not the row's. Numbers rise by one from cube
@@ -166,6 +204,14 @@ inline_always uint place_number(const places_row *r, const row_places *p, uint v
     const uint place = vertex >> 1, x = bit + (vertex & 1);
     if (x == 64) return place_first(r, place, r->w + 1);
     return place_first(r, place, r->w) + (uint)popcount(place_word(r, place) & ((1ul << x) - 1));
+}
+
+inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
+                                       global uint *out) {
+    const uint corners = 4 * (uint)entry[0];
+    for (uint m = 0; m < corners; m++)
+        out[m] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m]], bit);
+    return out + corners;
 }
 
 inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,

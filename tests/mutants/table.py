@@ -30,6 +30,7 @@ TESTS = {
     "test_interval": test("surface/test_interval"),
     "test_interval, u8": test("surface/test_interval_device", "u8", ("alone",), device=True),
     "test_interval, f32": test("surface/test_interval_device", "f32", ("alone",), device=True),
+    "test_interval, groups": test("surface/test_interval_device", "f32", ("groups",), device=True),
     "test_interval, slabs": test("surface/test_interval_device", "slabs", ("alone",), device=True),
     "test_measure": test("write/test_measure"),
     "test_grid_pieces, reference": test("surface/test_grid_pieces", arguments=("1", "40")),

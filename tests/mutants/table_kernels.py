@@ -19,6 +19,7 @@ CLOSED_HYBRID = {"tests": ("test_closed, u8 hybrid",)}
 CLOSED_SNAP = {"tests": ("test_closed, u8 snap",)}
 CLOSED_MISSING = {"tests": ("test_closed, f32",)}
 CLOSED_GROUPS = {"tests": ("test_closed, groups",)}
+INTERVAL_GROUPS = {"tests": ("test_interval, groups",)}
 
 MUTANTS = [
     *group("kernels/words.cl",
@@ -317,7 +318,7 @@ MUTANTS = [
     *group("kernels/interval_places.cl",
            ("return x == 64 ? p->next[place] :", "return", "intervals: vertices of the next word"),
            ("5 * (odd ^ (m >= 20))", "5 * odd", "intervals: runs of cubes of one parity"),
-           ("type == 0 || type == 3 || type == 4, low_y", "type == 0 || type == 3, low_y", "intervals: cubes that an edge needs"),
+           ("type == 0 || type == 3 || type == 4, low_y", "type == 0 || type == 3, low_y", "intervals: cubes that an edge needs", INTERVAL_GROUPS),
            ("(n) == 1 ? 0x15u", "(n) == 1 ? 0x05u", "intervals: diagonals of the next row")),
     *group("kernels/interval_emit.cl",
            ("63 - bit);", "64 - bit);", "intervals: runs go on into the next word"),

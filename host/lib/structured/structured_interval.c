@@ -76,6 +76,14 @@ static uint8_t vertex_name(const ordered_tetrahedron *t, unsigned vertex) {
     return (uint8_t)INTERVAL_VERTEX(block, e.dy + 2u * e.dz, e.type, e.dx);
 }
 
+/* Which vertex of the entry it is; a new one is the next. */
+static uint8_t vertex_enter(uint8_t *entry, uint8_t vertex) {
+    uint8_t *vertices = entry + INTERVAL_ENTRY_VERTICES, n = 0;
+    while (n < entry[1] && vertices[n] != vertex) n++;
+    if (n == entry[1]) vertices[entry[1]++] = vertex;
+    return n;
+}
+
 /* One tetrahedron of a cube: digits of patterns, then its entries. */
 static void ordered_table(const interval_case cases[INTERVAL_CASES], ordered_tetrahedron t, bool mirrored,
                           uint8_t *digits, uint8_t *entries) {
@@ -86,14 +94,14 @@ static void ordered_table(const interval_case cases[INTERVAL_CASES], ordered_tet
         entries[0] = cases[n].count;
         for (unsigned m = 0; m < 4u * cases[n].count; m++) {
             const unsigned corner = is_odd && m % 4 > 1 ? 5 - m % 4 : m % 4;
-            entries[1 + m] = vertex_name(&t, cases[n].parts[m / 4][corner]);
+            entries[INTERVAL_ENTRY_CORNERS + m] = vertex_enter(entries, vertex_name(&t, cases[n].parts[m / 4][corner]));
         }
     }
 }
 
 static tc_status tables_provide(interval_run *r) {
     _Static_assert((int)INTERVAL_CASE_COUNT == (int)INTERVAL_CASES &&
-                       1 + 4 * INTERVAL_PARTS_MOST <= INTERVAL_ENTRY_BYTES,
+                       INTERVAL_ENTRY_CORNERS + 4 * INTERVAL_PARTS_MOST <= INTERVAL_ENTRY_BYTES,
                    "kernels read them so");
     interval_case cases[INTERVAL_CASES];
     uint32_t counts[INTERVAL_COUNTS] = {0};
