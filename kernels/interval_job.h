@@ -39,8 +39,8 @@ enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
 
 /* The table of cases. First, for each of 2 parities x 5 tetrahedra, what a pattern of a cube's corners is to the base 3
  * in the tetrahedron: the digits of the corners that are not below, added to those of the ones above, are its case.
- * Then for each of them 81 entries: how many tetrahedra there are, and how many vertices; these; and for each corner of a
- * tetrahedron which of them it is. */
+ * Then for each of them 81 entries: how many tetrahedra there are, and how many vertices; these; and for each corner of
+ * a tetrahedron which of them it is. */
 enum {
     INTERVAL_ORDERED = 10,
     INTERVAL_CASE_COUNT = 81,

@@ -27,10 +27,11 @@ tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
             (unsigned long long)vertices, (unsigned long)UINT32_MAX);
     const uint64_t held = interval->positions.bytes + interval->tetrahedra.bytes, available = host_memory_available();
     if (interval_bytes(size) > held && interval_bytes(size) - held > available)
-        return (tc_status)fail(TC_ERROR_MEMORY,
-                               "the interval volume takes %llu bytes, and %llu are available: take a narrower interval, or "
-                               "parts of the grid",
-                               (unsigned long long)interval_bytes(size), (unsigned long long)(available + held));
+        return (tc_status)fail(
+            TC_ERROR_MEMORY,
+            "the interval volume takes %llu bytes, and %llu are available: take a narrower interval, or "
+            "parts of the grid",
+            (unsigned long long)interval_bytes(size), (unsigned long long)(available + held));
     tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float));
     if (!status) status = host_block_reserve(&interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
     if (!status) interval->size = *size;
