@@ -244,7 +244,6 @@ int main(int argc, char **argv) {
     tc_context_options options;
     tc_expert_options expert;
     if (!device_exists()) return SKIPPED;
-    if (groups) groups_begin();
     options_init(&options, &expert);
     engines[REFERENCE].context = reference_open();
     expert.work_items = groups ? 64 : 1;
