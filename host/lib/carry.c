@@ -9,9 +9,9 @@
 #include "extract.h"
 #include "surface/surface.h"
 
-static tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
+tc_status field_check(const tc_grid *grid, const tc_field *field, const float *out, uint64_t value_count) {
     if (!grid || (!out && value_count))
-        return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_interpolate_field needs a grid, and a place for the values");
+        return (tc_status)fail(TC_ERROR_ARGUMENT, "a field needs a grid to be carried on, and a place for the values");
     if (!tc_type_bytes(field->type) || field->components < 1 || !field->values)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "the field has no values, or their type or number is not valid");
     if ((uintptr_t)field->values % tc_type_bytes(field->type) || (uintptr_t)out % sizeof *out)

@@ -6,3 +6,5 @@ foreach(program classify emit snap complex complex_caps labels)
     list(APPEND programs ${program}_alone=${kernel_folder}/${program}.cl=1
          ${program}_groups=${kernel_folder}/${program}.cl=0)
 endforeach()
+# In both variants one text, that for groups.
+list(APPEND programs interval_groups=${kernel_folder}/interval.cl=0)

@@ -44,6 +44,18 @@ const command command_list[] = {
      "  tetracubes extract ct.nrrd --iso 300 --part 0/2 -o ct-0.tcpart\n"
      "  tetracubes extract ct.nrrd --iso 300 --part 1/2 -o ct-1.tcpart\n"
      "  tetracubes join ct-*.tcpart -o ct.ply"},
+    {"isovolume", COMMAND_ISOVOLUME, isovolume_run, NULL, "the part of a grid between two values, as tetrahedra",
+     "tetracubes isovolume INPUT... --range LO,HI [-o FILE.vtu] [options]",
+     "Makes the interval volume, the part of the grid with LO <= f < HI, of tetrahedra that fit together:\n"
+     "for finite elements, and to measure. Its border is the surfaces of LO and HI, with the vertices\n"
+     "that extract makes, and the part of the grid's own border in between. Reports the volume, and mean\n"
+     "and integral of the fields that --carry names; several ranges make a histogram of true volume.\n"
+     "A cube that lies within whole makes five tetrahedra: --count tells how many, and the memory.\n"
+     "\n"
+     "  tetracubes isovolume head.nii.gz --range 500,1150 --count\n"
+     "  tetracubes isovolume ct.nrrd --range 300, --roi 100:228,:,40: --check -o bone.vtu\n"
+     "  tetracubes isovolume flow.vts --range 1.5,2 --carry energy -o shock.vtu\n"
+     "  tetracubes isovolume ct.nrrd --range ,0 --range 0,100 --range 100, --json"},
     {"info", COMMAND_INFO, info_run, NULL, "what a file holds, and isovalues worth trying",
      "tetracubes info INPUT... [options]",
      "Prints the kind of grid, its sizes and place, cells by type and fields with their ranges, for\n"

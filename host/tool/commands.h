@@ -14,6 +14,7 @@ int extract_run(const options *o);
 int extract_run_together(const options *o, team *t); /* as one of a team; all of it return the same status */
 int labels_run(const options *o);
 int join_run(const options *o);
+int isovolume_run(const options *o);
 int info_run(const options *o);
 int tetrahedralize_run(const options *o);
 int devices_run(const options *o);

@@ -240,6 +240,8 @@ def tool_commands():
     commands += [f"{extract} -o %.{ending}" for ending in ("ply", "stl", "obj", "vtp", "off", "glb", "html", "npz")]
     commands += [f"{extract} --method hybrid --normals --check", f"{extract} --soup -o %.stl", f"{extract} --count",
                  f"{extract} --nodata 0 --check", "info f32.nrrd --json", "tetrahedralize f32.nrrd -o cells.vtu",
+                 "isovolume f32.nrrd --range 90,120 --engine reference --check -o part.vtu",
+                 "isovolume cells.vtu --range ,100 --range 100, --engine reference --json",
                  "info cells.vtu", "extract cells.vtu --iso 99.5 --engine reference --check -o cells.vtp", "--version"]
     return commands
 

@@ -68,6 +68,8 @@ static const bad isovalues[] = {{F64_NAN, ARGUMENT},
                                 {F64_LEAST, OK | ARGUMENT},
                                 {F64_SIGN, OK | ARGUMENT},
                                 {0, ENDS}};
+static const bad bounds[] = {{F64_NAN, ARGUMENT},       {F64_INF, OK | ARGUMENT},   {F64_INF | F64_SIGN, OK | ARGUMENT},
+                             {F64_MOST, OK | ARGUMENT}, {F64_LEAST, OK | ARGUMENT}, {0, ENDS}};
 static const bad any_i32[] = {{1, OK}, {I64(-1), OK}, {0x80000000, OK}, {0x7fffffff, OK}, {0, ENDS}};
 static const bad any_u32[] = {{1, OK}, {1u << 31, OK}, {UINT32_MAX, OK}, {0, ENDS}};
 static const bad no_enumerator[] = {
@@ -105,6 +107,10 @@ typedef struct place {
         AT(call, extract_options.method, no_enumerator), AT(call, extract_options.snap, any_f64),                      \
         AT(call, extract_options.closed, LISTED({1, OK | ARGUMENT | DEVICE})),                                         \
         AT(call, extract_options.reserved, any_i32)
+
+#define OPTIONS_OF_INTERVALS(call)                                                                                     \
+    AT(call, grid, null), AT(call, interval_options_at, null), AT(call, interval_options.low, bounds),                 \
+        AT(call, interval_options.high, bounds)
 
 static const place places[] = {
     AT(tc_device_count, count_at, null),
@@ -210,6 +216,19 @@ static const place places[] = {
     AT(tc_interpolate_field, values, null),
     AT(tc_interpolate_field, values, NULL),
     AT(tc_interpolate_field, value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
+    OPTIONS_OF_INTERVALS(tc_count_interval),
+    AT(tc_count_interval, interval_counts_at, null),
+    OPTIONS_OF_INTERVALS(tc_extract_interval),
+    AT(tc_extract_interval, interval_place, null),
+    AT(tc_interval_get, interval, null),
+    AT(tc_interval_get, interval_data_at, null),
+    OPTIONS_OF_INTERVALS(tc_interpolate_interval),
+    AT(tc_interpolate_interval, field_at, null),
+    AT(tc_interpolate_interval, field.type, no_enumerator),
+    AT(tc_interpolate_interval, field.components, LISTED({0, ARGUMENT}, {I64(-1), ARGUMENT}, {0x7fffffff, ARGUMENT})),
+    AT(tc_interpolate_interval, field.values, null),
+    AT(tc_interpolate_interval, values, null),
+    AT(tc_interpolate_interval, interval_value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
     AT(tc_tetrahedralize, tetrahedra_at, null),
     AT(tc_tetrahedralize, cells_at, null),
     AT(tc_tetrahedralize, cells.point_count, LISTED({0, DATA}, {POINTS - 1, DATA})),

@@ -90,6 +90,10 @@ static const sized sizes[] = {
     SIZED(tc_stream, stream_options, false),
     SIZED(tc_mesh_get, mesh_data, true),
     SIZED(tc_interpolate_field, field, false),
+    SIZED(tc_count_interval, interval_options, false),
+    SIZED(tc_count_interval, interval_counts, true),
+    SIZED(tc_interval_get, interval_data, true),
+    SIZED(tc_interpolate_interval, field, false),
     SIZED(tc_tetrahedralize, cells, false),
     SIZED(tc_tetrahedralize, tetrahedra, true),
     SIZED(tc_tetrahedralize_grid, tetrahedra, true),
@@ -260,6 +264,8 @@ static void test_others(const world *w) {
     tc_extract_options_init(NULL);
     tc_tetrahedra_grid_options_init(NULL);
     tc_stream_options_init(NULL);
+    tc_interval_options_init(NULL);
+    tc_interval_destroy(NULL);
     tc_context_destroy(NULL);
     tc_grid_destroy(NULL);
     tc_mesh_destroy(NULL);
@@ -301,11 +307,17 @@ static void world_open(world *w, tc_engine engine) {
                tc_extract(w->grid, &a.extract_options, &w->kept) == TC_OK &&
                tc_mesh_get(w->mesh, &w->expected) == TC_OK,
            "%s", tc_message());
+    tc_interval_data d = {.struct_size = sizeof d};
+    EXPECT(tc_extract_interval(w->grid, &a.interval_options, &w->interval) == TC_OK &&
+               tc_interval_get(w->interval, &d) == TC_OK && d.vertex_count < CARRIED_MOST,
+           "%s", tc_message());
+    w->interval_vertices = d.vertex_count;
     if (!w->expected.vertex_count || w->expected.vertex_count > CARRIED_MOST - 1) exit(EXIT_FAILURE);
 }
 
 static void world_close(world *w) {
     tc_mesh_destroy(w->kept);
+    tc_interval_destroy(w->interval);
     tc_mesh_destroy(w->mesh);
     tc_grid_destroy(w->grid);
     tc_context_destroy(w->context);

@@ -340,7 +340,7 @@ MUTANTS = [
            ("host/lib/reference/reference.c", "test_changing",
             "if (!r->mesh || r->triangle_count >= r->mesh->triangle_count) return NULL;",
             "if (!r->mesh) return NULL;", "triangles are written beyond those counted"),
-           ("host/lib/reference/reference.c", "test_changing", "if (!status) status = mesh_complete(&r, true);", "",
+           ("host/lib/reference/reference.c", "test_changing", "if (!status) status = reference_complete(&r, true);", "",
             "meshes of samples that have changed are given out"),
            ("host/lib/reference/reference_complex.c", "test_changing",
             "if (points[v] >= r->grid->complex->point_count) return complex_point_fail(r->grid->complex);",

@@ -21,6 +21,7 @@ CLOSED_HYBRID = {"tests": ("test_closed, u8 hybrid",)}
 CLOSED_SNAP = {"tests": ("test_closed, u8 snap",)}
 CLOSED_MISSING = {"tests": ("test_closed, f32",)}
 CLOSED_GROUPS = {"tests": ("test_closed, groups",)}
+INTERVAL_GROUPS = {"tests": ("test_interval, groups",)}
 
 MUTANTS = [
     *group("kernels/words.cl",
@@ -307,6 +308,26 @@ MUTANTS = [
            ("- 2 * (polygons + parted);", "- 2 * polygons;", "closed: two corners parted by the diagonal", CLOSED_HYBRID),
            ("+ (odd * CAP_FACES + face) * CAP_FACE_CASES", "+ face * CAP_FACE_CASES", "closed: one diagonal for all cubes",
             CLOSED)),
+    *group("kernels/interval_rows.cl",
+           ("bound_word(s, b, y, z, w) & word_valid(s, w), next)", "bound_word(s, b, y, z, w), next)",
+            "intervals: samples behind the end of a row"),
+           ("any & ~all & present;", "any & present;", "intervals: cubes above are reached"),
+           ("samples_used(s, cells, y, z, w);", "~0ul;", "intervals: samples that no cube has are vertices")),
+    *group("kernels/interval_count.cl",
+           ("{0x0356, 0x1035,", "{0x0356, 0x1036,", "intervals: corners of a tetrahedron that is counted"),
+           ("ones & ~twos, twos & ~ones,", "ones, twos & ~ones,", "intervals: three corners count as one too"),
+           ("sum.tetrahedra += 5 * (uint)", "sum.tetrahedra += 4 * (uint)", "intervals: cubes within make four tetrahedra"),
+           ("brick_is(s, low, number, SIGN_INSIDE) && brick_is(s, high, number, SIGN_OUTSIDE)",
+            "brick_is(s, low, number, SIGN_INSIDE)", "intervals: bricks with the high surface count as within")),
+    *group("kernels/interval_places.cl",
+           ("return x == 64 ? p->next[place] :", "return", "intervals: vertices of the next word"),
+           ("5 * (odd ^ (m >= 20))", "5 * odd", "intervals: runs of cubes of one parity"),
+           ("type == 0 || type == 3 || type == 4, low_y", "type == 0 || type == 3, low_y", "intervals: cubes that an edge needs", INTERVAL_GROUPS),
+           ("(n) == 1 ? 0x15u", "(n) == 1 ? 0x05u", "intervals: diagonals of the next row")),
+    *group("kernels/interval_emit.cl",
+           ("63 - bit);", "64 - bit);", "intervals: runs go on into the next word"),
+           ("if (!is_sample) t = crossing(", "t = crossing(", "intervals: samples have a crossing, of no number"),
+           ("(even >> bit & 1 ? even_code : odd_code)", "even_code", "intervals: one diagonal for all cubes")),
     *group("kernels/link.h",
            ("(2 * (odd_j) + ((odd_j) ^ (odd_k)))", "(2 * (odd_k) + ((odd_j) ^ (odd_k)))", "colours: of even samples in another order")),
     *group("kernels/snap.cl",

@@ -257,6 +257,24 @@ static void snap_programs(tc_context *context) {
         }
 }
 
+static void interval_programs(tc_context *context) {
+    const program *found;
+    for (int type = TC_U8; type <= TC_F64; type++)
+        for (int grid = GRID_UNIFORM; grid <= GRID_CURVILINEAR; grid++)
+            for (int missing = 0; missing < 2; missing++) {
+                const kernel_kind kind = {.grid = (unsigned)grid,
+                                          .type = (tc_type)type,
+                                          .made = POSITIONS_ALONE,
+                                          .missing = missing,
+                                          .emits = true,
+                                          .interval = true};
+                snprintf(name, sizeof name, "interval-%s-%s%s", type_names[type], kind_names[grid],
+                         missing ? "-missing" : "");
+                if (device_makes_vertices(context, kind.type))
+                    status_check(program_get(context, PROGRAM_INTERVAL, kind, &found));
+            }
+}
+
 static void complex_programs(tc_context *context) {
     const program *found;
     for (int type = TC_U8; type <= TC_F64; type++) {
@@ -311,6 +329,7 @@ int main(int count, char **arguments) {
     classify_programs(context);
     emit_programs(context);
     snap_programs(context);
+    interval_programs(context);
     complex_programs(context);
     label_programs(context);
     printf("%d programs, %u work-items\n", written, context->launch.work_items);

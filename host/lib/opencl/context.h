@@ -63,6 +63,14 @@ typedef struct label_buffers {
     device_buffer positions, triangles, labels;
 } label_buffers;
 
+/* What an interval volume takes: kernel 1's results for both bounds, and its own. */
+typedef struct interval_buffers {
+    word_buffers words[2];
+    device_buffer arrays[ARRAY_COUNT]; /* windows of the grid */
+    device_buffer cells, state, scratch, rows, bricks, counts, cases, ticket;
+    device_buffer parts[4]; /* of the volume */
+} interval_buffers;
+
 /* All buffers of kernels except arrays that the grid keeps whole on the device. The second window is used where copies
  * overlap kernels. */
 typedef struct workspace {
@@ -73,6 +81,7 @@ typedef struct workspace {
     device_buffer state, scratch;
     complex_buffers complex;
     label_buffers labels;
+    interval_buffers interval;
     device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */
 } workspace;
 

@@ -17,11 +17,17 @@ typedef struct kernel_kind {
     channel_set made;    /* by kernel 2 */
     bool missing, emits; /* emits: kernel 2 too */
     bool closed;         /* surfaces are closed */
+    bool interval;       /* of structured grids: an interval volume is made, by TC_METHOD_TETRA */
 } kernel_kind;
 
-enum { KIND_COMPLEX = 3, KIND_LABELS = 4, KERNEL_KINDS = (2 * 5 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT };
+enum {
+    KIND_COMPLEX = 3,
+    KIND_LABELS = 4,
+    OPEN_KINDS = (5 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT, /* of open surfaces; as many of the two others */
+    KERNEL_KINDS = 3 * OPEN_KINDS
+};
 
-/* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing; in its upper half: closed. */
+/* A number below KERNEL_KINDS, and back. Its lowest bits: emits, missing; its thirds: open, closed, interval. */
 unsigned kind_number(kernel_kind kind);
 kernel_kind kind_of_number(unsigned number);
 

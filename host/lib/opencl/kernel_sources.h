@@ -7,5 +7,6 @@ extern const char kernel_emit_alone[], kernel_emit_groups[], kernel_snap_alone[]
 extern const char kernel_complex_alone[], kernel_complex_groups[];
 extern const char kernel_complex_caps_alone[], kernel_complex_caps_groups[];
 extern const char kernel_labels_alone[], kernel_labels_groups[];
+extern const char kernel_interval_groups[];
 
 #endif

@@ -22,6 +22,11 @@ tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out) {
         for (int n = 0; n < SNAP_KERNELS; n++) out->snap[n] = kernel_of(p, n);
     }
     if (!kind.emits) return TC_OK;
+    if (kind.interval) {
+        status = vetted_program_get(context, PROGRAM_INTERVAL, kind, &p);
+        if (!status) out->interval_count = kernel_of(p, 0), out->interval_emit = kernel_of(p, 1);
+        return status;
+    }
     status = vetted_program_get(context, PROGRAM_EMIT, kind, &p);
     if (!status) out->emit = kernel_of(p, 0);
     return status;

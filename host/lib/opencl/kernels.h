@@ -18,9 +18,10 @@ enum { SNAP_SIGN, SNAP_NEAR, SNAP_OPEN, SNAP_WISH, SNAP_PASS_EVEN, SNAP_PASS_ODD
 typedef struct kernels {
     sized_kernel classify, cells, emit; /* cells: where samples may be missing */
     sized_kernel snap[SNAP_KERNELS];    /* method snap */
+    sized_kernel interval_count, interval_emit;
 } kernels;
 
-/* Of structured grids: kernel 1, and kernel 2 too where the kind emits. */
+/* Of structured grids: kernel 1, and kernel 2 too where the kind emits; of interval volumes their own instead. */
 tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out);
 
 /* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID. */

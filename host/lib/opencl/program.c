@@ -71,6 +71,13 @@ static void labels_options_write(const tc_context *context, kernel_kind kind, ch
     snprintf(out, bytes, "%s -DLABELS=1", common);
 }
 
+/* A definition that no file looks at tells the program from that of kernel 2. */
+static void interval_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
+    char common[PROGRAM_OPTIONS_BYTES - 16];
+    emit_options_write(context, kind, kind.grid, common, sizeof common);
+    snprintf(out, bytes, "%s -DINTERVAL=1", common);
+}
+
 static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
     if (name == PROGRAM_CLASSIFY)
         classify_options_write(context, kind, out, bytes);
@@ -78,6 +85,8 @@ static void options_write(const tc_context *context, program_name name, kernel_k
         emit_options_write(context, kind, kind.grid, out, bytes);
     else if (name == PROGRAM_LABELS)
         labels_options_write(context, kind, out, bytes);
+    else if (name == PROGRAM_INTERVAL)
+        interval_options_write(context, kind, out, bytes);
     else if (name == PROGRAM_SNAP)
         snap_options_write(context, kind, out, bytes);
     else
@@ -125,6 +134,8 @@ static const program_sources programs[PROGRAM_COUNT] = {
          {[VARIANT_ALONE] = kernel_complex_caps_alone, [VARIANT_GROUPS] = kernel_complex_caps_groups}},
     [PROGRAM_LABELS] = {{"label_classify", "label_emit"},
                         {[VARIANT_ALONE] = kernel_labels_alone, [VARIANT_GROUPS] = kernel_labels_groups}},
+    [PROGRAM_INTERVAL] = {{"interval_count", "interval_emit"},
+                          {[VARIANT_ALONE] = kernel_interval_groups, [VARIANT_GROUPS] = kernel_interval_groups}},
 };
 
 uint64_t kernel_sources_hash(void) {

@@ -15,6 +15,7 @@ typedef enum program_name {
     PROGRAM_WHOLE,
     PROGRAM_COMPLEX_CAPS, /* what closes surfaces of these two */
     PROGRAM_LABELS,
+    PROGRAM_INTERVAL,
     PROGRAM_COUNT
 } program_name;
 

@@ -18,8 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BRICK_X = 64, BRICK_Y = 8, BRICK_Z = 4 };
-
 static void signs_make(reference *r) {
     const tc_grid *grid = r->grid;
     int64_t count = grid_sample_count(grid);
@@ -144,7 +142,7 @@ static float edge_crossing(const reference *r, const int64_t a[3], const int64_t
 /* What each channel has at t on an edge. */
 typedef void channel_make(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]);
 
-static void position_at(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
+void reference_position(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]) {
     if (r->grid->kind == GRID_UNIFORM)
         position_make(r, a, b, t, out);
     else
@@ -158,7 +156,8 @@ static void normal_at(const reference *r, const int64_t a[3], const int64_t b[3]
         normal_f32(r, a, b, t, out);
 }
 
-static channel_make *const makes[CHANNEL_COUNT] = {[CHANNEL_POSITIONS] = position_at, [CHANNEL_NORMALS] = normal_at};
+static channel_make *const makes[CHANNEL_COUNT] = {
+    [CHANNEL_POSITIONS] = reference_position, [CHANNEL_NORMALS] = normal_at};
 
 /* Not inlined, as few edges have a vertex: the loop over all edges keeps its registers. */
 __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[3], const int64_t b[3]) {
@@ -168,17 +167,9 @@ __attribute__((noinline)) static void vertex_emit(reference *r, const int64_t a[
             makes[channel](r, a, b, t, (float *)r->mesh->channels[channel].memory + 3 * r->vertex_count);
 }
 
-static uint32_t *vertex_id(const reference *r, const int64_t owner[3], int type) {
-    int64_t z = owner[2] % BRICK_Z, layer = owner[2] / BRICK_Z;
-    int64_t sample = (z * r->dims[1] + owner[1]) * r->dims[0] + owner[0];
-    return r->ids[layer & 1] + sample * r->id_types + type;
-}
-
 /* Whether a sample is a corner of a face that one present cube has. */
 static bool at_border_of_cubes(const reference *r, const int64_t p[3]) {
-    int present = 0;
-    for (int c = 0; c < 8; c++)
-        present += cube_present(r, (int64_t[3]){p[0] - (c & 1), p[1] - (c >> 1 & 1), p[2] - (c >> 2)});
+    const int present = cubes_present_around(r, p);
     return present > 0 && present < 8;
 }
 
@@ -224,7 +215,7 @@ static void row_vertices(reference *r, int64_t x0, int64_t x1, int64_t y, int64_
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
-/* The next triangle; NULL where none is made, or the mesh has no room for it (mesh_complete). */
+/* The next triangle; NULL where none is made, or the mesh has no room for it (reference_complete). */
 static uint32_t *triangle_next(const reference *r) {
     if (!r->mesh || r->triangle_count >= r->mesh->triangle_count) return NULL;
     return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
@@ -362,9 +353,7 @@ static void layer_run(reference *r, int64_t layer, row_stage *stage) {
         for (int64_t x = 0; x < r->dims[0]; x += BRICK_X) brick_run(r, (int64_t[3]){x, y, layer * BRICK_Z}, stage);
 }
 
-/* Vertices of a layer. Of a piece's first one the seam is told; those of the layer behind are numbered by the next
- * piece's seam, and are not the piece's own. */
-static void layer_vertices(reference *r, int64_t layer) {
+void reference_layer_vertices(reference *r, int64_t layer) {
     const piece_seams *seams = &r->grid->seams;
     const uint64_t own_end = r->vertex_count;
     const bool is_first = layer * BRICK_Z == r->grid->own[0];
@@ -386,9 +375,9 @@ static int64_t own_layer(const reference *r, int end) { return (r->grid->own[end
 static tc_status layers_run(reference *r, const char *stage, double before, double share) {
     const int64_t first = own_layer(r, 0), end = own_layer(r, 1), layer_count = (r->dims[2] + BRICK_Z - 1) / BRICK_Z;
     r->vertex_count = r->triangle_count = r->active_cell_count = 0;
-    layer_vertices(r, first);
+    reference_layer_vertices(r, first);
     for (int64_t layer = first; layer < end; layer++) {
-        if (layer + 1 < layer_count) layer_vertices(r, layer + 1);
+        if (layer + 1 < layer_count) reference_layer_vertices(r, layer + 1);
         layer_run(r, layer, row_triangles);
         tc_status status = context_progress(r->grid->context, stage,
                                             before + share * (double)(layer + 1 - first) / (double)(end - first));
@@ -397,7 +386,7 @@ static tc_status layers_run(reference *r, const char *stage, double before, doub
     return TC_OK;
 }
 
-static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
+tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
     *r = (reference){.grid = grid, .isovalue = options->isovalue, .made = channels_asked(options)};
     for (int axis = 0; axis < 3; axis++) r->dims[axis] = grid->dims[axis];
     r->method = options->method;
@@ -415,7 +404,7 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
 }
 
 /* Zeroed: edges without a vertex are read only where the caller changes samples meanwhile. */
-static tc_status ids_allocate(reference *r) {
+tc_status reference_ids_allocate(reference *r) {
     size_t count = (size_t)(r->dims[0] * r->dims[1]) * BRICK_Z * (size_t)r->id_types;
     for (int n = 0; n < 2; n++)
         if (!(r->ids[n] = calloc(count, sizeof *r->ids[n])))
@@ -423,14 +412,13 @@ static tc_status ids_allocate(reference *r) {
     return TC_OK;
 }
 
-/* Whether as much was emitted as was counted: not where the caller has changed its arrays in between. */
-static tc_status mesh_complete(const reference *r, bool triangles) {
+tc_status reference_complete(const reference *r, bool triangles) {
     if (r->vertex_count == r->mesh->vertex_count && (!triangles || r->triangle_count == r->mesh->triangle_count))
         return TC_OK;
     return (tc_status)fail(TC_ERROR_DATA, "samples, or what is blanked, have changed while a surface was made of them");
 }
 
-static void reference_end(reference *r) {
+void reference_end(reference *r) {
     free(r->signs);
     free(r->ids[0]);
     free(r->ids[1]);
@@ -458,11 +446,11 @@ tc_status reference_extract(const tc_grid *grid, const tc_extract_options *optio
     const double classified = clock_ms();
     status = seam_numbers_check(grid, r.vertex_count);
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, r.made);
-    if (!status) status = ids_allocate(&r);
+    if (!status) status = reference_ids_allocate(&r);
     if (status) goto cleanup;
     r.mesh = mesh;
     status = layers_run(&r, "emit", 0.5, 0.5);
-    if (!status) status = mesh_complete(&r, true);
+    if (!status) status = reference_complete(&r, true);
     mesh->active_cell_count = r.active_cell_count;
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;
@@ -475,11 +463,11 @@ cleanup:
 tc_status reference_vertices(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     reference r;
     tc_status status = reference_begin(&r, grid, options);
-    if (!status) status = ids_allocate(&r);
+    if (!status) status = reference_ids_allocate(&r);
     if (!status) {
         r.mesh = mesh;
         for (int64_t layer = own_layer(&r, 0); layer < own_layer(&r, 1); layer++) layer_run(&r, layer, row_vertices);
-        status = mesh_complete(&r, false);
+        status = reference_complete(&r, false);
     }
     reference_end(&r);
     return status;

@@ -7,8 +7,7 @@
  */
 #include "grid/cell_cases.h"
 #include "grid/complex.h"
-#include "reference/carry_vertex.h"
-#include "reference/complex_border.h"
+#include "reference/reference_complex_run.h"
 
 #include "failure.h"
 #include "grid/tables.h"
@@ -16,29 +15,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct edge_entry {
-    uint32_t low, high;
-    uint32_t number; /* of its vertex, or NO_NUMBER */
-    uint32_t taken;
-} edge_entry;
-
-#define NO_NUMBER UINT32_MAX
-
-typedef struct reference {
-    const tc_grid *grid;
-    double isovalue;
-    bool keeps_cells;  /* method hybrid */
-    edge_entry *table; /* open addressing, half full at most */
-    uint64_t table_size, entry_count;
-    tc_mesh *mesh; /* NULL: count only */
-    const carry *carried;
-    bool closed;
-    complex_border border;
-    uint32_t *point_numbers; /* of the border's vertices at points, or NO_NUMBER */
-    uint64_t vertex_count, triangle_count, active_count;
-    uint32_t next; /* tetrahedron */
-} reference;
 
 #define REAL    float
 #define NAME(x) x##_f32
@@ -87,7 +63,7 @@ static void vertex_emit(reference *r, uint32_t low, uint32_t high, float t) {
     for (int axis = 0; axis < 3; axis++) out[axis] = t == 1 ? p1[axis] : p0[axis] + t * (p1[axis] - p0[axis]);
 }
 
-static tc_status change_fail(void) {
+tc_status reference_complex_change_fail(void) {
     return (tc_status)fail(TC_ERROR_DATA, "samples or tetrahedra have changed while a surface was made of them");
 }
 
@@ -109,7 +85,7 @@ static tc_status edge_vertex_number(reference *r, uint32_t a, uint32_t b, uint32
     tc_status status = edge_enter(r, low, high, &e);
     if (status) return status;
     if (e->number == NO_NUMBER) {
-        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
+        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return reference_complex_change_fail();
         e->number = (uint32_t)r->vertex_count;
         if (r->mesh) vertex_emit(r, low, high, edge_crossing(r, low, high));
         if (r->carried) carry_vertex(r->carried, r->vertex_count, low, high, edge_crossing(r, low, high));
@@ -135,10 +111,20 @@ static unsigned pattern_of(const reference *r, const uint32_t points[], int coun
 static tc_status triangle_emit(reference *r, const uint32_t numbers[], const uint8_t edges[3]) {
     const uint64_t n = r->triangle_count++;
     if (!r->mesh) return TC_OK;
-    if (n >= r->mesh->triangle_count) return change_fail();
+    if (n >= r->mesh->triangle_count) return reference_complex_change_fail();
     uint32_t *triangle = (uint32_t *)r->mesh->triangles.memory + 3 * n;
     for (int m = 0; m < 3; m++) triangle[m] = numbers[edges[m]];
     return TC_OK;
+}
+
+tc_status reference_complex_vertices(reference *r, const uint32_t points[4], unsigned pattern, uint32_t numbers[6]) {
+    tc_status status = TC_OK;
+    for (int e = 0; e < 6 && !status; e++) {
+        const uint8_t *ends = tetrahedron_edges[e];
+        if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
+            status = edge_vertex_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
+    }
+    return status;
 }
 
 static tc_status tetrahedron_run(reference *r) {
@@ -149,14 +135,9 @@ static tc_status tetrahedron_run(reference *r) {
     const unsigned pattern = pattern_of(r, points, 4);
     const tetrahedron_case *c = &tetrahedron_cases[pattern];
     uint32_t numbers[6] = {0};
-    tc_status status = TC_OK;
     if (pattern == 0 || pattern == 15) return TC_OK;
     r->active_count++;
-    for (int e = 0; e < 6 && !status; e++) {
-        const uint8_t *ends = tetrahedron_edges[e];
-        if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1))
-            status = edge_vertex_number(r, points[ends[0]], points[ends[1]], &numbers[e]);
-    }
+    tc_status status = reference_complex_vertices(r, points, pattern, numbers);
     for (unsigned n = 0; n < c->triangle_count && !status; n++) status = triangle_emit(r, numbers, c->triangles[n]);
     return status;
 }
@@ -249,7 +230,7 @@ static tc_status border_vertices(reference *r) {
             if (face_pattern(r, f) >> n & 1) r->point_numbers[f->points[n]] = 0;
     for (uint64_t n = 0; n < point_count; n++) {
         if (r->point_numbers[n] == NO_NUMBER) continue;
-        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return change_fail();
+        if (r->mesh && r->vertex_count >= r->mesh->vertex_count) return reference_complex_change_fail();
         if (r->mesh) vertex_emit(r, (uint32_t)n, (uint32_t)n, 0);
         if (r->carried) carry_vertex(r->carried, r->vertex_count, (int64_t)n, (int64_t)n, 0);
         r->point_numbers[n] = (uint32_t)r->vertex_count++;
@@ -261,7 +242,7 @@ static tc_status border_vertex_number(const reference *r, border_vertex v, uint3
     const uint32_t low = v.a < v.b ? v.a : v.b, high = v.a < v.b ? v.b : v.a;
     const edge_entry *e = edge_find(r, low, high);
     *number = v.a == v.b ? r->point_numbers[v.a] : e->taken ? e->number : NO_NUMBER;
-    return *number == NO_NUMBER ? change_fail() : TC_OK;
+    return *number == NO_NUMBER ? reference_complex_change_fail() : TC_OK;
 }
 
 /* Whether the diagonal of a quadrilateral, or the one that a half begins with, has a vertex where it is crossed. */
@@ -289,12 +270,16 @@ static tc_status border_run(reference *r) {
     return status;
 }
 
+void reference_complex_restart(reference *r) {
+    r->vertex_count = r->triangle_count = r->active_count = 0;
+    for (uint64_t n = 0; n < r->table_size; n++) r->table[n].number = NO_NUMBER;
+}
+
 /* before, share: where this stage begins in the whole call and its share of it, for progress. */
 static tc_status grid_run(reference *r, const char *stage, double before, double share) {
     const uint64_t count = r->grid->complex->tetrahedron_count, steps = 64;
     tc_status status = TC_OK;
-    r->vertex_count = r->triangle_count = r->active_count = 0;
-    for (uint64_t n = 0; n < r->table_size; n++) r->table[n].number = NO_NUMBER;
+    reference_complex_restart(r);
     for (r->next = 0; r->keeps_cells && r->next < count && !status;) status = cell_enter(r);
     r->next = 0;
     for (uint64_t step = 0; step < steps && !status; step++) {
@@ -306,13 +291,13 @@ static tc_status grid_run(reference *r, const char *stage, double before, double
     return !status && r->closed ? border_run(r) : status;
 }
 
-static void reference_end(reference *r) {
+void reference_complex_end(reference *r) {
     free(r->table);
     free(r->point_numbers);
     complex_border_release(&r->border);
 }
 
-static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
+tc_status reference_complex_begin(reference *r, const tc_grid *grid, const tc_extract_options *options) {
     *r = (reference){.grid = grid, .isovalue = options->isovalue};
     r->keeps_cells = options->method == TC_METHOD_HYBRID;
     r->closed = options->closed;
@@ -326,42 +311,42 @@ static tc_status reference_begin(reference *r, const tc_grid *grid, const tc_ext
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts) {
     reference r;
     double start = clock_ms();
-    tc_status status = reference_begin(&r, grid, options);
+    tc_status status = reference_complex_begin(&r, grid, options);
     if (!status) status = grid_run(&r, "classify", 0, 1);
     counts->vertex_count = r.vertex_count;
     counts->triangle_count = r.triangle_count;
     counts->active_cell_count = r.active_count;
     counts->classify_ms = clock_ms() - start;
-    reference_end(&r);
+    reference_complex_end(&r);
     return status;
 }
 
 tc_status reference_complex_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                                   uint64_t *vertex_count) {
     reference r;
-    tc_status status = reference_begin(&r, grid, options);
+    tc_status status = reference_complex_begin(&r, grid, options);
     r.carried = c;
     if (!status) status = grid_run(&r, "carry", 0, 1);
     *vertex_count = r.vertex_count;
-    reference_end(&r);
+    reference_complex_end(&r);
     return status;
 }
 
 tc_status reference_complex_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh) {
     reference r;
     const double start = clock_ms();
-    tc_status status = reference_begin(&r, grid, options);
+    tc_status status = reference_complex_begin(&r, grid, options);
     if (!status) status = grid_run(&r, "classify", 0, 0.5);
     const double classified = clock_ms();
     if (!status) status = mesh_allocate(mesh, r.vertex_count, r.triangle_count, POSITIONS_ALONE);
     r.mesh = mesh;
     if (!status) status = grid_run(&r, "emit", 0.5, 0.5);
     if (!status && (r.vertex_count != mesh->vertex_count || r.triangle_count != mesh->triangle_count))
-        status = change_fail();
+        status = reference_complex_change_fail();
     mesh->active_cell_count = r.active_count;
     mesh->timings.classify_ms = classified - start;
     mesh->timings.emit_ms = clock_ms() - classified;
     mesh->timings.total_ms = clock_ms() - start;
-    reference_end(&r);
+    reference_complex_end(&r);
     return status;
 }

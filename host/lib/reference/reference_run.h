@@ -13,6 +13,8 @@
 /* Of a sample. SNAPPED: the surface goes through it (method snap); INSIDE is then what it was before. */
 enum { INSIDE = 1, PRESENT = 2, SNAPPED = 4 };
 
+enum { BRICK_X = 64, BRICK_Y = 8, BRICK_Z = 4 };
+
 typedef struct reference {
     const tc_grid *grid;
     double isovalue;
@@ -64,6 +66,40 @@ static inline bool cube_present(const reference *r, const int64_t p[3]) {
         if (!sample_is(r, (int64_t[3]){p[0] + (c & 1), p[1] + (c >> 1 & 1), p[2] + (c >> 2)}, PRESENT)) return false;
     return true;
 }
+
+/* How many of the eight cubes around a sample are present. */
+static inline int cubes_present_around(const reference *r, const int64_t p[3]) {
+    int present = 0;
+    for (int c = 0; c < 8; c++)
+        present += cube_present(r, (int64_t[3]){p[0] - (c & 1), p[1] - (c >> 1 & 1), p[2] - (c >> 2)});
+    return present;
+}
+
+/* A sample's index among those of its layer. */
+static inline int64_t index_in_layer(const reference *r, const int64_t p[3]) {
+    return (p[2] % BRICK_Z * r->dims[1] + p[1]) * r->dims[0] + p[0];
+}
+
+static inline uint32_t *vertex_id(const reference *r, const int64_t owner[3], int type) {
+    return r->ids[owner[2] / BRICK_Z & 1] + index_in_layer(r, owner) * r->id_types + type;
+}
+
+/* Signs of the samples; to be ended in any case. */
+tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_options *options);
+void reference_end(reference *r);
+
+/* Room for the numbers of vertices, before any are made. */
+tc_status reference_ids_allocate(reference *r);
+
+/* Numbers the vertices of a layer, and makes them where there is a mesh. Of a piece's first one the seam is told; those
+ * of the layer behind are numbered by the next piece's seam, and are not the piece's own. */
+void reference_layer_vertices(reference *r, int64_t layer);
+
+/* Whether as much was emitted as was counted: not where the caller has changed its arrays in between. */
+tc_status reference_complete(const reference *r, bool triangles);
+
+/* The position at t on the edge from a to b, which may be one sample. */
+void reference_position(const reference *r, const int64_t a[3], const int64_t b[3], float t, float out[3]);
 
 /* Method snap: marks the samples that the surface is made to go through (reference_snap.c). */
 void samples_snap(reference *r);

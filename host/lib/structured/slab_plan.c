@@ -4,10 +4,10 @@
 #include "slab.h"
 #include "grid/tables.h"
 
-/* The most samples of a slab: a cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan
+/* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan
  * word counts to 2^30. Closed surfaces have four triangles at most in each face of a cube, of which planes have one
  * more layer than cubes: ten, and 3 1/4 times four, as a slab has at least four planes. */
-static uint64_t scan_samples(plan_needs needs) { return ((UINT64_C(1) << 30) - 1) / (needs.closed ? 23 : 10); }
+uint64_t slab_samples_most(plan_needs needs) { return ((UINT64_C(1) << 30) - 1) / (needs.closed ? 23 : 10); }
 
 static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
@@ -81,9 +81,9 @@ uint32_t plan_zero_bricks(const slab_plan *plan) {
     return plan->needs.zeros ? (uint32_t)(UNIFORM_BRICKS + plan_window_layers(plan) * plan_bricks_per_layer(plan)) : 0;
 }
 
-/* Larger tiles on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K
- * samples. Never so large that groups run out of tiles. */
-static void tiles_shape(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
+/* Larger on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K samples.
+ * Never so large that groups run out of tiles. */
+void slab_plan_tiles(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
     uint64_t wanted = (grid->scan.tile_bricks + plan->words_x - 1ull) / plan->words_x;
     if (!grid->scan.tile_bricks)
@@ -110,7 +110,7 @@ static uint64_t axes_bytes(const tc_grid *grid) {
     return grid->kind == GRID_RECTILINEAR ? 4 * (uint64_t)(grid->dims[0] + grid->dims[1] + grid->dims[2]) + 4096 : 0;
 }
 
-static bool can_miss_samples(const tc_grid *grid) {
+bool grid_can_miss_samples(const tc_grid *grid) {
     return grid->has_nodata || grid->blanked_samples || grid->blanked_cells || type_is_real(grid->type);
 }
 
@@ -133,7 +133,8 @@ static uint64_t plan_bytes(const tc_context *context, const tc_grid *grid, const
         arrays += bytes && array != ARRAY_SAMPLES ? bytes + 4096 : bytes;
         if (bytes > *largest) *largest = bytes;
     }
-    uint64_t cells = can_miss_samples(grid) ? 8 * plan_cell_planes(plan, grid) * plan_words_per_plane(plan, grid) : 0;
+    uint64_t cells =
+        grid_can_miss_samples(grid) ? 8 * plan_cell_planes(plan, grid) * plan_words_per_plane(plan, grid) : 0;
     uint64_t word_window = signs + words + words / 4 + (sizeof(brick_state) + 4) * bricks;
     return arrays * windows + axes_bytes(grid) + word_window * (plan->words_whole ? 1 : windows) + cells + ranges +
            state + scratch + fixed * windows;
@@ -146,7 +147,7 @@ static bool plan_fits(const tc_context *context, const tc_grid *grid, slab_plan 
     plan->work_items = context->launch.work_items;
     plan->own_slabs = (plan->own_end - plan->own_first + slab_layers - 1) / slab_layers;
     plan->slab_count = plan->own_slabs + (plan->own_end < plan->layer_count);
-    tiles_shape(context, grid, plan);
+    slab_plan_tiles(context, grid, plan);
     *bytes = plan_bytes(context, grid, plan, &largest);
     uint64_t words =
         (plan->needs.zeros ? 2ull : 1) * BRICK_WORDS * plan_window_layers(plan) * plan_bricks_per_layer(plan);
@@ -186,7 +187,7 @@ static uint32_t windows_fit(const tc_context *context, const tc_grid *grid, slab
 
 static uint32_t layers_most(const tc_grid *grid, const slab_plan *plan) {
     const uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES;
-    return (uint32_t)min_u64(scan_samples(plan->needs) / layer_samples, plan->own_end - plan->own_first);
+    return (uint32_t)min_u64(slab_samples_most(plan->needs) / layer_samples, plan->own_end - plan->own_first);
 }
 
 static uint32_t layers_of(int64_t planes) { return (uint32_t)((planes + BRICK_PLANES - 1) / BRICK_PLANES); }
@@ -253,10 +254,10 @@ tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_ne
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     const uint64_t budget = context_budget(context);
     *plan = plan_begin(grid, needs);
-    if (layer_samples > scan_samples(needs))
+    if (layer_samples > slab_samples_most(needs))
         return (tc_status)fail(TC_ERROR_LIMIT, "a plane of %lld x %lld samples is too large: four planes may have %llu",
                                (long long)grid->dims[0], (long long)grid->dims[1],
-                               (unsigned long long)scan_samples(needs));
+                               (unsigned long long)slab_samples_most(needs));
     const uint32_t most = layers_most(grid, plan);
     plan->samples_whole = plan->words_whole = true;
     plan->overlaps = !context->in_place;

@@ -52,6 +52,14 @@ typedef enum sample_place { SAMPLES_THAT_FIT, SAMPLES_WHOLE, SAMPLES_IN_WINDOWS 
 tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_place samples,
                          slab_plan *plan);
 
+/* Shapes the tiles of a plan whose sizes are set. */
+void slab_plan_tiles(const tc_context *context, const tc_grid *grid, slab_plan *plan);
+
+/* The most samples of a slab, so that its counts fit a scan word. */
+uint64_t slab_samples_most(plan_needs needs);
+
+bool grid_can_miss_samples(const tc_grid *grid);
+
 /* Shapes the tiles again where the context has changed to the other variant of the kernels. */
 void slab_plan_reshape(const tc_context *context, const tc_grid *grid, slab_plan *plan);
 

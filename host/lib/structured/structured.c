@@ -11,9 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The fields that all slabs share. */
-static slab base_of(const tc_grid *grid, const slab_plan *plan, inside_range inside,
-                    const tc_extract_options *options) {
+slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside, const tc_extract_options *options) {
     slab s = {.test = isovalue_test_of(inside, options->isovalue),
               .snapping = {.threshold = (float)options->snap},
               .arrays = {.has_blanked_samples = grid->blanked_samples != NULL,
@@ -45,15 +43,14 @@ static tc_status brick_fill(tc_context *context, const device_buffer *words, uin
     return error ? context_fail(context, "filling constant sign words", error) : TC_OK;
 }
 
-/* Sign words, the constant bricks before them; then words of zeros, bricks without any before them. */
-static tc_status words_reserve(const run *r, device_buffer *words, uint64_t brick_count) {
-    const uint64_t zeros = plan_zero_bricks(r->plan), bricks = zeros + UNIFORM_BRICKS + brick_count;
+tc_status sign_words_reserve(tc_context *context, device_buffer *words, uint64_t zeros, uint64_t brick_count) {
+    const uint64_t bricks = zeros + UNIFORM_BRICKS + brick_count;
     const bool had = words->memory && 8 * BRICK_WORDS * bricks <= words->bytes;
-    tc_status status = buffer_reserve(r->context, words, 8 * BRICK_WORDS * bricks, "sign words");
+    tc_status status = buffer_reserve(context, words, 8 * BRICK_WORDS * bricks, "sign words");
     for (uint64_t sign = 0; sign < UNIFORM_BRICKS && !status && !had; sign++)
-        status = brick_fill(r->context, words, sign, sign == SIGN_INSIDE ? UINT64_MAX : 0);
+        status = brick_fill(context, words, sign, sign == SIGN_INSIDE ? UINT64_MAX : 0);
     for (uint64_t sign = 0; sign < UNIFORM_BRICKS && !status && zeros; sign++)
-        status = brick_fill(r->context, words, zeros + sign, 0);
+        status = brick_fill(context, words, zeros + sign, 0);
     return status;
 }
 
@@ -76,7 +73,7 @@ static tc_status word_buffers_reserve(run *r, word_buffers *w) {
                                    {&w->triangle_offsets, 2 * words, "triangle offsets"},
                                    {&w->bricks, sizeof(brick_state) * bricks, "bricks"},
                                    {&w->active, 4 * bricks, "active bricks"}};
-    tc_status status = words_reserve(r, &w->words, bricks);
+    tc_status status = sign_words_reserve(r->context, &w->words, plan_zero_bricks(r->plan), bricks);
     return status ? status : buffers_reserve(r->context, buffers, sizeof buffers / sizeof *buffers);
 }
 
@@ -170,7 +167,7 @@ tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, in
                .method = options->method,
                .closed = options->closed,
                .made = channels_asked(options),
-               .base = base_of(grid, plan, inside, options)};
+               .base = slab_base(grid, plan, inside, options)};
     r->copies = r->context->queue;
     if (!status) status = kernels_get(r->context, structured_kind(grid, options, emits), &r->kernels);
     r->start_ms = clock_ms();

@@ -11,15 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. */
-static tc_status part_open(run *r, device_buffer *buffer, const host_block *block, uint64_t first, uint64_t end,
-                           uint32_t *offset, const char *name) {
+tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                         uint64_t end, uint32_t *offset, const char *name) {
     *offset = 0;
-    if (first == end) return buffer_reserve(r->context, buffer, 4, name);
-    if (!r->context->in_place) return buffer_reserve(r->context, buffer, end - first, name);
+    if (first == end) return buffer_reserve(context, buffer, 4, name);
+    if (!context->in_place) return buffer_reserve(context, buffer, end - first, name);
     uint64_t start = first & ~(uint64_t)(PAGE_BYTES - 1);
     *offset = (uint32_t)((first - start) / 4);
-    return buffer_wrap(r->context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
+    return buffer_wrap(context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
 }
 
 static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
@@ -29,29 +28,29 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     tc_status status = TC_OK;
     for (int n = 0; n < CHANNEL_COUNT && !status; n++)
         if (channel_in(r->made, n))
-            status =
-                part_open(r, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset, mesh_channels[n].name);
-    if (!status) status = part_open(r, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
+            status = mesh_part_open(r->context, &b->channels[n], &mesh->channels[n], v0, v1, &w->vertex_offset,
+                                    mesh_channels[n].name);
+    if (!status)
+        status = mesh_part_open(r->context, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
 }
 
-/* Makes what the device wrote in the host's memory visible to the host. */
-static tc_status part_sync(run *r, device_buffer *buffer) {
-    cl_command_queue queue = r->context->queue;
+tc_status mesh_part_sync(tc_context *context, device_buffer *buffer) {
+    cl_command_queue queue = context->queue;
     cl_int error;
     void *mapped =
         cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
     if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
-    buffer_release(r->context, buffer);
-    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
+    buffer_release(context, buffer);
+    return error ? context_fail(context, "reading the mesh back", error) : TC_OK;
 }
 
 static tc_status window_sync(run *r, const mesh_window *w) {
     mesh_buffers *b = w->buffers;
     tc_status status = TC_OK;
     for (int n = 0; n < CHANNEL_COUNT && w->vertex0 < w->vertex1 && !status; n++)
-        if (channel_in(r->made, n)) status = part_sync(r, &b->channels[n]);
-    if (!status && w->triangle0 < w->triangle1) status = part_sync(r, &b->triangles);
+        if (channel_in(r->made, n)) status = mesh_part_sync(r->context, &b->channels[n]);
+    if (!status && w->triangle0 < w->triangle1) status = mesh_part_sync(r->context, &b->triangles);
     return status;
 }
 

@@ -102,6 +102,28 @@ tc_status steps_run(run *r, const step_stages *stages, uint32_t count, bool over
 tc_status run_begin(run *r, tc_grid *grid, const tc_extract_options *options, inside_range inside, bool emits);
 void run_end(run *r, tc_status status);
 
+/* The fields that all slabs of a plan share. */
+slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside, const tc_extract_options *options);
+
+/* Makes planes z0 <= z < z1 of an array available, in a buffer of `room` bytes: in place where the device can, else by
+ * a copy, only enqueued. */
+tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queue, device_buffer *buffer, int array,
+                             uint64_t z0, uint64_t z1);
+
+/* Where the first planes of the slab's arrays are in their buffers; they have planes up to before `end`. */
+void slab_arrays_locate(const tc_grid *grid, uint64_t end, slab *s);
+
+/* Sign words, the constant bricks before them; then words of zeros, bricks without any before them. */
+tc_status sign_words_reserve(tc_context *context, device_buffer *words, uint64_t zero_bricks, uint64_t brick_count);
+
+/* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. *offset: 32-bit
+ * items before them in it. */
+tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                         uint64_t end, uint32_t *offset, const char *name);
+
+/* Makes what the device wrote in the host's memory visible to the host. */
+tc_status mesh_part_sync(tc_context *context, device_buffer *buffer);
+
 /* Adds up the heads of all slabs. */
 void totals_add(run *r);
 

@@ -36,9 +36,8 @@ struct _cl_mem *structured_samples(const tc_grid *grid, uint64_t *offset) {
     return grid->device->arrays[ARRAY_SAMPLES].memory;
 }
 
-/* Makes planes z0 <= z < z1 available: in place where the device can, else by a copy, only enqueued. */
-static tc_status array_provide(tc_grid *grid, const slab_plan *plan, cl_command_queue queue, device_buffer *buffer,
-                               int array, uint64_t z0, uint64_t z1) {
+tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queue, device_buffer *buffer, int array,
+                             uint64_t z0, uint64_t z1) {
     tc_context *context = grid->context;
     if (!grid_array_data(grid, array)) return TC_OK;
     if (z1 > array_planes(grid, array)) z1 = array_planes(grid, array);
@@ -48,7 +47,6 @@ static tc_status array_provide(tc_grid *grid, const slab_plan *plan, cl_command_
         uintptr_t before = (uintptr_t)start & (PAGE_BYTES - 1);
         return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
     }
-    uint64_t room = plan_array_bytes(plan, grid, array);
     tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
@@ -60,8 +58,8 @@ static tc_status arrays_provide(tc_grid *grid) {
     cl_command_queue queue = grid->context->queue;
     tc_status status = TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
-        status = array_provide(grid, &grid->device->plans[0][0], queue, &grid->device->arrays[array], array, 0,
-                               array_planes(grid, array));
+        status = grid_array_provide(grid, plan_array_bytes(&grid->device->plans[0][0], grid, array), queue,
+                                    &grid->device->arrays[array], array, 0, array_planes(grid, array));
     if (status || grid->context->in_place) return status;
     cl_int error = cl->Finish(queue);
     return error ? context_fail(grid->context, "copying a grid to the device", error) : TC_OK;
@@ -168,16 +166,14 @@ tc_status slab_load(run *r, slab_ref ref, bool emits) {
     if (r->plan->samples_whole) return TC_OK;
     for (int array = 0; array < ARRAY_COUNT && !status; array++)
         if (emits || array != ARRAY_POINTS)
-            status = array_provide(r->grid, r->plan, r->copies, slab_array(r, ref, array), array,
-                                   slab_samples_begin(r->plan, ref.slab_index),
-                                   slab_samples_end(r->plan, r->grid, ref.slab_index));
+            status = grid_array_provide(r->grid, plan_array_bytes(r->plan, r->grid, array), r->copies,
+                                        slab_array(r, ref, array), array, slab_samples_begin(r->plan, ref.slab_index),
+                                        slab_samples_end(r->plan, r->grid, ref.slab_index));
     return status;
 }
 
-/* Where the slab's first planes are in their buffers. */
-static void slab_offsets(const run *r, uint32_t slab_index, slab *s) {
-    const tc_grid *grid = r->grid;
-    uint64_t begin = s->arrays.sample_z, end = slab_samples_end(r->plan, grid, slab_index);
+void slab_arrays_locate(const tc_grid *grid, uint64_t end, slab *s) {
+    const uint64_t begin = s->arrays.sample_z;
     uint64_t cell_end = end < s->nz ? end : s->nz - 1;
     s->arrays.sample_offset = array_offset(grid, ARRAY_SAMPLES, begin);
     s->arrays.sample_count = (end - begin) * s->nx * s->ny;
@@ -208,7 +204,7 @@ void slab_describe(const run *r, slab_ref ref, slab *out) {
     s->results.active_offset = (uint32_t)((s->z0 - s->results.word_z) / BRICK_PLANES * plan_bricks_per_layer(r->plan));
     s->tiling.tile_count = tile_count_of(s);
     s->snapping.zero_bricks = plan_zero_bricks(r->plan);
-    slab_offsets(r, slab_index, s);
+    slab_arrays_locate(r->grid, slab_samples_end(r->plan, r->grid, slab_index), s);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- store */

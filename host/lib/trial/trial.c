@@ -9,6 +9,8 @@
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
 #include "surface/surface.h"
+#include "reference/reference_interval.h"
+#include "structured/structured_interval.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -134,6 +136,45 @@ static tc_status kernels_build(tc_context *context, kernel_kind kind) {
     return status ? status : context_progress(context, "run", 0);
 }
 
+/* What one interval volume has is compared, counts first. */
+static tc_status interval_compare(tc_context *context, const trial_volume *v, tc_grid *grid,
+                                  const tc_interval_options *how, const tc_interval *expected) {
+    interval_size size;
+    double ms;
+    tc_interval found = {.slab_count = 1};
+    tc_status status = structured_interval_count(grid, how, &size, &ms);
+    if (!status && memcmp(&size, &expected->size, sizeof size))
+        status = wrong(context, v, "the number of tetrahedra,", size.tetrahedra);
+    if (!status) status = structured_interval_extract(grid, how, &found);
+    const uint64_t vertices = interval_first(&size, BLOCK_COUNT), indices = 4 * size.tetrahedra;
+    uint64_t n = status ? 0 : difference(found.positions.memory, expected->positions.memory, vertices);
+    if (!status && n < vertices) status = wrong(context, v, "vertex of an interval volume,", n);
+    for (n = 0; n < indices && !status; n++)
+        if (((uint32_t *)found.tetrahedra.memory)[n] != ((uint32_t *)expected->tetrahedra.memory)[n])
+            status = wrong(context, v, "tetrahedron", n / 4);
+    host_block_release(&found.positions);
+    host_block_release(&found.tetrahedra);
+    return status;
+}
+
+static tc_status interval_try(tc_context *context, trial_volume *v) {
+    tc_context host = {.options = {.struct_size = sizeof host.options, .engine = TC_ENGINE_REFERENCE}};
+    tc_grid *grid = NULL;
+    tc_interval expected = {.slab_count = 1};
+    tc_status status = trial_volume_make(v);
+    const tc_interval_options how = {sizeof how, v->isovalue, v->isovalue + (type_is_real(v->type) ? 0.3 : 3.3)};
+    if (!status) status = trial_grid_create(v, &host, host.launch.scan, &grid);
+    if (!status) status = reference_interval_extract(grid, &how, &expected);
+    grid_destroy(grid);
+    grid = NULL;
+    if (!status) status = trial_grid_create(v, context, context->launch.scan, &grid);
+    if (!status) status = interval_compare(context, v, grid, &how, &expected);
+    grid_destroy(grid);
+    host_block_release(&expected.positions);
+    host_block_release(&expected.tetrahedra);
+    return status;
+}
+
 static tc_status volume_try(tc_context *context, trial_volume *v, kernel_kind kind) {
     tc_extract_options how[SURFACES];
     tc_mesh *meshes[SURFACES] = {NULL, NULL};
@@ -161,7 +202,7 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
                       .plain = channel_in(kind.made, CHANNEL_NORMALS)};
     tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;
     context->tries = true;
-    if (!status) status = volume_try(context, &v, kind);
+    if (!status) status = kind.interval ? interval_try(context, &v) : volume_try(context, &v, kind);
     context->tries = false;
     trial_volume_release(&v);
     return status;

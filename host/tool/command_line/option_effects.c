@@ -94,6 +94,7 @@ typedef struct effect {
 } effect;
 
 #define NO_MESH           "--count makes no mesh: leave out "
+#define NO_VOLUME         "--count makes no volume: leave out "
 #define PART_OPTION(name) name " is for the mesh of all parts: give it to 'tetracubes join'"
 #define NOT_RAW           " describes raw input: give --dims NX,NY,NZ too, or leave it out"
 #define NOT_GRID          " is for structured grids only"
@@ -114,6 +115,11 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--part", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--part, or --count"},
     {COMMAND_EXTRACT, "--drop-degenerate", BEFORE_READING, has_no_mesh, REFUSED,
      NO_MESH "--drop-degenerate, or --count"},
+
+    {COMMAND_ISOVOLUME, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--output, or --count"},
+    {COMMAND_ISOVOLUME, "--verify", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--verify, or --count"},
+    {COMMAND_ISOVOLUME, "--check", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--check, or --count"},
+    {COMMAND_ISOVOLUME, "--carry", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--carry, or --count"},
 
     {COMMAND_EXTRACT, "--carry", BEFORE_READING, has_no_output, REFUSED,
      "--carry puts fields into the mesh's file: give -o FILE"},
@@ -139,12 +145,11 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
      "--normals has no effect on STL, which holds normals of triangles, none of vertices: ply, obj and vtp do"},
 
-    {COMMAND_EXTRACT | COMMAND_LABELS, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
+    {MAKES, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
      "--verify compares with the reference engine: it proves nothing about that engine itself; leave out --verify or "
      "--engine"},
-    {COMMAND_EXTRACT | COMMAND_LABELS, "--device", BEFORE_READING, has_no_device, TOLD,
-     "--device has no effect with --engine reference"},
-    {COMMAND_LABELS, "--max-memory", BEFORE_READING, has_no_device, TOLD,
+    {MAKES, "--device", BEFORE_READING, has_no_device, TOLD, "--device has no effect with --engine reference"},
+    {COMMAND_ISOVOLUME | COMMAND_LABELS, "--max-memory", BEFORE_READING, has_no_device, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device"},
     {COMMAND_EXTRACT, "--max-memory", BEFORE_READING, has_no_device_nor_stream, TOLD,
      "--max-memory has no effect with --engine reference: it bounds memory of a device, and of --stream"},
@@ -158,10 +163,9 @@ static const effect table[] = {
     {READS, "--endian", BEFORE_READING, has_bytes, TOLD, "--endian has no effect on samples of one byte"},
     {COMMAND_GENERATE, "--seed", BEFORE_READING, is_not_noise, TOLD, "--seed has an effect on noise alone"},
 
-    {COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, "--roi", BEFORE_READING, has_world_range, REFUSED,
+    {TAKES_PARTS, "--roi", BEFORE_READING, has_world_range, REFUSED,
      "--roi and --roi-world both choose a region: leave one out"},
-    {COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, "--step", BEFORE_READING, is_everything, TOLD,
-     "--step 1 takes every sample: it has no effect"},
+    {TAKES_PARTS, "--step", BEFORE_READING, is_everything, TOLD, "--step 1 takes every sample: it has no effect"},
 
     {COMMAND_SELFTEST, "--timeout", BEFORE_READING, has_no_time, REFUSED,
      "--timeout 0 leaves no time for a trial; leave it out for no limit"},
@@ -170,13 +174,12 @@ static const effect table[] = {
      "is unstructured: --normals are made of structured grids only"},
     {COMMAND_EXTRACT, "--method", AFTER_READING, is_snap_of_cells, REFUSED,
      "is unstructured: --method snap is for structured grids only"},
-    {COMMAND_EXTRACT | COMMAND_INFO, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
-    {COMMAND_EXTRACT | COMMAND_INFO, "--roi-world", AFTER_READING, has_cells, REFUSED,
-     "is unstructured: --roi-world" NOT_GRID},
-    {COMMAND_EXTRACT | COMMAND_INFO, "--step", AFTER_READING, has_cells, REFUSED, "is unstructured: --step" NOT_GRID},
-    {COMMAND_EXTRACT | COMMAND_INFO, "--mask", AFTER_READING, has_cells, REFUSED, "is unstructured: --mask" NOT_GRID},
-    {COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, "--skip-unsupported", AFTER_READING, has_no_cells, TOLD,
-     "is structured: it has no cells that --skip-unsupported could leave out"},
+    {TAKES_PARTS, "--roi", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi" NOT_GRID},
+    {TAKES_PARTS, "--roi-world", AFTER_READING, has_cells, REFUSED, "is unstructured: --roi-world" NOT_GRID},
+    {TAKES_PARTS, "--step", AFTER_READING, has_cells, REFUSED, "is unstructured: --step" NOT_GRID},
+    {TAKES_PARTS, "--mask", AFTER_READING, has_cells, REFUSED, "is unstructured: --mask" NOT_GRID},
+    {COMMAND_EXTRACT | COMMAND_ISOVOLUME | COMMAND_TETRAHEDRALIZE, "--skip-unsupported", AFTER_READING, has_no_cells,
+     TOLD, "is structured: it has no cells that --skip-unsupported could leave out"},
     {COMMAND_TETRAHEDRALIZE, "--nodata", AFTER_READING, has_no_field, REFUSED, "--nodata" NO_FIELD},
     {COMMAND_TETRAHEDRALIZE, "--component", AFTER_READING, has_no_field, REFUSED, "--component" NO_FIELD},
     {COMMAND_INFO, "--preview", AFTER_READING, has_only_cells, REFUSED,

@@ -38,6 +38,12 @@ const option option_table[] = {
      "isovalue, or several with commas between: samples >= V are inside"},
     {"--iso", NULL, "V[,V...]", COMMAND_INFO, VALUE_ISOVALUES, IN(isovalues), NULL,
      "of --preview: isolines to draw, of one value or of several"},
+    {"--range", NULL, "LO,HI", COMMAND_ISOVOLUME, VALUE_INTERVALS, IN(ranges), NULL,
+     "LO <= samples < HI are within; LO, and ,HI have one bound; given again:\n"
+     "one more range"},
+    {"--output", "-o", "FILE", COMMAND_ISOVOLUME, VALUE_TEXT, IN(output), NULL,
+     "unstructured grid to write: .vtu (left out: only the report); with several\n"
+     "ranges, % in FILE stands for the range as typed; - is standard output"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz, .vtkhdf or .html,\n"
      "a page that shows it in a browser (left out: only the report); with several\n"
@@ -90,6 +96,8 @@ const option option_table[] = {
      "the file's active scalars, if it has such); values of cells are averaged\n"
      "to the points between them; point:NAME and cell:NAME choose where both\n"
      "have a field of that name (else that of the points)"},
+    {"--carry", NULL, "NAME[,NAME...]", COMMAND_ISOVOLUME, VALUE_TEXT, IN(carry), NULL,
+     "fields to have at the vertices; their means and integrals are reported"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
      "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
      "name that the file needs itself, as Normals, gets _ behind"},
@@ -108,6 +116,8 @@ const option option_table[] = {
     {"--drop-degenerate", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(drop_degenerate), NULL,
      "leave out triangles of zero area, as samples that equal the isovalue make:\n"
      "their edges without length are contracted, what was closed stays closed"},
+    {"--count", NULL, NULL, COMMAND_ISOVOLUME, VALUE_NONE, IN(count), NULL,
+     "classify only: count vertices, tetrahedra and bytes, make no volume"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
      "classify only: count vertices, triangles and active cells, make no mesh"},
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,
@@ -123,13 +133,13 @@ const option option_table[] = {
      "close the surface where it ends, at the grid's border and beside missing\n"
      "cells, by the inside part of the faces there: the mesh then bounds the\n"
      "volume of samples >= V; each block by itself"},
-    {"--engine", NULL, "E", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_CHOICE, IN(engine), engine_choices,
+    {"--engine", NULL, "E", MAKES, VALUE_CHOICE, IN(engine), engine_choices,
      "opencl (default), reference: scalar C, needs no OpenCL, same bytes; or auto:\n"
      "the reference where there is no device, or it fails or gives wrong results"},
-    {"--device", NULL, "SPEC", COMMAND_EXTRACT | COMMAND_SELFTEST | COMMAND_LABELS, VALUE_TEXT, IN(device), NULL,
+    {"--device", NULL, "SPEC", MAKES | COMMAND_SELFTEST, VALUE_TEXT, IN(device), NULL,
      "an index, platform:device, cpu, gpu, gpu:1 or part of a name, see\n"
      "'tetracubes devices'; default: $TETRACUBES_DEVICE, else the first CPU"},
-    {"--max-memory", NULL, "SIZE", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_BOUND, IN(max_memory), NULL,
+    {"--max-memory", NULL, "SIZE", MAKES, VALUE_BOUND, IN(max_memory), NULL,
      "bound on device buffers, in bytes or with K, M, G, T (powers of 1024), and\n"
      "of streams on the host's memory too: less means smaller slabs and windows,\n"
      "never another result"},
@@ -146,8 +156,11 @@ const option option_table[] = {
      "cost: as much to read and to write for each rank; or the planes where all\n"
      "but the first begin, multiples of 4, as in 40,96 for three: all parts of a\n"
      "surface need the same. It never changes the mesh"},
-    {"--verify", NULL, NULL, COMMAND_EXTRACT | COMMAND_LABELS, VALUE_NONE, IN(verify), NULL,
+    {"--verify", NULL, NULL, MAKES, VALUE_NONE, IN(verify), NULL,
      "extract with the reference engine too and compare every byte"},
+    {"--check", NULL, NULL, COMMAND_ISOVOLUME, VALUE_NONE, IN(check), NULL,
+     "check the tetrahedra themselves: how they meet in faces; flat and inverted\n"
+     "ones; smallest dihedral angles: least, median, share below 5 and 10 degrees"},
     {"--check", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(check), NULL,
      "check the mesh itself: manifold, oriented; Euler characteristic, area, of\n"
      "closed surfaces volume (boundary edges are reported, they are no fault);\n"
@@ -161,7 +174,7 @@ const option option_table[] = {
      "nearest to V counts; of vectors one component equal to V is enough"},
     {"--nodata", NULL, "V", COMMAND_LABELS, VALUE_NODATA, IN(nodata), NULL,
      "samples equal to V are background"},
-    {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
+    {"--skip-unsupported", NULL, NULL, COMMAND_EXTRACT | COMMAND_ISOVOLUME | COMMAND_TETRAHEDRALIZE, VALUE_NONE, IN(skip_unsupported), NULL,
      "leave out cells of types that are not cut, and polyhedra whose faces are\n"
      "not closed, with a notice, instead of refusing the input"},
     {"--component", NULL, "C", READS, VALUE_COMPONENT, IN(component), NULL,
@@ -169,16 +182,16 @@ const option option_table[] = {
      "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
      "which volume, from 0, of data with a fourth axis"},
-    {"--roi", NULL, "I0:I1,...", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_INDICES, IN(part.indices), NULL,
+    {"--roi", NULL, "I0:I1,...", TAKES_PARTS, VALUE_INDICES, IN(part.indices), NULL,
      "only the samples of these indices along x, y and z, from I0 to before I1;\n"
      "an end left out, as in 10:,:,:50, is the grid's; regions that share a plane\n"
      "of samples, as 0:65 and 64:129, have surfaces that fit; structured grids"},
-    {"--roi-world", NULL, "X0:X1,...", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_RANGES, IN(part.world), NULL,
+    {"--roi-world", NULL, "X0:X1,...", TAKES_PARTS, VALUE_RANGES, IN(part.world), NULL,
      "the same by a box in the input's space: the fewest samples that cover it"},
-    {"--step", NULL, "N[,N,N]", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_STEP, IN(part.step), NULL,
+    {"--step", NULL, "N[,N,N]", TAKES_PARTS, VALUE_STEP, IN(part.step), NULL,
      "only every Nth sample, from the first one on, along x, y and z; points stay\n"
      "where they are; structured grids"},
-    {"--mask", NULL, "FILE", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_TEXT, IN(mask), NULL,
+    {"--mask", NULL, "FILE", TAKES_PARTS, VALUE_TEXT, IN(mask), NULL,
      "a volume of the input's size, in any format (else raw u8): where it is 0,\n"
      "samples are missing; structured grids"},
     {"--dims", NULL, "NX,NY,NZ", READS, VALUE_DIMS, IN(dims), NULL,

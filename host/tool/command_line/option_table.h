@@ -13,6 +13,7 @@ typedef enum value_kind {
     VALUE_TEXT,      /* const char * */
     VALUE_CHOICE,    /* int, the index in choices */
     VALUE_ISOVALUES, /* appended to isovalues */
+    VALUE_INTERVALS, /* one more of ranges */
     VALUE_NODATA,    /* double nodata, and has_nodata */
     VALUE_INDEX,     /* int, from 0 */
     VALUE_COMPONENT, /* the same, or COMPONENT_MAGNITUDE */

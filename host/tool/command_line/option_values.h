@@ -21,11 +21,16 @@ enum command_bit {
     COMMAND_SELFTEST = 16,
     COMMAND_TETRAHEDRALIZE = 32,
     COMMAND_JOIN = 64,
+    COMMAND_ISOVOLUME = 128,
     COMMAND_LABELS = 256,
 };
 
-/* Commands that read an input. */
-enum { READS = COMMAND_EXTRACT | COMMAND_INFO | COMMAND_TETRAHEDRALIZE | COMMAND_LABELS };
+/* Commands that make something of a grid; that take parts of one; that read an input. */
+enum {
+    MAKES = COMMAND_EXTRACT | COMMAND_ISOVOLUME | COMMAND_LABELS,
+    TAKES_PARTS = MAKES | COMMAND_INFO,
+    READS = TAKES_PARTS | COMMAND_TETRAHEDRALIZE
+};
 
 /* Of --engine: the device, and the reference where there is none or it fails. */
 enum { ENGINE_AUTO = 2 };
@@ -44,6 +49,12 @@ typedef struct typed_isovalue {
     char text[48]; /* as typed */
 } typed_isovalue;
 
+/* low < high; an end that was left out is infinite. */
+typedef struct typed_range {
+    double low, high;
+    char text[96]; /* as typed */
+} typed_range;
+
 typedef struct options {
     const char *command;
     enum command_bit bit;
@@ -52,6 +63,8 @@ typedef struct options {
 
     typed_isovalue *isovalues;
     size_t isovalue_count;
+    typed_range *ranges;
+    size_t range_count;
     const char *output; /* NULL where not given, as all texts */
     const char *format;
     const char *preview;     /* a picture */

@@ -55,7 +55,8 @@ static int parse_option(enum command_bit command, int argc, char **argv, int *at
     }
     const size_t row = (size_t)(spec - option_table);
     const uint64_t bit = (uint64_t)1 << row % 64;
-    if (o->given[row / 64] & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES)
+    if (o->given[row / 64] & bit && spec->kind != VALUE_NONE && spec->kind != VALUE_ISOVALUES &&
+        spec->kind != VALUE_INTERVALS)
         return fail(STATUS_USAGE, "%s is given twice: leave one out", spec->name);
     o->given[row / 64] |= bit;
     return parse_value(spec, value, o);
@@ -91,6 +92,7 @@ void options_release(options *o) {
     free(o->isovalues);
     free(o->cut.planes);
     free(o->labels);
+    free(o->ranges);
     free(o->operands);
     *o = (options){0};
 }

@@ -53,6 +53,41 @@ static int append_isovalue(const char *text, size_t length, options *o) {
     return 0;
 }
 
+/* An end of a range, of `length` characters; where there are none, `open`. */
+static int take_end(const char *text, size_t length, double open, double *value) {
+    char number[48];
+    for (; length && strchr(" \t", *text); length--) text++;
+    while (length && strchr(" \t", text[length - 1])) length--;
+    *value = open;
+    if (!length) return 1;
+    if (length >= sizeof number) return 0;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    const char *at = number;
+    return take_real(&at, value) && !*at;
+}
+
+static int append_range(const char *text, options *o) {
+    typed_range fresh = {0};
+    const char *comma = strchr(text, ',');
+    const int is_range = comma && strlen(text) < sizeof fresh.text &&
+                         take_end(text, (size_t)(comma - text), -(double)INFINITY, &fresh.low) &&
+                         take_end(comma + 1, strlen(comma + 1), (double)INFINITY, &fresh.high);
+    if (!is_range || (isinf(fresh.low) && isinf(fresh.high)))
+        return fail(STATUS_USAGE,
+                    "--range: '%.40s' is not two numbers with a comma between, as in 10,20; one may be left "
+                    "out, as in 10, or ,20",
+                    text);
+    if (!(fresh.low < fresh.high))
+        return fail(STATUS_USAGE, "--range: '%s': the first number has to be less than the second", text);
+    strcpy(fresh.text, text);
+    typed_range *grown = realloc(o->ranges, (o->range_count + 1) * sizeof *grown);
+    if (!grown) return fail(STATUS_FAILED, "out of memory for the ranges");
+    o->ranges = grown;
+    grown[o->range_count++] = fresh;
+    return 0;
+}
+
 static int parse_isovalues(const char *text, options *o) {
     for (;;) {
         size_t length = strcspn(text, ",");
@@ -307,6 +342,8 @@ int parse_value(const option *spec, const char *text, options *o) {
         return choice_find(spec->name, text, spec->choices, place);
     case VALUE_ISOVALUES:
         return parse_isovalues(text, o);
+    case VALUE_INTERVALS:
+        return append_range(text, o);
     case VALUE_NODATA:
         o->has_nodata = 1;
         if (take_real(&text, &o->nodata) && !*text) return 0;

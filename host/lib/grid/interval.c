@@ -1,0 +1,74 @@
+#include "grid/interval.h"
+
+#include "base/structs.h"
+#include "failure.h"
+#include "host_memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+uint64_t interval_first(const interval_size *size, int block) {
+    uint64_t first = 0;
+    for (int n = 0; n < block; n++) first += size->vertices[n];
+    return first;
+}
+
+uint64_t interval_bytes(const interval_size *size) {
+    return 3 * sizeof(float) * interval_first(size, BLOCK_COUNT) + TETRAHEDRON_BYTES * size->tetrahedra;
+}
+
+tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
+    const uint64_t vertices = interval_first(size, BLOCK_COUNT);
+    if (vertices > UINT32_MAX)
+        return (tc_status)fail(
+            TC_ERROR_LIMIT,
+            "the interval volume has %llu vertices, and indices of 32 bits reach %lu: take a narrower "
+            "interval, or parts of the grid",
+            (unsigned long long)vertices, (unsigned long)UINT32_MAX);
+    const uint64_t held = interval->positions.bytes + interval->tetrahedra.bytes, available = host_memory_available();
+    if (interval_bytes(size) > held && interval_bytes(size) - held > available)
+        return (tc_status)fail(
+            TC_ERROR_MEMORY,
+            "the interval volume takes %llu bytes, and %llu are available: take a narrower interval, or "
+            "parts of the grid",
+            (unsigned long long)interval_bytes(size), (unsigned long long)(available + held));
+    tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float));
+    if (!status) status = host_block_reserve(&interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
+    if (!status) interval->size = *size;
+    return status;
+}
+
+void interval_clear(tc_interval *interval) {
+    interval->size = (interval_size){0};
+    memset(interval->origin, 0, sizeof interval->origin);
+    interval->slab_count = 1;
+    interval->timings = (tc_timings){0};
+}
+
+tc_status tc_interval_get(const tc_interval *interval, tc_interval_data *data) {
+    tc_status status = struct_clear(data, sizeof *data, "tc_interval_get: data");
+    if (status) return status;
+    if (!interval) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_interval_get needs an interval volume");
+    const interval_size *size = &interval->size;
+    const uint64_t vertices = interval_first(size, BLOCK_COUNT);
+    const tc_interval_data found = {.struct_size = sizeof found,
+                                    .vertex_count = vertices,
+                                    .sample_count = size->vertices[BLOCK_SAMPLES],
+                                    .low_count = size->vertices[BLOCK_LOW],
+                                    .high_count = size->vertices[BLOCK_HIGH],
+                                    .tetrahedron_count = size->tetrahedra,
+                                    .positions = vertices ? interval->positions.memory : NULL,
+                                    .tetrahedra = size->tetrahedra ? interval->tetrahedra.memory : NULL,
+                                    .slab_count = interval->slab_count,
+                                    .timings = interval->timings,
+                                    .origin = {interval->origin[0], interval->origin[1], interval->origin[2]}};
+    struct_copy_out(data, &found);
+    return TC_OK;
+}
+
+void tc_interval_destroy(tc_interval *interval) {
+    if (!interval) return;
+    host_block_release(&interval->positions);
+    host_block_release(&interval->tetrahedra);
+    free(interval);
+}

@@ -1,0 +1,40 @@
+/*
+ * interval.h - an interval volume as its engines fill it, in host memory that is kept between extractions
+ */
+#ifndef INTERVAL_H
+#define INTERVAL_H
+
+#include "base/host_block.h"
+#include "tetracubes.h"
+
+enum { TETRAHEDRON_BYTES = 16 };
+
+/* Vertices lie in blocks: samples within, crossings of the low bound, crossings of the high bound. */
+enum { BLOCK_SAMPLES, BLOCK_LOW, BLOCK_HIGH, BLOCK_COUNT };
+
+typedef struct interval_size {
+    uint64_t vertices[BLOCK_COUNT];
+    uint64_t tetrahedra;
+} interval_size;
+
+struct tc_interval {
+    interval_size size;
+    double origin[3]; /* that positions are relative to */
+    host_block positions, tetrahedra;
+    uint32_t slab_count;
+    tc_timings timings;
+};
+
+/* The number of a block's first vertex; of BLOCK_COUNT: of all vertices. */
+uint64_t interval_first(const interval_size *size, int block);
+
+/* Bytes of positions and tetrahedra. */
+uint64_t interval_bytes(const interval_size *size);
+
+/* Sets the size and reserves the memory; checks that indices fit 32 bits. */
+tc_status interval_allocate(tc_interval *interval, const interval_size *size);
+
+/* Nothing in it; memory is kept. */
+void interval_clear(tc_interval *interval);
+
+#endif

@@ -1,0 +1,64 @@
+/*
+ * interval_job.h - what the host tells the kernels of interval volumes, beside the slab: read by both compilers
+ *
+ * The slab is a window: layers that are emitted, and one more, where their last cubes have vertices. Both bounds have
+ * been classified over all of it.
+ */
+#ifndef INTERVAL_JOB_H
+#define INTERVAL_JOB_H
+
+#include "slab.h"
+
+/* Blocks of vertices. */
+enum { INTERVAL_SAMPLES, INTERVAL_LOW_BOUND, INTERVAL_HIGH_BOUND, INTERVAL_BLOCKS };
+
+/* What a brick has: while it is counted its own sums, then those of the bricks before it in the slab. */
+typedef struct interval_brick {
+    slab_u32 tetrahedra, samples;
+} interval_brick;
+
+typedef struct interval_job {
+    slab_u64 high_isovalue64; /* as in isovalue_test, which is that of the low bound */
+    slab_f32 high_isovalue32;
+    slab_u32 has_low, has_high;       /* without a bound all samples are on the inner side of it */
+    slab_u32 own_bricks, all_bricks;  /* of the layers that are emitted, and of the window */
+    slab_u32 brick_first, brick_last; /* those that a launch emits */
+    slab_u32 first[INTERVAL_BLOCKS];  /* number of the slab's first vertex of each block */
+    slab_u32 window[INTERVAL_BLOCKS]; /* number of the vertex that each buffer starts with */
+    slab_u32 offset[INTERVAL_BLOCKS]; /* floats in the buffer before that */
+    slab_u32 tetrahedron_window;      /* the same of tetrahedra, from the slab's first on */
+    slab_u32 tetrahedron_offset;      /* indices in the buffer before that */
+    slab_u32 reserved;
+} interval_job;
+
+/* A vertex of a tetrahedron that a cube has, as a byte: block, the row of samples that owns it (y + 2 z), its type of
+ * edge, and whether the owner is at x + 1. Samples have type 0. */
+#define INTERVAL_PLACE(block, row, type)        (((block)*4 + (row)) * 8 + (type))
+#define INTERVAL_VERTEX(block, row, type, at_x) (2 * INTERVAL_PLACE(block, row, type) + (at_x))
+enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
+
+/* The table of cases. First, for each of 2 parities x 5 tetrahedra, what a pattern of a cube's corners is to the base 3
+ * in the tetrahedron: the digits of the corners that are not below, added to those of the ones above, are its case.
+ * Then for each of them 81 entries: how many tetrahedra there are, and how many vertices; these; and for each corner of
+ * a tetrahedron which of them it is. */
+enum {
+    INTERVAL_ORDERED = 10,
+    INTERVAL_CASE_COUNT = 81,
+    INTERVAL_ENTRY_VERTICES = 2,
+    INTERVAL_VERTICES_MOST = 8,
+    INTERVAL_ENTRY_CORNERS = INTERVAL_ENTRY_VERTICES + INTERVAL_VERTICES_MOST,
+    INTERVAL_ENTRY_BYTES = INTERVAL_ENTRY_CORNERS + 6 * 4 + 2,
+    INTERVAL_DIGIT_BYTES = INTERVAL_ORDERED * 256,
+    INTERVAL_TABLE_BYTES = INTERVAL_DIGIT_BYTES + INTERVAL_ORDERED * INTERVAL_CASE_COUNT * INTERVAL_ENTRY_BYTES,
+    INTERVAL_WITHIN = 40 /* the case of a tetrahedron that lies within whole */
+};
+
+/* The table of counts: tetrahedra in one of which so many corners are not below, and so many above, at index 5 times
+ * the first plus the second. */
+enum { INTERVAL_COUNTS = 25 };
+
+#ifndef __OPENCL_VERSION__
+_Static_assert(sizeof(interval_job) == 8 + 20 * 4, "no padding: see slab.h");
+#endif
+
+#endif

@@ -1,0 +1,229 @@
+/*
+ * interval_places.cl - numbers of the vertices of an interval volume
+ *
+ * A vertex is owned by a sample, at a place (INTERVAL_PLACE): itself, or on an edge with a bound. Its number is that of
+ * the first vertex there in the row, and the vertices of that place at lower x: a population count of a word. For a row
+ * of cubes a work-item alone makes a table of words and first numbers. Work-items of groups make the word when a
+ * tetrahedron names the vertex, as a table with a variable index would lie in slow memory.
+ */
+#ifndef INTERVAL_PLACES_CL
+#define INTERVAL_PLACES_CL
+
+#include "interval_rows.cl"
+
+/* Sums over bricks and rows. */
+typedef struct interval_sums {
+    global const uint *rows;
+    global const interval_brick *bricks;
+} interval_sums;
+
+/* A row of cubes, and what its numbers are made of. */
+typedef struct places_row {
+    const slab *s;
+    const interval_job *job;
+    const bound *low, *high;
+    interval_sums sums;
+    const interval_rows *rows;
+    global const ulong *cells;
+    uint y, z, w;
+} places_row;
+
+/* The number of the first sample within of a row. */
+inline_always uint sample_first(const slab *s, const interval_job *job, interval_sums sums, uint y, uint z, uint w) {
+    const uint number = brick_index(s, y, z, w);
+    return job->first[INTERVAL_SAMPLES] + sums.bricks[number].samples +
+           (sums.rows[BRICK_WORDS * number + row_in_brick(s, y, z)] & 0xffff);
+}
+
+/* Where the numbers of the vertices of a bound begin that a row owns. */
+inline_always owner bound_owner(const slab *s, const bound *b, uint first, uint y, uint z, uint w) {
+    const uint number = brick_index(s, y, z, w);
+    owner o = {first + b->bricks[number].vertices, b->offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
+    return o;
+}
+
+/* Edges with a vertex that the samples of row n of a row of cubes own. In rows behind the first only those of types are
+ * right that the cubes have. */
+inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], uint n, global const ulong *cells,
+                                      uint y, uint z, uint w) {
+    const sample_rows none = rows_shifted(0, 0);
+    const cube_rows r = cube_rows_of(s, y + (n & 1), z + (n >> 1), w, rows[n], n & 1 ? none : rows[n + 1 & 3],
+                                     n >> 1 ? none : rows[n + 2 & 3], n ? none : rows[3]);
+    crossings edges = crossings_owned(&r);
+#if MISSING
+    crossings_keep(s, cells, y + (n & 1), z + (n >> 1), w, &edges);
+#endif
+    return edges;
+}
+
+#if WORK_ITEMS >= 32
+#if MISSING
+
+/* Edges of a type that a present cube has. */
+inline_always ulong edges_kept(const slab *s, global const ulong *cells, uint y, uint z, uint w, uint type) {
+    const bool spans_x = type == 0 || type == 3 || type == 4, low_y = type == 0 || type == 2 || type == 4;
+    const bool low_z = type == 0 || type == 1 || type == 3;
+    ulong kept = spans_x ? cells_at(s, cells, y, z, w) : cells_before(s, cells, y, z, w);
+    if (low_y) kept |= spans_x ? cells_at(s, cells, y - 1, z, w) : cells_before(s, cells, y - 1, z, w);
+    if (low_z) kept |= spans_x ? cells_at(s, cells, y, z - 1, w) : cells_before(s, cells, y, z - 1, w);
+    if (low_y && low_z) kept |= cells_at(s, cells, y - 1, z - 1, w);
+    return kept;
+}
+
+#endif
+
+/* Edges of a type with a vertex of the bound that the samples of a row own. */
+inline_always ulong edges_word(const slab *s, const bound *b, global const ulong *cells, uint y, uint z, uint w,
+                               uint type) {
+    const uint up = type == 1 || type == 3 || type == 5, deep = type == 2 || type >= 4;
+    if (y + up >= s->ny || z + deep >= s->nz) return 0;
+    const ulong even = even_cubes(s, y, z), valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
+    const sample_rows here = bound_row(s, b, y, z, w), there = bound_row(s, b, y + up, z + deep, w);
+    ulong crossed = (here.at ^ there.at) & valid;
+    if (type == 0) crossed = (here.at ^ here.next) & has_x;
+    if (type == 3 || type == 4) crossed = choose(even, here.at ^ there.next, here.next ^ there.at) & has_x;
+    if (type == 5)
+        crossed = choose(even, crossed, (bound_row(s, b, y + 1, z, w).at ^ bound_row(s, b, y, z + 1, w).at) & valid);
+#if MISSING
+    crossed &= edges_kept(s, cells, y, z, w, type);
+#endif
+    return crossed;
+}
+
+/* The word of a place: samples that own a vertex there. */
+inline_always ulong place_word(const places_row *r, uint place) {
+    const uint block = place >> 5, y = r->y + (place >> 3 & 1), z = r->z + (place >> 4 & 1);
+    if (block == INTERVAL_SAMPLES) return samples_within(r->s, r->low, r->high, r->cells, y, z, r->w);
+    return edges_word(r->s, block == INTERVAL_LOW_BOUND ? r->low : r->high, r->cells, y, z, r->w, place & 7);
+}
+
+#endif
+
+/* The number of the first vertex of a place, in word w of its row. */
+inline_always uint place_first(const places_row *r, uint place, uint w) {
+    const uint block = place >> 5, y = r->y + (place >> 3 & 1), z = r->z + (place >> 4 & 1);
+    if (block == INTERVAL_SAMPLES) return sample_first(r->s, r->job, r->sums, y, z, w);
+    const bound *b = block == INTERVAL_LOW_BOUND ? r->low : r->high;
+    const uint first = r->job->first[block == INTERVAL_LOW_BOUND ? INTERVAL_LOW_BOUND : INTERVAL_HIGH_BOUND];
+    return number_of(bound_owner(r->s, b, first, y, z, w), place & 7);
+}
+
+/* An entry of the table of cases: parity of a cube, tetrahedron, case. */
+inline_always global const uchar *interval_entry(global const uchar *cases, uint ordered, uint index) {
+    return cases + INTERVAL_DIGIT_BYTES + INTERVAL_ENTRY_BYTES * (INTERVAL_CASE_COUNT * ordered + index);
+}
+
+/* Vertex m, of 40, of two cubes side by side that lie within whole. */
+inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
+    global const uchar *entry = interval_entry(cases, 5 * (odd ^ (m >= 20)) + m / 4 % 5, INTERVAL_WITHIN);
+    return entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m % 4]];
+}
+
+#if WORK_ITEMS < 32
+
+/* For each place its word, the number of the first vertex, and of the first one in the next word. */
+typedef struct row_places {
+    ulong word[INTERVAL_PLACES];
+    uint first[INTERVAL_PLACES], next[INTERVAL_PLACES];
+} row_places;
+
+/* Types of edges that cubes have of row n of their rows of samples: a bit each. */
+#define ROW_TYPES(n) ((n) == 0 ? 0x3fu : (n) == 1 ? 0x15u : (n) == 2 ? 0x0bu : 0x01u)
+
+inline_always void place_fill(const places_row *r, uint place, ulong word, row_places *p) {
+    p->word[place] = word;
+    p->first[place] = place_first(r, place, r->w);
+    p->next[place] = r->w + 1 < r->s->words_x ? place_first(r, place, r->w + 1) : 0;
+}
+
+inline_always void places_of_bound(const places_row *r, const bound *b, const sample_rows rows[4], uint block,
+                                   row_places *p) {
+    if (!b->exists) return;
+#pragma unroll
+    for (uint n = 0; n < 4; n++) {
+        const crossings edges = row_crossings(r->s, rows, n, r->cells, r->y, r->z, r->w);
+#pragma unroll
+        for (uint type = 0; type < 6; type++)
+            if (ROW_TYPES(n) >> type & 1) place_fill(r, INTERVAL_PLACE(block, n, type), edges.type[type], p);
+    }
+}
+
+/* partial: cubes that are not within whole, so that their vertices are on edges too. */
+inline_always void places_begin(const places_row *r, ulong partial, row_places *p) {
+#pragma unroll
+    for (uint n = 0; n < 4; n++)
+        place_fill(r, INTERVAL_PLACE(INTERVAL_SAMPLES, n, 0),
+                   samples_within(r->s, r->low, r->high, r->cells, r->y + (n & 1), r->z + (n >> 1), r->w), p);
+    if (!partial) return;
+    places_of_bound(r, r->low, r->rows->low, INTERVAL_LOW_BOUND, p);
+    places_of_bound(r, r->high, r->rows->high, INTERVAL_HIGH_BOUND, p);
+}
+
+/* The number of a vertex (INTERVAL_VERTEX) of the cube at a bit of the row. */
+inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
+    const uint place = vertex >> 1, x = bit + (vertex & 1);
+    return x == 64 ? p->next[place] : p->first[place] + (uint)popcount(p->word[place] & ((1ul << x) - 1));
+}
+
+/* The tetrahedra of an entry, for the cube at a bit. */
+inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
+                                       global uint *out) {
+    uint numbers[INTERVAL_VERTICES_MOST];
+    const uint corners = 4 * (uint)entry[0], vertices = entry[1];
+    for (uint n = 0; n < vertices; n++) numbers[n] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
+    for (uint m = 0; m < corners; m++) out[m] = numbers[entry[INTERVAL_ENTRY_CORNERS + m]];
+    return out + corners;
+}
+
+/* Cubes that lie within whole, `length` of them from a bit on; the last is not the row's. Numbers rise by one from cube
+ * to cube. */
+inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,
+                                     global const uchar *cases, global uint *out) {
+    uint start[40];
+    uint8 pair[5];
+    for (uint m = 0; m < 40; m++) start[m] = place_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
+#pragma unroll
+    for (uint n = 0; n < 5; n++) pair[n] = vload8(n, start);
+    for (uint n = 0; n + 2 <= length; n += 2, out += 40) {
+#pragma unroll
+        for (uint m = 0; m < 5; m++) vstore8(pair[m] + n, m, out);
+    }
+    for (uint m = 0; m < 20 && length & 1; m++) out[m] = start[m] + length - 1;
+    return length & 1 ? out + 20 : out;
+}
+
+#else
+
+typedef struct row_places {
+    uint none;
+} row_places;
+
+inline_always void places_begin(const places_row *r, ulong partial, row_places *p) { p->none = 0; }
+
+inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
+    const uint place = vertex >> 1, x = bit + (vertex & 1);
+    if (x == 64) return place_first(r, place, r->w + 1);
+    return place_first(r, place, r->w) + (uint)popcount(place_word(r, place) & ((1ul << x) - 1));
+}
+
+inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
+                                       global uint *out) {
+    const uint corners = 4 * (uint)entry[0];
+    for (uint m = 0; m < corners; m++)
+        out[m] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m]], bit);
+    return out + corners;
+}
+
+inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,
+                                     global const uchar *cases, global uint *out) {
+#pragma unroll 1
+    for (uint m = 0; m < 40; m++) {
+        const uint start = place_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
+        for (uint n = 0; n + (m >= 20) < length; n += 2) out[20 * n + m] = start + n;
+    }
+    return out + 20 * length;
+}
+
+#endif
+
+#endif
