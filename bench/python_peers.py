@@ -7,7 +7,7 @@ From a C-contiguous float32 volume (z, y, x) to numpy arrays of vertices and fac
 caller waits for. Every package has a first call that does not count, then turns, in the reverse order on every other
 repeat; one that takes over a second has three. Medians are printed.
 
-  tetracubes, hybrid, snap, closed  isosurface() by each method, and closed by the reference engine
+  tetracubes, hybrid, snap, closed  isosurface() by each method, and closed
   compat    tetracubes.compat.marching_cubes, with normals and values as scikit-image returns them
   skimage   skimage.measure.marching_cubes
   mcubes    mcubes.marching_cubes (PyMCubes); its vertices are float64

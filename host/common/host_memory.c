@@ -2,6 +2,7 @@
 #include "host_memory.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -14,13 +15,15 @@ static uint64_t minus(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
 /* The number behind a name in a file of lines, in units of `unit`; otherwise when it is not there. */
 static uint64_t number_in(const char *path, const char *name, uint64_t unit, uint64_t otherwise) {
     char line[256];
-    unsigned long long number;
     FILE *file = fopen(path, "r");
-    while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, name, strlen(name)) == 0 && sscanf(line + strlen(name), "%llu", &number) == 1) {
-            otherwise = unit * number;
-            break;
-        }
+    while (file && fgets(line, sizeof line, file)) {
+        char *digits = line + strlen(name), *end = digits;
+        if (strncmp(line, name, strlen(name)) != 0) continue;
+        const unsigned long long number = strtoull(digits, &end, 10);
+        if (end == digits) continue;
+        otherwise = unit * number;
+        break;
+    }
     if (file) fclose(file);
     return otherwise;
 }

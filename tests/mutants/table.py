@@ -82,6 +82,7 @@ TESTS = {
     "test_closed, u8 snap": test("surface/test_closed_device", "u8, snap", ("alone",), device=True),
     "test_closed, f32": test("surface/test_closed_device", "f32, tetra", ("alone",), device=True),
     "test_closed, bricks": test("surface/test_closed_device", "bricks inside", ("alone",), device=True),
+    "test_closed, gaps": test("surface/test_closed_device", "gaps inside", ("alone",), device=True),
     "test_closed, groups": test("surface/test_closed_device", "u8, tetra", ("groups",), device=True),
     "test_device, snap": test("surface/test_device", "1 work-items*", ("snap",), device=True),
     "test_device, snap in groups": test("surface/test_device", "32 work-items*", ("snap",), device=True),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The wheel, in an environment of its own beside the packages that people use it with, from PyPI.
 
-    packages.py SOURCE FOLDER
+    packages.py SOURCE FOLDER TOOL
 
 Builds the wheel by host/python/manylinux, installs it, runs all tests of tests/python on it and those of files that VTK
 writes and reads, and measures what a call costs beside the same calls of the C library. Its tool makes the same mesh and
@@ -108,7 +108,8 @@ def main():
     here = Path(__file__).resolve().parent
     run(python / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", here, env={**clean, "TEST_PACKAGES": "1"})
     tool = next((folder / "packages").glob("lib/*/site-packages/tetracubes/tetracubes"))
-    run(python / "python", here.parent / "tool" / "test_pieces_vtk.py", tool, "reference", env=clean)  # VTK: of pyvista
+    for one in (tool, sys.argv[3]):  # by the VTK of pyvista; TOOL may have HDF5
+        run(python / "python", here.parent / "tool" / "test_pieces_vtk.py", one, "reference", env=clean)
     ratios = json.loads(run(python / "python", here / "round_trip.py", env=clean, stdout=subprocess.PIPE, text=True).stdout)
     print(f"{made.name}: {size} bytes; time by that of the C calls: {ratios}")
     wanted, elsewhere = told(python / "python", folder), tried_elsewhere(made, folder)

@@ -227,6 +227,33 @@ static void test_inside_bricks(void) {
     }
 }
 
+/* A sample is missing beside a brick that is all inside, or in it: 64 x 8 x 4 samples from (64, 8, 4) on. */
+static void test_inside_gaps(void) {
+    static const int64_t gaps[][3] = {{62, 12, 6},  {63, 12, 6}, {64, 12, 6}, {127, 12, 6}, {128, 12, 6},
+                                      {129, 12, 6}, {90, 6, 6},  {90, 7, 6},  {90, 16, 6},  {90, 17, 6},
+                                      {90, 12, 2},  {90, 12, 3}, {90, 12, 8}, {90, 12, 9}};
+    const int64_t dims[3] = {140, 26, 13};
+    tc_grid_options grid;
+    tc_extract_options how;
+    tc_grid_options_init(&grid);
+    tc_extract_options_init(&how);
+    memcpy(grid.dims, dims, sizeof dims);
+    grid.type = TC_F32, grid.samples = memory, grid.points = points;
+    how.closed = how.normals = 1;
+    for (size_t n = 0; n < sizeof gaps / sizeof *gaps; n++) {
+        char name[60];
+        samples_choose(&grid, ALL_INSIDE);
+        sample_set(memory, TC_F32, (gaps[n][2] * dims[1] + gaps[n][1]) * dims[0] + gaps[n][0], (double)NAN);
+        snprintf(name, sizeof name, "bricks inside, gap %d", (int)n);
+        grids_open(&grid, name);
+        for (uint32_t visit = 0; visit < 2; visit++) {
+            how.isovalue = visit ? 10 : 60;
+            expect_surface(&how, visit, name);
+        }
+        grids_close();
+    }
+}
+
 static void contexts_open(uint32_t work_items) {
     tc_context_options options;
     tc_expert_options expert;
@@ -255,6 +282,7 @@ int main(int argc, char **argv) {
     contexts_open(groups ? 64 : 1);
     for (uint64_t n = 0; n < count; n++) run(first + n, n % 16 == 15);
     if (argc < 3 && test_chosen("bricks inside")) test_inside_bricks();
+    if (argc < 3 && test_chosen("gaps inside")) test_inside_gaps();
     contexts_close();
     printf("%" PRIu64 " closed surfaces, %" PRIu64 " of them border alone, %" PRIu64 " grids with parts missing\n",
            tally.surfaces, tally.border_alone, tally.missing);

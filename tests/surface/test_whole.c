@@ -18,7 +18,7 @@
 #include <math.h>
 
 static tc_context *reference;
-static bool always_copy;
+static bool always_copy, repeats; /* repeats: a surface again takes as many slabs */
 
 static void *memory_get(uint64_t bytes) {
     void *memory = calloc(bytes + 1, 1);
@@ -195,6 +195,10 @@ static uint32_t surface_compare(const subject *s, tc_grid *grid, tc_mesh **mesh,
     const tc_mesh_data found = mesh_of(*mesh);
     const char *difference = mesh_difference(&wanted, &found);
     EXPECT(!difference, "%s, %s, isovalue %g, %u slabs: %s", s->name, by, how.isovalue, found.slab_count, difference);
+    if (repeats) {
+        EXPECT(!tc_extract(grid, &how, mesh) && mesh_of(*mesh).slab_count == found.slab_count,
+               "%s, %s, isovalue %g: other slabs the second time", s->name, by, how.isovalue);
+    }
     if (random_below(2)) tc_count(grid, &how, &counts); /* what is carried is that of the last call */
     field_carry(s, grid, &how, carried, wanted.vertex_count);
     EXPECT(!memcmp(carried, s->carried[n], 4 * wanted.vertex_count), "%s, %s, isovalue %g: the carried field differs",
@@ -366,10 +370,12 @@ int main(int argc, char **argv) {
     reference = reference_open();
     tc_context *device = device_open(0, false);
     for (uint64_t n = seed; n < seed + count && test_chosen("alone"); n++) run(n, type_of(n), device, "alone");
+    repeats = true;
     for (uint64_t n = seed; n < seed + count / 4 && test_chosen("slabs"); n++) {
         const bool halves = closed_of(n) && method_of(n) == TC_METHOD_HYBRID && kind_of(n) == TORN;
         if (n < seed + count / 20 || halves) budgets_run(n, false);
     }
+    repeats = false;
     if (test_chosen("refusals")) refusals_run(device);
     if (test_chosen("orders")) orders_run(device);
     tc_context_destroy(device);

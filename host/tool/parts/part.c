@@ -57,7 +57,8 @@ static int check_surface(const part *p, const part *first) {
 static int check_origin(const part *p, const part **known) {
     if (!p->header.has_origin) return 0;
     if (!*known) *known = p;
-    if (memcmp(p->header.origin, (*known)->header.origin, sizeof p->header.origin) == 0) return 0;
+    const double *own = p->header.origin, *other = (*known)->header.origin;
+    if (own[0] == other[0] && own[1] == other[1] && own[2] == other[2]) return 0;
     return fail(STATUS_INPUT, "%s is a part of another volume than %s: their origins differ", p->path, (*known)->path);
 }
 
