@@ -405,7 +405,6 @@ MUTANTS = [
            ("vertices += scan_own_sum(scan.tiles, number, TILE_VERTICES);", "", "tiles: prefixes end before them")),
     *group("kernels/label_words_alone.cl",
            ("label_differ(a, b1), label_differ(a1, b))", "label_differ(a1, b), label_differ(a, b1))", "diagonals of xy are mirrored"),
-           ("if (n + 64 <= end) return", "if (n + 63 <= end) return", "samples beyond the buffer"),
            ("(a1[63] != b1[63] ? y1 : 0)", "0", "edges of the next word")),
     *group("kernels/label_words_groups.cl",
            ("(is_odd ? b != d1 : b1 != d)", "(is_odd ? b1 != d : b != d1)", "diagonals of xz in the next row", LABEL_GROUPS),

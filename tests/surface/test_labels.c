@@ -308,6 +308,56 @@ static void test_other_grids(void) {
 
 /* ------------------------------------------------------------------------------------------------------- smoothing */
 
+typedef struct joined {
+    uint32_t from, to;
+} joined;
+
+static int joined_order(const void *a, const void *b) {
+    const joined *p = a, *q = b;
+    if (p->from != q->from) return p->from < q->from ? -1 : 1;
+    return p->to < q->to ? -1 : p->to > q->to;
+}
+
+/* Where one sweep takes a vertex, along an axis; sides: its edges, once for each triangle there, `count` of them. */
+static double swept(const tc_grid_options *grid, const tc_mesh_data *mesh, const joined *sides, size_t count,
+                    int axis) {
+    const double old = (double)mesh->positions[3 * (uint64_t)sides->from + (uint64_t)axis];
+    double sums[3] = {0, 0, 0}, numbers[3] = {0, 0, 0}; /* of edges with one triangle, two, more */
+    for (size_t n = 0, end; n < count; n = end) {
+        for (end = n + 1; end < count && sides[end].to == sides[n].to;) end++;
+        const int kind = end - n > 2 ? 2 : (int)(end - n) - 1;
+        sums[kind] += (double)mesh->positions[3 * (uint64_t)sides[n].to + (uint64_t)axis] - old;
+        numbers[kind]++;
+    }
+    double moved = 0.75 * (sums[0] + sums[1] + sums[2]) / (numbers[0] + numbers[1] + numbers[2]);
+    if (numbers[2] > 0) moved = 0.75 * sums[2] / numbers[2];
+    if (numbers[0] > 0) moved = 0.75 * sums[0] / numbers[0];
+    if (numbers[0] > 0 && (old == 0 || old == (double)(grid->dims[axis] - 1))) moved = 0;
+    return old + (moved > 0.45 ? 0.45 : moved < -0.45 ? -0.45 : moved);
+}
+
+/* The farthest that a vertex of a mesh that was smoothed by one sweep is from where it should be. */
+static double sweep_error(const tc_grid_options *grid, const tc_mesh_data *before, const tc_mesh_data *after) {
+    const size_t count = 6 * (size_t)before->triangle_count;
+    joined *sides = malloc((count + 1) * sizeof *sides);
+    double most = 0;
+    if (!sides) exit(EXIT_FAILURE);
+    for (size_t n = 0; n < count / 2; n++) {
+        const uint32_t a = before->triangles[n], b = before->triangles[n % 3 == 2 ? n - 2 : n + 1];
+        sides[2 * n] = (joined){a, b}, sides[2 * n + 1] = (joined){b, a};
+    }
+    qsort(sides, count, sizeof *sides, joined_order);
+    for (size_t n = 0, end; n < count; n = end) {
+        for (end = n + 1; end < count && sides[end].from == sides[n].from;) end++;
+        for (int axis = 0; axis < 3; axis++) {
+            const double found = (double)after->positions[3 * (uint64_t)sides[n].from + (uint64_t)axis];
+            most = fmax(most, fabs(found - swept(grid, before, sides + n, end - n, axis)));
+        }
+    }
+    free(sides);
+    return most;
+}
+
 /* Triangles stay, vertices keep to their boxes, those on the border to it; surfaces get smaller. */
 static void test_smoothing(void) {
     static tc_mesh *meshes[3];
@@ -323,6 +373,10 @@ static void test_smoothing(void) {
     }
     options_begin(&how);
     if (!extract_labels(reference, &grid, &how, &meshes[0], &stairs)) return;
+    how.smoothing = 1;
+    if (!extract_labels(reference, &grid, &how, &meshes[1], &smooth)) return;
+    EXPECT(sweep_error(&grid, &stairs, &smooth) < 1e-5, "a vertex is %g from where one sweep takes it",
+           sweep_error(&grid, &stairs, &smooth));
     how.smoothing = 16;
     if (!extract_labels(reference, &grid, &how, &meshes[1], &smooth)) return;
     if (!extract_labels(reference, &grid, &how, &meshes[2], &again)) return;
