@@ -18,7 +18,15 @@
 #include <inttypes.h>
 #include <math.h>
 
-enum { SAMPLES_MAX = 64 * 40 * 360, RANGES = 3, ALL_WITHIN = RANDOM_FIELDS, FEW_WITHIN, ALL_WITHIN_BUT, FIELDS };
+enum {
+    SAMPLES_MAX = 64 * 40 * 360,
+    RANGES = 3,
+    ALL_WITHIN = RANDOM_FIELDS,
+    FEW_WITHIN,
+    ALL_WITHIN_BUT,
+    BRICKS_WITHIN,
+    FIELDS
+};
 
 static double memory[SAMPLES_MAX]; /* aligned for every type */
 static float points[3 * SAMPLES_MAX], axes[3][400];
@@ -50,6 +58,7 @@ static double value_choose(int field, const double wave[4], double x, double y, 
     if (field == ALL_WITHIN) return 60 + random_below(2);
     if (field == FEW_WITHIN) return random_below(50) ? 20 : 60;
     if (field == ALL_WITHIN_BUT) return random_below(50) ? 60 : random_below(2) ? 20 : 90;
+    if (field == BRICKS_WITHIN) return y < 8 ? 63 : random_below(2) ? 20 : 90;
     return field_value(field, wave, x, y, z);
 }
 
