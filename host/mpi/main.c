@@ -110,6 +110,7 @@ int main(int argc, char **argv) {
     if (!status) status = run(argc, argv);
     if (fflush(stdout) && !status) status = fail(STATUS_FAILED, "standard output does not take the report");
     streams_restore();
+    ranks_ending();
     if (status && job.team.rank == 0) message("%s", failure_text());
     MPI_Finalize();
     if (driver_is_distrusted()) _exit(status);

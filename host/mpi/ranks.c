@@ -37,9 +37,12 @@ static void remove_unfinished(ranks *r) {
     pthread_mutex_unlock(&files_lock);
 }
 
+static atomic_flag is_told = ATOMIC_FLAG_INIT;
+
+void ranks_ending(void) { atomic_flag_test_and_set(&is_told); }
+
 /* Of a run that is ended from outside, or by another rank, two ranks tell it, as one of them may hang. */
 static void tell_cancelled(const ranks *r) {
-    static atomic_flag is_told = ATOMIC_FLAG_INIT;
     if (r->team.rank <= 1 && !atomic_flag_test_and_set(&is_told))
         message("ended by a signal, or with another rank; no file was left unfinished");
 }

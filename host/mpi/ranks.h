@@ -33,6 +33,10 @@ typedef struct ranks {
 /* After MPI_Init_thread. */
 void ranks_begin(ranks *r);
 
+/* All ranks have come to their end, and know how. mpirun ends the last ones with a signal where the first has failed:
+ * that is not told. */
+void ranks_ending(void);
+
 /* The largest of all ranks' values. */
 int ranks_largest(ranks *r, int value);
 
