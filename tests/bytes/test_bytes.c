@@ -213,13 +213,6 @@ static void device_tell(void) {
     tc_context_destroy(checked);
 }
 
-/* In the quick tier kernels for groups are not optimised: PoCL takes ten seconds for one, and no CPU gets it unless it
- * is asked for. PoCL does not go back once it was told, so groups come last. */
-static void groups_begin(void) {
-    const char *flags = getenv("TEST_PLAIN_KERNELS");
-    if (flags && *flags) setenv("POCL_EXTRA_BUILD_FLAGS", flags, 1);
-}
-
 int main(int argc, char **argv) {
     tier t = DRIVER;
     while (t > WHOLE && (argc < 2 || strcmp(argv[1], tier_names[t]) != 0)) t--;

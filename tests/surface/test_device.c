@@ -450,6 +450,7 @@ int main(int argc, char **argv) {
     if (test_chosen("description")) test_description(device);
     if (test_chosen("convergence") && method != TC_METHOD_SNAP) test_sphere_converges(device);
     if (test_chosen("memory per sample")) test_memory_per_sample();
+    groups_begin();
     test_work_shapes(1, method == TC_METHOD_TETRA ? 4 : 2); /* building for many work-items takes PoCL long */
     tc_context_destroy(reference);
     tc_context_destroy(device);
