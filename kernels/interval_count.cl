@@ -60,19 +60,6 @@ inline_always uint row_tetrahedra_count(const slab *s, const interval_rows *r, u
     return sum;
 }
 
-/* Whether the brick's cubes have all their corners on one side of a bound. */
-inline_always bool brick_is(const slab *s, const bound *b, uint number, uint sign) {
-    const uint x = number % s->words_x, y = number / s->words_x % s->bricks_y;
-    bool same = true;
-    for (uint n = 0; n < 8; n++) {
-        const bool exists = x + (n & 1) < s->words_x && y + (n >> 1 & 1) < s->bricks_y;
-        const uint beside = number + (n & 1) + s->words_x * ((n >> 1 & 1) + s->bricks_y * (n >> 2));
-        if (exists && beside < s->words_x * s->bricks_y * ((s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES))
-            same = same && bound_sign(b, beside) == sign;
-    }
-    return same;
-}
-
 /* Counts brick `number`; of bricks behind those that are emitted only samples. rows: for each row, tetrahedra before it
  * in the brick in the upper half, and samples in the lower half. */
 inline_always interval_brick brick_count(const slab *s, const bound *low, const bound *high, global const ulong *cells,

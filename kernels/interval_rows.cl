@@ -28,6 +28,19 @@ inline_always uint bound_sign(const bound *b, uint number) {
     return b->bricks[number].sign;
 }
 
+/* Whether the brick's cubes have all their corners on one side of a bound. */
+inline_always bool brick_is(const slab *s, const bound *b, uint number, uint sign) {
+    const uint x = number % s->words_x, y = number / s->words_x % s->bricks_y;
+    bool same = true;
+    for (uint n = 0; n < 8; n++) {
+        const bool exists = x + (n & 1) < s->words_x && y + (n >> 1 & 1) < s->bricks_y;
+        const uint beside = number + (n & 1) + s->words_x * ((n >> 1 & 1) + s->bricks_y * (n >> 2));
+        if (exists && beside < s->words_x * s->bricks_y * ((s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES))
+            same = same && bound_sign(b, beside) == sign;
+    }
+    return same;
+}
+
 /* Samples of a row that are not below the bound; bits past the row's end may be set. */
 inline_always ulong bound_word(const slab *s, const bound *b, uint y, uint z, uint w) {
     if (!b->exists) return b->fixed;
