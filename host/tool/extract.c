@@ -80,11 +80,7 @@ static int together(const job *j, int status) { return j->team ? j->team->agree(
 /* Called when the main engine has failed. With --engine auto the reference takes its place, and gets the blocks that
  * were uploaded, unless it would fail in the same way. Returns 0, or the status that stays. */
 static int fall_back(job *j, int status) {
-    if (status != STATUS_FAILED || j->main.fails_alike || progress_cancelled()) return status;
-    if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
-    notice("%s", failure_text());
-    notice("the reference engine takes over");
-    engine_close(&j->main);
+    if (!engine_gives_way(j->o, j->report.engine, &j->main, status)) return status;
     j->report.engine = TC_ENGINE_REFERENCE;
     j->report.device[0] = '\0';
     status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->main);
@@ -114,16 +110,8 @@ static int read_and_start(job *j) {
 }
 
 static void describe_input(job *j) {
-    const dataset_block *first = j->data.blocks;
-    j->report.block_count = j->data.block_count;
-    j->report.has_tetrahedra = first->kind == BLOCK_UNSTRUCTURED && j->o->method == TC_METHOD_TETRA;
-    j->report.field = j->field.name;
-    j->report.type = j->field.blocks[0].type;
-    j->report.point_count = 0;
-    for (int n = 0; n < j->data.block_count; n++) j->report.point_count += (uint64_t)first[n].point_count;
-    j->report.grid = j->data.block_count == 1 && first->kind != BLOCK_UNSTRUCTURED ? first : NULL;
-    j->report.cell_count = j->blocks.cell_count;
-    j->report.tetrahedron_count = j->blocks.tetrahedron_count;
+    j->report.input = input_summarize(j->o, &j->data, &j->field, &j->blocks);
+    j->report.has_tetrahedra = j->data.blocks->kind == BLOCK_UNSTRUCTURED && j->o->method == TC_METHOD_TETRA;
 }
 
 static int cut(job *j) {

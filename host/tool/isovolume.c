@@ -98,16 +98,8 @@ static int read_input(volume_job *j) {
 }
 
 static int cut(volume_job *j) {
-    isovolume_report *r = &j->report;
-    const dataset_block *first = j->data.blocks;
     int status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
-    r->block_count = j->data.block_count;
-    r->field = j->field.name;
-    r->type = j->field.blocks[0].type;
-    for (int n = 0; n < j->data.block_count; n++) r->point_count += (uint64_t)first[n].point_count;
-    r->grid = j->data.block_count == 1 && first->kind != BLOCK_UNSTRUCTURED ? first : NULL;
-    r->cell_count = j->blocks.cell_count;
-    r->tetrahedron_count = j->blocks.tetrahedron_count;
+    j->report.input = input_summarize(j->o, &j->data, &j->field, &j->blocks);
     return status ? status : progress_status();
 }
 
@@ -126,11 +118,7 @@ static int engine_begin(volume_job *j) {
 /* Called when the main engine has failed. With --engine auto the reference takes its place. Returns 0, or the status
  * that stays. */
 static int fall_back(volume_job *j, int status) {
-    if (status != STATUS_FAILED || j->main.fails_alike || progress_cancelled()) return status;
-    if (j->o->engine != ENGINE_AUTO || j->report.engine == TC_ENGINE_REFERENCE) return status;
-    notice("%s", failure_text());
-    notice("the reference engine takes over");
-    engine_close(&j->main);
+    if (!engine_gives_way(j->o, j->report.engine, &j->main, status)) return status;
     j->report.engine = TC_ENGINE_REFERENCE;
     return engine_begin(j);
 }

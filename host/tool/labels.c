@@ -110,14 +110,9 @@ static int make_with(label_job *j, tc_engine kind) {
 }
 
 static int make_surfaces(label_job *j) {
-    const int is_auto = j->o->engine == ENGINE_AUTO;
-    int status = make_with(j, is_auto ? TC_ENGINE_OPENCL : (tc_engine)j->o->engine);
-    if (status == STATUS_FAILED && is_auto && !progress_cancelled()) {
-        notice("%s", failure_text());
-        notice("the reference engine takes over");
-        engine_close(&j->main);
-        status = make_with(j, TC_ENGINE_REFERENCE);
-    }
+    const tc_engine kind = j->o->engine == TC_ENGINE_REFERENCE ? TC_ENGINE_REFERENCE : TC_ENGINE_OPENCL;
+    int status = make_with(j, kind);
+    if (engine_gives_way(j->o, kind, &j->main, status)) status = make_with(j, TC_ENGINE_REFERENCE);
     return status ? status : progress_status();
 }
 

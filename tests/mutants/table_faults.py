@@ -348,7 +348,7 @@ MUTANTS = [
            ("host/common/truncation.c", "test_endings, changes", "return !fstat(w->file, &now) &&\n",
             "return 0 && !fstat(w->file, &now) &&\n", "files that were written to are not found")),
     *point("limits that both engines have",
-           ("host/tool/extract.c", "test_results, limits", "j->main.fails_alike || ", "",
+           ("host/tool/extract/engine.c", "test_results, limits", "e->fails_alike || ", "",
             "the reference engine is run to the same limit")),
     *point("signals",
            ("host/program/progress.c", "test_endings, signals", "numbers[] = {SIGQUIT, SIGXCPU};",

@@ -7,6 +7,7 @@
 #include "input/cell_sizes.h"
 #include "library_status.h"
 #include "progress.h"
+#include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -52,6 +53,15 @@ void engine_close(engine *e) {
     free(e->joined.triangles);
     tc_context_destroy(e->context);
     *e = (engine){0};
+}
+
+int engine_gives_way(const options *o, tc_engine kind, engine *e, int status) {
+    if (status != STATUS_FAILED || e->fails_alike || progress_cancelled()) return 0;
+    if (o->engine != ENGINE_AUTO || kind == TC_ENGINE_REFERENCE) return 0;
+    notice("%s", failure_text());
+    notice("the reference engine takes over");
+    engine_close(e);
+    return 1;
 }
 
 /* Whether positions relative to that point keep the shapes of the cells in float32 (far.h). */

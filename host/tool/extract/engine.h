@@ -36,6 +36,11 @@ typedef struct engine {
 int engine_open(const options *o, tc_engine kind, engine *e);
 void engine_close(engine *e);
 
+/* Whether the reference engine is to take over from this one, which is of the kind and has failed with the status: with
+ * --engine auto, unless the reference would fail alike or the user has ended the run. Then it is told, and the engine
+ * closed. */
+int engine_gives_way(const options *o, tc_engine kind, engine *e, int status);
+
 /* How the surface of an isovalue is to be made. */
 void engine_options(const options *o, const typed_isovalue *iso, tc_extract_options *how);
 

@@ -14,9 +14,6 @@
 
 /* ------------------------------------------------------------------------------------------------------------ JSON */
 
-/* Milliseconds to the microsecond. */
-static json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
-
 /* Whether the surface encloses one: it has no border, and one side of it is the outer one everywhere. */
 static int has_volume(const surface_report *s) {
     return !s->topology.unbalanced_edges && !s->topology.invalid_triangles && !s->summary.nonfinite_vertices;
@@ -95,8 +92,8 @@ static json_t *timings_json(const extract_report *r) {
 static void piece_json(json_t *object, const extract_report *r) {
     const int64_t *piece = r->o->piece;
     int64_t planes[2];
-    if (!piece[1] || !r->grid) return;
-    planes_cut_of(r->o, NULL, r->grid->dims[2], piece[0], piece[1], planes);
+    if (!piece[1] || !r->input.grid) return;
+    planes_cut_of(r->o, NULL, r->input.grid->dims[2], piece[0], piece[1], planes);
     json_object_set_new(object, "part", json_pack("[I, I]", (json_int_t)piece[0], (json_int_t)piece[1]));
     json_object_set_new(object, "planes", json_pack("[I, I]", (json_int_t)planes[0], (json_int_t)planes[1]));
 }
@@ -106,7 +103,7 @@ static json_t *cut_json(const extract_report *r) {
     json_t *begins = json_array();
     int64_t planes[2];
     for (int rank = 1; rank < r->rank_count; rank++) {
-        planes_cut_of(r->o, r->begins, r->grid->dims[2], rank, r->rank_count, planes);
+        planes_cut_of(r->o, r->begins, r->input.grid->dims[2], rank, r->rank_count, planes);
         json_array_append_new(begins, json_integer((json_int_t)planes[0]));
     }
     return begins;
@@ -119,14 +116,14 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "method", json_string(tc_method_name((tc_method)r->o->method)));
-    json_object_set_new(object, "dims", r->grid ? integers_json(r->grid->dims) : json_null());
-    part_report_json(object, r->grid);
+    json_object_set_new(object, "dims", r->input.grid ? integers_json(r->input.grid->dims) : json_null());
+    part_report_json(object, r->input.grid);
     piece_json(object, r);
     if (r->rank_count) json_object_set_new(object, "ranks", json_integer(r->rank_count));
-    if (r->rank_count && r->grid) json_object_set_new(object, "cut", cut_json(r));
+    if (r->rank_count && r->input.grid) json_object_set_new(object, "cut", cut_json(r));
     if (r->rank_count) json_object_set_new(object, "sent_bytes", count_json(r->sent_bytes));
-    json_object_set_new(object, "cells", count_json(r->cell_count));
-    json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
+    json_object_set_new(object, "cells", count_json(r->input.cell_count));
+    json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
     json_object_set_new(object, "timings_ms", timings_json(r));
     json_object_set_new(object, "surfaces", surfaces);
     json_object_set_new(object, "notices", notices_json());
@@ -204,8 +201,8 @@ static void surface_text(const surface_report *s, const char *cells) {
 static void piece_text(const extract_report *r) {
     const int64_t *piece = r->o->piece;
     int64_t planes[2];
-    if (!piece[1] || !r->grid) return;
-    planes_cut_of(r->o, NULL, r->grid->dims[2], piece[0], piece[1], planes);
+    if (!piece[1] || !r->input.grid) return;
+    planes_cut_of(r->o, NULL, r->input.grid->dims[2], piece[0], piece[1], planes);
     printf("part %" PRId64 " of %" PRId64 ": ", piece[0], piece[1]);
     if (planes[0] == planes[1])
         printf("no planes: there are fewer layers of four than parts\n");
@@ -213,21 +210,9 @@ static void piece_text(const extract_report *r) {
         printf("planes %" PRId64 " to %" PRId64 "\n", planes[0], planes[1] - 1);
 }
 
-static void input_text(const extract_report *r) {
-    printf("%s: ", r->o->operands[0]);
-    if (r->block_count > 1) printf("%d blocks, ", r->block_count);
-    if (r->grid)
-        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->grid->dims[0], r->grid->dims[1], r->grid->dims[2]);
-    else
-        printf("%" PRIu64 " points ", r->point_count);
-    printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
-           tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
-    part_report_text("part: ", r->grid);
-    piece_text(r);
-}
-
 void extract_report_text(const extract_report *r) {
-    input_text(r);
+    input_summary_text(&r->input);
+    piece_text(r);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     if (r->rank_count)
         printf("ranks: %d, each of which sent at most %" PRIu64 " bytes to the others\n", r->rank_count, r->sent_bytes);

@@ -9,6 +9,7 @@
 #include "mesh_check.h"
 #include "command_line/options.h"
 #include "dataset/dataset.h"
+#include "input/input_summary.h"
 #include "tetracubes.h"
 
 /* Vertices in cells that are only few steps of floating-point numbers thick (precision.h). */
@@ -51,14 +52,10 @@ typedef struct surface_report {
 
 typedef struct extract_report {
     const options *o;
-    tc_engine engine;          /* the one that made the surfaces; with --engine auto the last one */
-    const dataset_block *grid; /* of an input that is one structured block, else NULL */
-    int block_count;
+    tc_engine engine; /* the one that made the surfaces; with --engine auto the last one */
+    input_summary input;
     int has_tetrahedra; /* unstructured, and not kept whole: active cells are tetrahedra */
-    const char *field;  /* "" where it has no name */
-    tc_type type;
-    uint64_t point_count, cell_count, tetrahedron_count; /* cells: of three dimensions */
-    char device[160];                                    /* "" for the reference engine */
+    char device[160];   /* "" for the reference engine */
     double read_ms, upload_ms, write_ms, total_ms;
     int rank_count;         /* processes that made the surfaces together; 0: this one alone */
     const int64_t *begins;  /* then: as in team.h */

@@ -20,9 +20,6 @@ static double mean_of(const volume_report *v, double integral) {
 
 /* ------------------------------------------------------------------------------------------------------------ JSON */
 
-/* Milliseconds to the microsecond. */
-static json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
-
 static json_t *fields_json(const isovolume_report *r, const volume_report *v) {
     json_t *fields = json_array();
     const double *integral = v->integrals;
@@ -79,10 +76,10 @@ int isovolume_report_json(const isovolume_report *r) {
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
-    json_object_set_new(object, "dims", r->grid ? integers_json(r->grid->dims) : json_null());
-    part_report_json(object, r->grid);
-    json_object_set_new(object, "cells", count_json(r->cell_count));
-    json_object_set_new(object, "tetrahedra", count_json(r->tetrahedron_count));
+    json_object_set_new(object, "dims", r->input.grid ? integers_json(r->input.grid->dims) : json_null());
+    part_report_json(object, r->input.grid);
+    json_object_set_new(object, "cells", count_json(r->input.cell_count));
+    json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
     json_object_set_new(object, "timings_ms",
                         json_pack("{s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "upload", ms_json(r->upload_ms),
                                   "write", ms_json(r->write_ms), "total", ms_json(r->total_ms)));
@@ -135,15 +132,7 @@ static void volume_text(const isovolume_report *r, const volume_report *v) {
 }
 
 void isovolume_report_text(const isovolume_report *r) {
-    printf("%s: ", r->o->operands[0]);
-    if (r->block_count > 1) printf("%d blocks, ", r->block_count);
-    if (r->grid)
-        printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", r->grid->dims[0], r->grid->dims[1], r->grid->dims[2]);
-    else
-        printf("%" PRIu64 " points ", r->point_count);
-    printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", r->field, r->field[0] ? " " : "",
-           tc_type_name(r->type), r->cell_count, r->tetrahedron_count);
-    part_report_text("part: ", r->grid);
+    input_summary_text(&r->input);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     for (size_t n = 0; n < r->volume_count; n++) volume_text(r, &r->volumes[n]);
     printf("total %.2f ms: read %.2f, upload %.2f, write %.2f\n", r->total_ms, r->read_ms, r->upload_ms, r->write_ms);

@@ -5,6 +5,7 @@
 #include "command_line/options.h"
 #include "complex_check.h"
 #include "extract/carried_fields.h"
+#include "input/input_summary.h"
 #include "tetrahedra_measure.h"
 
 /* One range's results: sums over the blocks. */
@@ -26,13 +27,9 @@ typedef struct volume_report {
 typedef struct isovolume_report {
     const options *o;
     tc_engine engine;
-    char device[160];          /* "" for the reference engine */
-    const dataset_block *grid; /* of an input that is one structured block, else NULL */
-    int block_count;
-    const char *field; /* "" where it has no name */
-    tc_type type;
+    char device[160]; /* "" for the reference engine */
+    input_summary input;
     const carried_fields *carried;
-    uint64_t point_count, cell_count, tetrahedron_count; /* of the input */
     double read_ms, upload_ms, write_ms, total_ms;
     volume_report *volumes;
     size_t volume_count;

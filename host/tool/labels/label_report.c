@@ -8,11 +8,7 @@
 #include "terminal/notice.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
-
-/* Milliseconds to the microsecond. */
-static json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
 
 static json_t *row_json(const label_report *r, const label_row *row) {
     const mesh_topology *t = &row->topology;

@@ -38,6 +38,8 @@ json_t *string_json(const char *text) {
 
 json_t *real_json(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
+json_t *ms_json(double ms) { return real_json(round(ms * 1e3) / 1e3); }
+
 json_t *reals_json(const double *values, int count) {
     json_t *array = json_array();
     for (int n = 0; array && n < count; n++) json_array_append_new(array, real_json(values[n]));

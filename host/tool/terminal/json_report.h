@@ -24,6 +24,9 @@ json_t *string_json(const char *text);
 /* A number, or null where it is not finite. */
 json_t *real_json(double value);
 
+/* Milliseconds to the microsecond. */
+json_t *ms_json(double ms);
+
 /* An array of count numbers. */
 json_t *reals_json(const double *values, int count);
 
