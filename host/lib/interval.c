@@ -61,16 +61,6 @@ static tc_status engine_check(const tc_grid *grid) {
                            context->info.name, tc_type_name(grid->type));
 }
 
-/* Tries the kernels of the grid, where the context's options say so and they have not passed. */
-static tc_status kernels_try(const tc_grid *grid) {
-    const kernel_kind kind = structured_interval_kind(grid);
-    bool *passed = &grid->context->trial_passed[kind_number(kind)];
-    if (!grid->context->options.check_device || *passed) return TC_OK;
-    tc_status status = trial_of_kind(grid->context, kind);
-    *passed = !status;
-    return status;
-}
-
 /* By kernels that are vetted and tried first; again where they were exchanged on the way. interval NULL: counts. */
 static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size,
                              double *classify_ms, tc_interval *interval) {
@@ -78,11 +68,12 @@ static tc_status device_make(tc_grid *grid, const tc_interval_options *options, 
     do {
         status = call_vet(grid->context, structured_interval_kind(grid));
         if (!status) structured_reshape(grid);
-        if (!status) status = kernels_try(grid);
+        if (!status) status = trial_once(grid->context, structured_interval_kind(grid));
         if (!status)
             status = interval ? structured_interval_extract(grid, options, interval)
                               : structured_interval_count(grid, options, size, classify_ms);
-        if (!status) status = kernels_try(grid); /* of other kernels, where missing samples were met */
+        /* Of other kernels, where missing samples were met. */
+        if (!status) status = trial_once(grid->context, structured_interval_kind(grid));
     } while (vetting_restarts(grid->context));
     return status;
 }

@@ -40,22 +40,13 @@ static bool runs_on_device(const tc_grid *grid) {
     return grid->context->options.engine == TC_ENGINE_OPENCL && grid->kind == GRID_UNIFORM;
 }
 
-/* Where the context asks for it, on a small volume first. */
-static tc_status try_kernels(tc_context *context, kernel_kind kind) {
-    bool *has_passed = &context->trial_passed[kind_number(kind)];
-    if (!context->options.check_device || *has_passed) return TC_OK;
-    tc_status status = trial_of_kind(context, kind);
-    *has_passed = !status;
-    return status;
-}
-
-/* By kernels that are vetted first; again where they were exchanged on the way. */
+/* By kernels that are vetted and tried first; again where they were exchanged on the way. */
 static tc_status device_make(const label_volume *volume, tc_mesh *mesh) {
     tc_context *context = volume->grid->context;
     tc_status status;
     do {
         status = call_vet(context, labels_kind(volume));
-        if (!status) status = try_kernels(context, labels_kind(volume));
+        if (!status) status = trial_once(context, labels_kind(volume));
         if (!status) status = labels_extract(volume, volume->grid->scan, mesh);
     } while (vetting_restarts(context));
     return status;

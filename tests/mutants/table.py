@@ -200,7 +200,7 @@ FILES = {
     "host/lib/structured/structured_emit.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/tetrahedra/complex_surface.c": ["test_complex, u8"],
     "host/lib/tetrahedra/complex_plan.c": ["test_complex, u8", "test_complex_slabs"],
-    "host/lib/tetrahedra/complex_part.c": ["test_complex, u8"],
+    "host/lib/opencl/buffers.c": ["test_complex, u8", "test_device, slabs", "test_device, copied slabs"],
     "host/lib/tetrahedra/complex_slabs.c": ["test_complex_slabs"],
     "host/check/complex_check.c": ["test_complex_check"],
     "host/check/tetrahedra_measure.c": ["test_measure"],

@@ -107,21 +107,10 @@ static tc_status refuse(const label_run *r, const label_slab *part) {
 
 /* ---------------------------------------------------------------------------------------------------------- buffers */
 
-/* Memory of the host from the page on that it begins in; *items: of so many bytes, before it. */
-static tc_status wrap(const label_run *r, device_buffer *buffer, const void *memory, uint64_t bytes, size_t item,
-                      cl_mem_flags access, uint64_t *items, const char *name) {
-    const uintptr_t at = (uintptr_t)memory, start = at & ~(uintptr_t)(PAGE_BYTES - 1);
-    *items = (at - start) / item;
-    buffer_release(r->context, buffer);
-    return buffer_wrap(r->context, buffer, (void *)start, bytes + (at - start), access, name);
-}
-
 static tc_status samples_load(label_run *r, const label_slab *part, label_job *job) {
     const uint64_t first = (uint64_t)part->first * BRICK_PLANES * plane_bytes(r);
     const uint64_t bytes = (uint64_t)planes_end(r, part) * plane_bytes(r) - first;
     const char *from = (const char *)r->v->samples + first;
-    uint64_t before = 0;
-    tc_status status;
     if (r->whole) {
         job->sample_z = 0;
         job->sample_offset = r->whole_offset;
@@ -129,16 +118,7 @@ static tc_status samples_load(label_run *r, const label_slab *part, label_job *j
         return TC_OK;
     }
     job->sample_count = bytes / r->sample_bytes;
-    if (r->context->in_place) {
-        status = wrap(r, &r->work->samples, from, bytes, r->sample_bytes, CL_MEM_READ_ONLY, &before, "samples");
-        job->sample_offset = before;
-        return status;
-    }
-    status = buffer_reserve(r->context, &r->work->samples, bytes, "samples");
-    if (status) return status;
-    cl_int error =
-        cl->EnqueueWriteBuffer(r->context->queue, r->work->samples.memory, CL_TRUE, 0, bytes, from, 0, NULL, NULL);
-    return error ? context_fail(r->context, "uploading samples", error) : TC_OK;
+    return buffer_provide(r->context, &r->work->samples, from, bytes, r->sample_bytes, &job->sample_offset, "samples");
 }
 
 static tc_status clear(const label_run *r, const device_buffer *buffer, uint64_t bytes) {
@@ -175,13 +155,8 @@ static tc_status tables_provide(label_run *r) {
     uint32_t words[LABEL_TABLE_WORDS];
     device_buffer *tables = &r->work->tables[r->v->grid->mirrored];
     if (tables->memory) return TC_OK;
-    tc_status status = buffer_reserve(r->context, tables, sizeof words, "tables of labels");
-    if (status) return status;
     label_table_make(r->v->grid->mirrored, words);
-    cl_int error =
-        cl->EnqueueWriteBuffer(r->context->queue, tables->memory, CL_TRUE, 0, sizeof words, words, 0, NULL, NULL);
-    if (error) buffer_release(r->context, tables);
-    return error ? context_fail(r->context, "uploading the tables of labels", error) : TC_OK;
+    return buffer_upload(r->context, tables, words, sizeof words, "the tables of labels");
 }
 
 /* -------------------------------------------------------------------------------------------------- classification */
@@ -266,33 +241,6 @@ static tc_status slabs_count(label_run *r, label_job *job) {
 
 /* --------------------------------------------------------------------------------------------------------- emission */
 
-/* A part of the mesh: wrapped in place, else a buffer of its own. *words: of 4 bytes before it. */
-static tc_status part_open(const label_run *r, device_buffer *buffer, const host_block *block, uint64_t first,
-                           uint64_t bytes, uint32_t *words, const char *name) {
-    uint64_t before = 0;
-    *words = 0;
-    if (!r->context->in_place || !bytes) return buffer_reserve(r->context, buffer, bytes, name);
-    tc_status status = wrap(r, buffer, (char *)block->memory + first, bytes, 4, CL_MEM_READ_WRITE, &before, name);
-    *words = (uint32_t)before;
-    return status;
-}
-
-static tc_status part_close(const label_run *r, device_buffer *buffer, const host_block *block, uint64_t first,
-                            uint64_t bytes) {
-    const void *mapped = NULL;
-    tc_status status = TC_OK;
-    if (!bytes) return TC_OK;
-    if (r->context->in_place) { /* what the device wrote becomes visible */
-        status = buffer_map(r->context, buffer, buffer->bytes, &mapped);
-        if (!status) status = buffer_unmap(r->context, buffer, mapped);
-        buffer_release(r->context, buffer);
-        return status;
-    }
-    cl_int error = cl->EnqueueReadBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, bytes,
-                                         (char *)block->memory + first, 0, NULL, NULL);
-    return error ? context_fail(r->context, "reading the mesh back", error) : TC_OK;
-}
-
 static tc_status emit_launch(const label_run *r, const label_job *job) {
     const label_buffers *w = r->work;
     const cl_mem samples = r->whole ? r->whole : w->samples.memory;
@@ -319,18 +267,20 @@ static tc_status slab_emit(label_run *r, const label_slab *part, label_job *job,
                            tc_mesh *mesh) {
     label_buffers *w = r->work;
     const host_block *positions = &mesh->channels[CHANNEL_POSITIONS];
-    const uint64_t p0 = vertex * CHANNEL_BYTES, p = part->vertices * CHANNEL_BYTES;
-    const uint64_t t0 = triangle * TRIANGLE_BYTES, t = part->triangles * TRIANGLE_BYTES;
-    const uint64_t l0 = triangle * LABELS_BYTES, l = part->triangles * LABELS_BYTES;
+    const uint64_t p0 = vertex * CHANNEL_BYTES, p1 = p0 + part->vertices * CHANNEL_BYTES;
+    const uint64_t t0 = triangle * TRIANGLE_BYTES, t1 = t0 + part->triangles * TRIANGLE_BYTES;
+    const uint64_t l0 = triangle * LABELS_BYTES, l1 = l0 + part->triangles * LABELS_BYTES;
     if (!part->vertices) return TC_OK;
     job->vertex_base = (uint32_t)vertex;
-    tc_status status = part_open(r, &w->positions, positions, p0, p, &job->position_offset, "positions");
-    if (!status) status = part_open(r, &w->triangles, &mesh->triangles, t0, t, &job->triangle_offset, "triangles");
-    if (!status) status = part_open(r, &w->labels, &mesh->boundary_labels, l0, l, &job->label_offset, "labels");
+    tc_context *c = r->context;
+    tc_status status = mesh_part_open(c, &w->positions, positions, p0, p1, &job->position_offset, "positions");
+    if (!status)
+        status = mesh_part_open(c, &w->triangles, &mesh->triangles, t0, t1, &job->triangle_offset, "triangles");
+    if (!status) status = mesh_part_open(c, &w->labels, &mesh->boundary_labels, l0, l1, &job->label_offset, "labels");
     if (!status) status = emit_launch(r, job);
-    if (!status) status = part_close(r, &w->positions, positions, p0, p);
-    if (!status) status = part_close(r, &w->triangles, &mesh->triangles, t0, t);
-    return status ? status : part_close(r, &w->labels, &mesh->boundary_labels, l0, l);
+    if (!status) status = mesh_part_close(c, &w->positions, positions, p0, p1);
+    if (!status) status = mesh_part_close(c, &w->triangles, &mesh->triangles, t0, t1);
+    return status ? status : mesh_part_close(c, &w->labels, &mesh->boundary_labels, l0, l1);
 }
 
 /* job: of the slab that was counted last. One slab need not be counted again. */

@@ -47,6 +47,27 @@ tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t by
     return status;
 }
 
+tc_status buffer_upload(tc_context *context, device_buffer *buffer, const void *data, uint64_t bytes,
+                        const char *name) {
+    char what[96];
+    tc_status status = buffer_reserve(context, buffer, bytes, name);
+    if (status) return status;
+    cl_int error =
+        cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, (size_t)bytes, data, 0, NULL, NULL);
+    if (!error) return TC_OK;
+    buffer_release(context, buffer);
+    snprintf(what, sizeof what, "uploading %s", name);
+    return context_fail(context, what, error);
+}
+
+tc_status buffer_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
+                         size_t item_bytes, uint64_t *offset, const char *name) {
+    const uintptr_t before = context->in_place ? (uintptr_t)array & (PAGE_BYTES - 1) : 0;
+    *offset = before / item_bytes;
+    if (!context->in_place) return buffer_upload(context, buffer, array, bytes, name);
+    return buffer_wrap(context, buffer, (char *)(uintptr_t)array - before, before + bytes, CL_MEM_READ_ONLY, name);
+}
+
 void buffer_release(tc_context *context, device_buffer *buffer) {
     if (!buffer->memory) return;
     if (!context_is_inherited(context)) cl->ReleaseMemObject(buffer->memory);
@@ -93,6 +114,35 @@ tc_status buffer_unmap(tc_context *context, const device_buffer *buffer, const v
     if (!memory) return TC_OK;
     cl_int error = cl->EnqueueUnmapMemObject(context->queue, buffer->memory, (void *)(uintptr_t)memory, 0, NULL, NULL);
     return error ? context_fail(context, "reading results back", error) : TC_OK;
+}
+
+tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                         uint64_t end, uint32_t *offset, const char *name) {
+    *offset = 0;
+    if (first == end) return buffer_reserve(context, buffer, 4, name);
+    if (!context->in_place) return buffer_reserve(context, buffer, end - first, name);
+    uint64_t start = first & ~(uint64_t)(PAGE_BYTES - 1);
+    *offset = (uint32_t)((first - start) / 4);
+    return buffer_wrap(context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
+}
+
+tc_status mesh_part_sync(tc_context *context, device_buffer *buffer) {
+    cl_command_queue queue = context->queue;
+    cl_int error;
+    void *mapped =
+        cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
+    if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
+    buffer_release(context, buffer);
+    return error ? context_fail(context, "reading the mesh back", error) : TC_OK;
+}
+
+tc_status mesh_part_close(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                          uint64_t end) {
+    if (first == end) return TC_OK;
+    if (context->in_place) return mesh_part_sync(context, buffer);
+    cl_int error = cl->EnqueueReadBuffer(context->queue, buffer->memory, CL_TRUE, 0, end - first,
+                                         (char *)block->memory + first, 0, NULL, NULL);
+    return error ? context_fail(context, "reading the mesh back", error) : TC_OK;
 }
 
 /* Releases the workspace, with the results of kernel 1 in it. */

@@ -148,9 +148,30 @@ tc_status buffer_reserve(tc_context *context, device_buffer *buffer, uint64_t by
 void buffer_release(tc_context *context, device_buffer *buffer);
 void mesh_buffers_release(tc_context *context, mesh_buffers *buffers);
 
+/* Reserves it and copies the data to it, at once; on failure it is released, as a buffer that exists counts as filled.
+ */
+tc_status buffer_upload(tc_context *context, device_buffer *buffer, const void *data, uint64_t bytes, const char *name);
+
+/* The host's array for kernels to read: in place from its page boundary on, where the device can, else a copy. *offset:
+ * items before it in the buffer. */
+tc_status buffer_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
+                         size_t item_bytes, uint64_t *offset, const char *name);
+
 /* A buffer over memory of the host, which outlives it; counted against the device's memory while it exists. */
 tc_status buffer_wrap(tc_context *context, device_buffer *buffer, void *memory, uint64_t bytes, cl_mem_flags access,
                       const char *name);
+
+/* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. *offset: 32-bit
+ * items before them in it. */
+tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                         uint64_t end, uint32_t *offset, const char *name);
+
+/* Makes what the device wrote in the host's memory visible to the host. */
+tc_status mesh_part_sync(tc_context *context, device_buffer *buffer);
+
+/* Waits for what was written to the bytes, and brings it to the block where it is not there. */
+tc_status mesh_part_close(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
+                          uint64_t end);
 
 /* Maps the first `bytes` of a buffer for the host to read; waits for earlier commands. */
 tc_status buffer_map(tc_context *context, const device_buffer *buffer, uint64_t bytes, const void **memory);

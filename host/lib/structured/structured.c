@@ -202,29 +202,14 @@ static tc_status classify_save(run *r, uint32_t slab_index) { return slab_save(r
 
 static tc_status slab_classify(run *r, uint32_t slab_index) {
     slab_ref ref = classify_ref(r, slab_index);
-    workspace *work = &r->context->work;
-    word_buffers *w = slab_words(r, ref);
     slab s;
     slab_describe(r, ref, &s);
     const bool snapped = r->plan->words_whole && slab_index > 0; /* with all of the grid */
     tc_status status = r->plan->needs.zeros && snapped ? TC_OK : slab_mark_cells(r, ref, &s);
     if (!status && r->plan->needs.zeros && !snapped) status = window_snap(r, ref, &s);
     if (status) return status;
-    const cl_uint scratch_words = r->plan->scratch_words;
-    const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
-                                         ARGUMENT(work->cells.memory),
-                                         ARGUMENT(r->grid->device->ranges.memory),
-                                         ARGUMENT(w->words.memory),
-                                         ARGUMENT(w->offsets.memory),
-                                         ARGUMENT(w->triangle_offsets.memory),
-                                         ARGUMENT(w->bricks.memory),
-                                         ARGUMENT(w->active.memory),
-                                         ARGUMENT(work->state.memory),
-                                         ARGUMENT(work->scratch.memory),
-                                         ARGUMENT(scratch_words)};
-    return kernel_launch(r->context, r->kernels.classify, "kernel classify", arguments,
-                         sizeof arguments / sizeof *arguments);
+    const classify_buffers b = slab_classify_buffers(r, ref);
+    return classify_launch(r->grid, &r->kernels, &s, &b, slab_words(r, ref), r->plan->scratch_words);
 }
 
 void totals_add(run *r) {

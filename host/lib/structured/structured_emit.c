@@ -11,16 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
-                         uint64_t end, uint32_t *offset, const char *name) {
-    *offset = 0;
-    if (first == end) return buffer_reserve(context, buffer, 4, name);
-    if (!context->in_place) return buffer_reserve(context, buffer, end - first, name);
-    uint64_t start = first & ~(uint64_t)(PAGE_BYTES - 1);
-    *offset = (uint32_t)((first - start) / 4);
-    return buffer_wrap(context, buffer, (char *)block->memory + start, end - start, CL_MEM_READ_WRITE, name);
-}
-
 static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     mesh_buffers *b = w->buffers;
     uint64_t v0 = w->vertex0 * CHANNEL_BYTES, v1 = w->vertex1 * CHANNEL_BYTES;
@@ -33,16 +23,6 @@ static tc_status window_open(run *r, tc_mesh *mesh, mesh_window *w) {
     if (!status)
         status = mesh_part_open(r->context, &b->triangles, &mesh->triangles, t0, t1, &w->triangle_offset, "triangles");
     return status;
-}
-
-tc_status mesh_part_sync(tc_context *context, device_buffer *buffer) {
-    cl_command_queue queue = context->queue;
-    cl_int error;
-    void *mapped =
-        cl->EnqueueMapBuffer(queue, buffer->memory, CL_TRUE, CL_MAP_READ, 0, buffer->bytes, 0, NULL, NULL, &error);
-    if (!error) error = cl->EnqueueUnmapMemObject(queue, buffer->memory, mapped, 0, NULL, NULL);
-    buffer_release(context, buffer);
-    return error ? context_fail(context, "reading the mesh back", error) : TC_OK;
 }
 
 static tc_status window_sync(run *r, const mesh_window *w) {
@@ -136,13 +116,7 @@ static tc_status cases_provide(run *r, device_buffer **out) {
     *out = buffer;
     if (buffer->memory) return TC_OK;
     tc_status status = cases_make(r, &cases, &bytes);
-    if (!status) status = buffer_reserve(r->context, buffer, bytes, "the case table");
-    if (!status) {
-        cl_int error =
-            cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, bytes, cases, 0, NULL, NULL);
-        if (error) status = context_fail(r->context, "uploading the case table", error);
-        if (error) buffer_release(r->context, buffer); /* a buffer that exists counts as filled */
-    }
+    if (!status) status = buffer_upload(r->context, buffer, cases, bytes, "the case table");
     free(cases);
     return status;
 }

@@ -56,14 +56,6 @@ static tc_status buffers_reserve(interval_run *r) {
     return status;
 }
 
-static tc_status table_upload(interval_run *r, device_buffer *buffer, const void *table, uint64_t bytes,
-                              const char *name) {
-    tc_status status = buffer_reserve(r->context, buffer, bytes, name);
-    if (status) return status;
-    cl_int error = cl->EnqueueWriteBuffer(r->context->queue, buffer->memory, CL_TRUE, 0, bytes, table, 0, NULL, NULL);
-    return error ? context_fail(r->context, "uploading the cases of tetrahedra", error) : TC_OK;
-}
-
 /* A vertex of a case, in a tetrahedron of a cube, as kernels name it. */
 static uint8_t vertex_name(const ordered_tetrahedron *t, unsigned vertex) {
     if (vertex < INTERVAL_LOW) {
@@ -118,8 +110,10 @@ static tc_status tables_provide(interval_run *r) {
         for (unsigned c = 0; c < 4; c++) not_below += where[c] != SAMPLE_BELOW, above += where[c] == SAMPLE_ABOVE;
         counts[5 * not_below + above] = cases[n].count;
     }
-    tc_status status = table_upload(r, &r->buffers->cases, table, INTERVAL_TABLE_BYTES, "the cases of tetrahedra");
-    if (!status) status = table_upload(r, &r->buffers->counts, counts, sizeof counts, "numbers of tetrahedra");
+    tc_status status =
+        buffer_upload(r->context, &r->buffers->cases, table, INTERVAL_TABLE_BYTES, "the cases of tetrahedra");
+    if (!status)
+        status = buffer_upload(r->context, &r->buffers->counts, counts, sizeof counts, "numbers of tetrahedra");
     free(table);
     return status;
 }
@@ -156,61 +150,44 @@ static tc_status window_open(interval_run *r, uint32_t n) {
     return status;
 }
 
+static classify_buffers window_buffers(const interval_run *r) {
+    return (classify_buffers){.samples = array_memory(r, ARRAY_SAMPLES),
+                              .blanked_samples = array_memory(r, ARRAY_BLANKED_SAMPLES),
+                              .blanked_cells = array_memory(r, ARRAY_BLANKED_CELLS),
+                              .cells = &r->buffers->cells,
+                              .state = &r->buffers->state,
+                              .scratch = &r->buffers->scratch};
+}
+
 static tc_status cells_mark(interval_run *r) {
     const slab *s = &r->window;
-    const cl_uint planes = (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z;
-    const cl_mem samples = array_memory(r, ARRAY_SAMPLES), blanked = array_memory(r, ARRAY_BLANKED_SAMPLES),
-                 blanked_cells = array_memory(r, ARRAY_BLANKED_CELLS);
-    const kernel_argument arguments[] = {ARGUMENT(*s),
-                                         ARGUMENT(samples),
-                                         ARGUMENT(blanked),
-                                         ARGUMENT(blanked_cells),
-                                         ARGUMENT(r->buffers->cells.memory),
-                                         ARGUMENT(planes)};
+    const classify_buffers b = window_buffers(r);
     if (!r->missing) return TC_OK;
-    return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
-                         sizeof arguments / sizeof *arguments);
+    return cells_launch(r->grid, &r->kernels, s, &b, (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z);
 }
 
 /* Kernel 1 by a bound. The second one finds the ranges of bricks that the first has left, as far as that went: kernel 1
  * looks at the layer behind the window too. */
 static tc_status bound_classify(interval_run *r, int bound) {
-    interval_buffers *b = r->buffers;
-    word_buffers *w = &b->words[bound];
+    const classify_buffers b = window_buffers(r);
+    const uint32_t offset = (uint32_t)((uint64_t)bound * (state_bytes(r) / 4));
     slab s = r->window;
-    const cl_uint offset = (cl_uint)((uint64_t)bound * (state_bytes(r) / 4)),
-                  scratch_words = r->plan.tiles.scratch_words;
-    const cl_mem samples = array_memory(r, ARRAY_SAMPLES);
     if (!r->exists[bound]) return TC_OK;
     s.test = r->base[bound].test;
     s.results.head_offset = offset;
     s.results.tiles_offset = offset + STATE_WORDS;
     s.results.ranges_known =
         r->grid->device->ranges_known || (bound == BOUND_HIGH && r->exists[BOUND_LOW] && s.z1 == s.nz);
-    const kernel_argument arguments[] = {ARGUMENT(s),
-                                         ARGUMENT(samples),
-                                         ARGUMENT(b->cells.memory),
-                                         ARGUMENT(r->grid->device->ranges.memory),
-                                         ARGUMENT(w->words.memory),
-                                         ARGUMENT(w->offsets.memory),
-                                         ARGUMENT(w->triangle_offsets.memory),
-                                         ARGUMENT(w->bricks.memory),
-                                         ARGUMENT(w->active.memory),
-                                         ARGUMENT(b->state.memory),
-                                         ARGUMENT(b->scratch.memory),
-                                         ARGUMENT(scratch_words)};
-    return kernel_launch(r->context, r->kernels.classify, "kernel classify", arguments,
-                         sizeof arguments / sizeof *arguments);
+    return classify_launch(r->grid, &r->kernels, &s, &b, &r->buffers->words[bound], r->plan.tiles.scratch_words);
 }
 
-/* Results of a bound; where there is none, those of the other stand in, which no kernel looks at. */
-static const word_buffers *bound_words(const interval_run *r, int bound) {
+const word_buffers *interval_words(const interval_run *r, int bound) {
     return &r->buffers->words[r->exists[bound] ? bound : !bound];
 }
 
 static tc_status window_count(interval_run *r) {
     interval_buffers *b = r->buffers;
-    const word_buffers *low = bound_words(r, BOUND_LOW), *high = bound_words(r, BOUND_HIGH);
+    const word_buffers *low = interval_words(r, BOUND_LOW), *high = interval_words(r, BOUND_HIGH);
     const kernel_argument arguments[] = {ARGUMENT(r->window),           ARGUMENT(r->job),
                                          ARGUMENT(b->cells.memory),     ARGUMENT(low->words.memory),
                                          ARGUMENT(low->bricks.memory),  ARGUMENT(high->words.memory),
@@ -253,9 +230,8 @@ static tc_status bricks_sum(interval_run *r, const cl_uint heads[BOUND_COUNT][ST
             r->size.vertices[BLOCK_LOW + n] = r->job.own_bricks < r->job.all_bricks
                                                   ? r->states[n][r->job.own_bricks].vertices
                                                   : heads[n][STATE_VERTICES];
-    cl_int error = cl->EnqueueWriteBuffer(r->context->queue, r->buffers->bricks.memory, CL_TRUE, 0,
-                                          r->job.all_bricks * sizeof *r->bricks, r->bricks, 0, NULL, NULL);
-    return error ? context_fail(r->context, "writing the sums of bricks", error) : TC_OK;
+    return buffer_upload(r->context, &r->buffers->bricks, r->bricks, r->job.all_bricks * sizeof *r->bricks,
+                         "sums of bricks");
 }
 
 tc_status interval_classify(interval_run *r, uint32_t n) {

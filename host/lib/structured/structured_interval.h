@@ -57,6 +57,9 @@ tc_status interval_plan_make(const tc_context *context, const tc_grid *grid, int
 /* TC_ERROR_MEMORY, with how much would do, where a brick emits so many bytes that there is no room for. */
 tc_status interval_brick_refuse(const interval_run *r, uint64_t bytes);
 
+/* Results of a bound; where there is none, those of the other stand in, which no kernel looks at. */
+const word_buffers *interval_words(const interval_run *r, int bound);
+
 /* Classifies and counts slab n, and sums up its bricks. */
 tc_status interval_classify(interval_run *r, uint32_t n);
 

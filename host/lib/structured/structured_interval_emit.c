@@ -97,8 +97,7 @@ static tc_status step_open(interval_run *r, const tc_interval *interval, const b
 
 static tc_status step_launch(interval_run *r) {
     interval_buffers *b = r->buffers;
-    const word_buffers *low = &b->words[r->exists[BOUND_LOW] ? BOUND_LOW : BOUND_HIGH];
-    const word_buffers *high = &b->words[r->exists[BOUND_HIGH] ? BOUND_HIGH : BOUND_LOW];
+    const word_buffers *low = interval_words(r, BOUND_LOW), *high = interval_words(r, BOUND_HIGH);
     const device_buffer *arrays = r->plan.samples_whole ? r->grid->device->arrays : b->arrays;
     const device_buffer *coordinates =
         r->grid->kind == GRID_RECTILINEAR ? &r->grid->device->axes : &arrays[ARRAY_POINTS];
@@ -137,14 +136,7 @@ static tc_status step_close(interval_run *r, tc_interval *interval, const brick_
     for (int n = 0; n < PARTS && !status; n++) {
         const uint64_t at = (part_first(r, interval, n) + first->at[n]) * item_bytes[n];
         const uint64_t bytes = (end->at[n] - first->at[n]) * item_bytes[n];
-        if (!bytes) continue;
-        if (r->context->in_place) {
-            status = mesh_part_sync(r->context, &r->buffers->parts[n]);
-            continue;
-        }
-        error = cl->EnqueueReadBuffer(r->context->queue, r->buffers->parts[n].memory, CL_TRUE, 0, bytes,
-                                      (char *)part_block(interval, n)->memory + at, 0, NULL, NULL);
-        if (error) status = context_fail(r->context, "reading the volume back", error);
+        status = mesh_part_close(r->context, &r->buffers->parts[n], part_block(interval, n), at, at + bytes);
     }
     if (!r->context->in_place) interval->timings.readback_ms += clock_ms() - begin;
     return status;

@@ -54,6 +54,18 @@ static inline slab_plan *plan_of(struct device_grid *device, const tc_extract_op
     return &device->plans[method_has_zeros(options->method)][options->closed != 0];
 }
 
+/* Of a structured grid what kernel 1 reads and writes, but for the words. */
+typedef struct classify_buffers {
+    cl_mem samples, blanked_samples, blanked_cells;
+    const device_buffer *cells, *state, *scratch;
+} classify_buffers;
+
+/* Enqueues the kernel that marks `planes` planes of present cubes, where samples may be missing; kernel 1. */
+tc_status cells_launch(const tc_grid *grid, const kernels *k, const slab *s, const classify_buffers *b,
+                       uint32_t planes);
+tc_status classify_launch(const tc_grid *grid, const kernels *k, const slab *s, const classify_buffers *b,
+                          const word_buffers *words, uint32_t scratch_words);
+
 /* A slab and the window that it is in: below plan_window_count. */
 typedef struct slab_ref {
     uint32_t slab_index, window;
@@ -74,6 +86,9 @@ void slab_describe(const run *r, slab_ref ref, slab *out);
 
 /* Marks the slab's present cells, where samples may be missing. */
 tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s);
+
+/* Of the slab's window. */
+classify_buffers slab_classify_buffers(const run *r, slab_ref ref);
 
 /* Method snap: marks the samples of the slab's window that become vertices, before kernel 1 counts (structured_snap.c).
  */
@@ -115,14 +130,6 @@ void slab_arrays_locate(const tc_grid *grid, uint64_t end, slab *s);
 
 /* Sign words, the constant bricks before them; then words of zeros, bricks without any before them. */
 tc_status sign_words_reserve(tc_context *context, device_buffer *words, uint64_t zero_bricks, uint64_t brick_count);
-
-/* Bytes [first, end) of a block: wrapped from the page that they begin in, or a buffer of their own. *offset: 32-bit
- * items before them in it. */
-tc_status mesh_part_open(tc_context *context, device_buffer *buffer, const host_block *block, uint64_t first,
-                         uint64_t end, uint32_t *offset, const char *name);
-
-/* Makes what the device wrote in the host's memory visible to the host. */
-tc_status mesh_part_sync(tc_context *context, device_buffer *buffer);
 
 /* Adds up the heads of all slabs. */
 void totals_add(run *r);

@@ -144,21 +144,52 @@ word_buffers *slab_words(const run *r, slab_ref ref) {
 }
 
 /* One bit per cube whose corners are present, for the planes that kernels look at. */
-tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
-    workspace *work = &r->context->work;
-    if (!r->grid->device->missing) return TC_OK;
-    const cl_uint end = r->plan->needs.zeros ? slab_words_end(r->plan, r->grid, ref.slab_index)
-                        : s->z1 < s->nz      ? s->z1 + 1
-                                             : s->nz;
-    const cl_uint planes = end - s->arrays.cell_z;
+tc_status cells_launch(const tc_grid *grid, const kernels *k, const slab *s, const classify_buffers *b,
+                       uint32_t planes) {
     const kernel_argument arguments[] = {ARGUMENT(*s),
-                                         ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
-                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory),
-                                         ARGUMENT(slab_array(r, ref, ARRAY_BLANKED_CELLS)->memory),
-                                         ARGUMENT(work->cells.memory),
+                                         ARGUMENT(b->samples),
+                                         ARGUMENT(b->blanked_samples),
+                                         ARGUMENT(b->blanked_cells),
+                                         ARGUMENT(b->cells->memory),
                                          ARGUMENT(planes)};
-    return kernel_launch(r->context, r->kernels.cells, "kernel cells_mark", arguments,
+    return kernel_launch(grid->context, k->cells, "kernel cells_mark", arguments, sizeof arguments / sizeof *arguments);
+}
+
+tc_status classify_launch(const tc_grid *grid, const kernels *k, const slab *s, const classify_buffers *b,
+                          const word_buffers *words, uint32_t scratch_words) {
+    const kernel_argument arguments[] = {ARGUMENT(*s),
+                                         ARGUMENT(b->samples),
+                                         ARGUMENT(b->cells->memory),
+                                         ARGUMENT(grid->device->ranges.memory),
+                                         ARGUMENT(words->words.memory),
+                                         ARGUMENT(words->offsets.memory),
+                                         ARGUMENT(words->triangle_offsets.memory),
+                                         ARGUMENT(words->bricks.memory),
+                                         ARGUMENT(words->active.memory),
+                                         ARGUMENT(b->state->memory),
+                                         ARGUMENT(b->scratch->memory),
+                                         ARGUMENT(scratch_words)};
+    return kernel_launch(grid->context, k->classify, "kernel classify", arguments,
                          sizeof arguments / sizeof *arguments);
+}
+
+classify_buffers slab_classify_buffers(const run *r, slab_ref ref) {
+    const workspace *work = &r->context->work;
+    return (classify_buffers){.samples = slab_array(r, ref, ARRAY_SAMPLES)->memory,
+                              .blanked_samples = slab_array(r, ref, ARRAY_BLANKED_SAMPLES)->memory,
+                              .blanked_cells = slab_array(r, ref, ARRAY_BLANKED_CELLS)->memory,
+                              .cells = &work->cells,
+                              .state = &work->state,
+                              .scratch = &work->scratch};
+}
+
+tc_status slab_mark_cells(run *r, slab_ref ref, const slab *s) {
+    const classify_buffers b = slab_classify_buffers(r, ref);
+    if (!r->grid->device->missing) return TC_OK;
+    const uint32_t end = r->plan->needs.zeros ? slab_words_end(r->plan, r->grid, ref.slab_index)
+                         : s->z1 < s->nz      ? s->z1 + 1
+                                              : s->nz;
+    return cells_launch(r->grid, &r->kernels, s, &b, end - s->arrays.cell_z);
 }
 
 tc_status slab_load(run *r, slab_ref ref, bool emits) {

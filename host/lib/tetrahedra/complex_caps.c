@@ -32,11 +32,11 @@ static tc_status border_load(complex_run *r) {
     if (b->point_count > items_most || b->face_count > items_most) r->too_large = true;
     if (r->too_large || !surface_fits(r, point_bytes + face_bytes + 2 * PAGE_BYTES))
         return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for its border");
-    tc_status status = part_array_provide(r->context, &b->points_buffer, b->points, point_bytes, sizeof *b->points,
-                                          &b->point_offset, "points of the border");
+    tc_status status = buffer_provide(r->context, &b->points_buffer, b->points, point_bytes, sizeof *b->points,
+                                      &b->point_offset, "points of the border");
     return status ? status
-                  : part_array_provide(r->context, &b->faces_buffer, b->faces, face_bytes, sizeof *b->faces,
-                                       &b->face_offset, "faces of the border");
+                  : buffer_provide(r->context, &b->faces_buffer, b->faces, face_bytes, sizeof *b->faces,
+                                   &b->face_offset, "faces of the border");
 }
 
 static void job_describe(complex_run *r) {

@@ -8,23 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-tc_status part_array_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
-                             size_t item_bytes, uint64_t *offset, const char *name) {
-    uintptr_t before = context->in_place ? (uintptr_t)array & (PAGE_BYTES - 1) : 0;
-    *offset = before / item_bytes;
-    if (context->in_place)
-        return buffer_wrap(context, buffer, (char *)(uintptr_t)array - before, before + bytes, CL_MEM_READ_ONLY, name);
-    tc_status status = buffer_reserve(context, buffer, bytes, name);
-    if (status) return status;
-    cl_int error = cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, bytes, array, 0, NULL, NULL);
-    return error ? context_fail(context, "copying the tetrahedra to the device", error) : TC_OK;
-}
-
 tc_status part_tetrahedra_provide(tc_grid *grid, const uint32_t *tetrahedra, uint32_t count) {
     complex_part *part = &grid->complex->part;
     part->tetrahedron_count = count;
-    tc_status status = part_array_provide(grid->context, &part->tetrahedra, tetrahedra, 16ull * count, 4,
-                                          &part->tetrahedron_offset, "tetrahedra");
+    tc_status status = buffer_provide(grid->context, &part->tetrahedra, tetrahedra, 16ull * count, 4,
+                                      &part->tetrahedron_offset, "tetrahedra");
     const uint64_t range_bytes = sizeof(brick_range) * (uint64_t)complex_cluster_count(count);
     return status ? status : buffer_reserve(grid->context, &part->ranges, range_bytes, "ranges");
 }
@@ -34,10 +22,10 @@ tc_status part_points_provide(tc_grid *grid, const float *points, const void *sa
     const size_t sample_bytes = tc_type_bytes(grid->type);
     part->point_count = count;
     tc_status status =
-        part_array_provide(grid->context, &part->points, points, 12ull * count, 4, &part->point_offset, "points");
+        buffer_provide(grid->context, &part->points, points, 12ull * count, 4, &part->point_offset, "points");
     if (!status)
-        status = part_array_provide(grid->context, &part->samples, samples, sample_bytes * (uint64_t)count,
-                                    sample_bytes, &part->sample_offset, "samples");
+        status = buffer_provide(grid->context, &part->samples, samples, sample_bytes * (uint64_t)count, sample_bytes,
+                                &part->sample_offset, "samples");
     if (status) part_points_release(grid);
     return status;
 }

@@ -52,10 +52,6 @@ tc_status part_points_provide(tc_grid *grid, const float *points, const void *sa
 void part_tetrahedra_release(tc_grid *grid); /* with their ranges */
 void part_points_release(tc_grid *grid);
 
-/* Uses an array in place, from its page boundary on, or copies it. *offset in items. */
-tc_status part_array_provide(tc_context *context, device_buffer *buffer, const void *array, uint64_t bytes,
-                             size_t item_bytes, uint64_t *offset, const char *name);
-
 /* Points of a slab on their own. */
 typedef struct local_points {
     uint64_t *used;    /* a bit per point of the complex */

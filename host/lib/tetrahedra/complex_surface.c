@@ -52,13 +52,8 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]) {
 static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
     uint8_t cases[16][CASE_BYTES];
     if (buffer->memory) return TC_OK;
-    tc_status status = buffer_reserve(context, buffer, sizeof cases, "the case table");
-    if (status) return status;
     complex_cases(cases);
-    cl_int error =
-        cl->EnqueueWriteBuffer(context->queue, buffer->memory, CL_TRUE, 0, sizeof cases, cases, 0, NULL, NULL);
-    if (error) buffer_release(context, buffer);
-    return error ? context_fail(context, "uploading the case table", error) : TC_OK;
+    return buffer_upload(context, buffer, cases, sizeof cases, "the case table");
 }
 
 /* --------------------------------------------------------------------------------------------------------- commands */

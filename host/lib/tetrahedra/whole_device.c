@@ -18,17 +18,13 @@ static tc_status codes_provide(tc_grid *grid, uint32_t first, uint32_t count) {
     tc_context *context = grid->context;
     tc_status status = TC_OK;
     if (!w->one_code)
-        status = part_array_provide(context, &w->codes_buffer, w->codes + first, count, 1, &w->code_offset,
-                                    "codes of cells");
+        status =
+            buffer_provide(context, &w->codes_buffer, w->codes + first, count, 1, &w->code_offset, "codes of cells");
     if (!status && !w->cell_points)
-        status = part_array_provide(context, &w->begins_buffer, w->begins + first, 8 * (uint64_t)count, 8,
-                                    &w->begin_offset, "places of cells");
+        status = buffer_provide(context, &w->begins_buffer, w->begins + first, 8 * (uint64_t)count, 8, &w->begin_offset,
+                                "places of cells");
     if (status || w->shapes_buffer.memory) return status;
-    status = buffer_reserve(context, &w->shapes_buffer, sizeof w->shapes, "shapes of cells");
-    if (status) return status;
-    cl_int error = cl->EnqueueWriteBuffer(context->queue, w->shapes_buffer.memory, CL_TRUE, 0, sizeof w->shapes,
-                                          w->shapes, 0, NULL, NULL);
-    return error ? context_fail(context, "uploading shapes of cells", error) : TC_OK;
+    return buffer_upload(context, &w->shapes_buffer, w->shapes, sizeof w->shapes, "shapes of cells");
 }
 
 tc_status whole_part_provide(tc_grid *grid, const void *words, uint32_t first, uint32_t count) {
@@ -36,8 +32,8 @@ tc_status whole_part_provide(tc_grid *grid, const void *words, uint32_t first, u
     complex_part *part = &w->part;
     const uint64_t all = w->word_bytes, some = 4 * (uint64_t)w->cell_points * count;
     part->tetrahedron_count = count;
-    tc_status status = part_array_provide(grid->context, &part->tetrahedra, words, words == w->words ? all : some, 4,
-                                          &part->tetrahedron_offset, "cells");
+    tc_status status = buffer_provide(grid->context, &part->tetrahedra, words, words == w->words ? all : some, 4,
+                                      &part->tetrahedron_offset, "cells");
     if (!status) status = codes_provide(grid, first, count);
     const uint64_t range_bytes = sizeof(brick_range) * (uint64_t)whole_cluster_count(count);
     return status ? status : buffer_reserve(grid->context, &part->ranges, range_bytes, "ranges");
@@ -85,11 +81,11 @@ static tc_status all_provide(tc_grid *grid) {
     part->point_count = c->point_count;
     tc_status status = whole_part_provide(grid, w->words, 0, w->cell_count);
     if (!status)
-        status = part_array_provide(grid->context, &part->points, c->points, 12ull * c->point_count, 4,
-                                    &part->point_offset, "points");
+        status = buffer_provide(grid->context, &part->points, c->points, 12ull * c->point_count, 4, &part->point_offset,
+                                "points");
     if (!status)
-        status = part_array_provide(grid->context, &part->samples, grid->samples, sample_bytes * c->point_count,
-                                    sample_bytes, &part->sample_offset, "samples");
+        status = buffer_provide(grid->context, &part->samples, grid->samples, sample_bytes * c->point_count,
+                                sample_bytes, &part->sample_offset, "samples");
     if (status) whole_part_release(grid);
     return status;
 }

@@ -129,9 +129,9 @@ static tc_status slab_load(slabs_run *t, uint32_t first, uint32_t count) {
                                            &part->point_count);
     if (!status) status = whole_part_provide(grid, t->local.tetrahedra, first, count);
     if (!status)
-        status = part_array_provide(grid->context, &part->samples, t->local.samples,
-                                    sample_bytes * (uint64_t)part->point_count, sample_bytes, &part->sample_offset,
-                                    "samples");
+        status =
+            buffer_provide(grid->context, &part->samples, t->local.samples, sample_bytes * (uint64_t)part->point_count,
+                           sample_bytes, &part->sample_offset, "samples");
     if (!status && t->w->ranges_known) status = ranges_move(t, first, count, false);
     part->ranges_known = t->w->ranges_known;
     return status;

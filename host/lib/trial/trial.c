@@ -208,11 +208,16 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
     return status;
 }
 
+tc_status trial_once(tc_context *context, kernel_kind kind) {
+    bool *passed = &context->trial_passed[kind_number(kind)];
+    if (!context->options.check_device || *passed) return TC_OK;
+    tc_status status = trial_of_kind(context, kind);
+    if (status) return status;
+    *passed = true;
+    return context_progress(context, "trial", 0);
+}
+
 tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     if (!trial_pending(grid, options, emits)) return TC_OK;
-    const kernel_kind kind = surface_kind(grid, options, emits);
-    tc_status status = trial_of_kind(grid->context, kind);
-    if (status) return status;
-    grid->context->trial_passed[kind_number(kind)] = true;
-    return context_progress(grid->context, "trial", 0);
+    return trial_once(grid->context, surface_kind(grid, options, emits));
 }

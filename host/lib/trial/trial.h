@@ -22,6 +22,9 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind);
 /* The same of the kernels of label maps, which trial_of_kind hands over (trial_labels.c). */
 tc_status trial_of_labels(tc_context *context, kernel_kind kind);
 
+/* TC_OK where the kernels of a kind have passed, or need not be tried: they are where the context's options say so. */
+tc_status trial_once(tc_context *context, kernel_kind kind);
+
 /* TC_OK where the kernels for the grid and the options have passed, or need not be tried; TC_ERROR_WRONG_RESULT, saying
  * what differs, where the device computes wrongly. Uses the workspace; emits: kernel 2 is tried too. */
 tc_status trial_run(const tc_grid *grid, const tc_extract_options *options, bool emits);
