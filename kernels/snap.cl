@@ -5,9 +5,9 @@
  *
  * 1. snap_sign: the first stage of kernel 1 (sign.cl), over all bricks;
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
- * 3. snap_wish: which of their samples are near enough to a crossing of theirs; lists the bricks that have any. They
- * get words of zeros, empty so far;
- * 4. snap_open: those that are uniform get sign words of their own;
+ * 3. snap_wish: which of their samples are near enough to a crossing of theirs; lists the bricks that have any. Mixed
+ *    bricks get words of zeros, empty so far;
+ * 4. snap_open: bricks on that list that are uniform get sign words of their own, and words of zeros;
  * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: those that wish it and are regular points
  *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
  *    that another group stores to meanwhile has the same bits for its readers before and after;
