@@ -99,8 +99,7 @@ def main():
     if not python:
         print("skipped: packages cannot be had from PyPI")
         return 77
-    run("bash", source / "host" / "python" / "manylinux", folder / "wheel",
-        env={**os.environ, "MIRROR": systems.mirror() or os.environ.get("MIRROR", "")})
+    run("bash", source / "host" / "python" / "manylinux", folder / "wheel")
     made = next((folder / "wheel").glob("*.whl"))
     size, tag = made.stat().st_size, made.stem.split("-")[-1]
     run(python / "pip", "install", "-q", made)
