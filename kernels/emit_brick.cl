@@ -4,8 +4,8 @@
  *
  * Steps 1 and 2 are in emit_numbers.cl.
  * 3. Vector code makes the vertices of the listed edges.
- * 4. Active cubes are listed with their cases. A case names entries of the table of numbers (CASE_INDEX), which become
- *    the indices of the cube's triangles.
+ * 4. Active cubes are listed with their cases. The numbers of a cube's vertices come into slots (case_slots.h), from
+ * which its case takes the indices of its triangles.
  *
  * Cases have different numbers of indices, which are unpredictable. So a fixed number is copied for each cube, and the
  * next cube overwrites the surplus. Positions and triangles go through private memory, batch by batch, and from there
@@ -25,6 +25,9 @@
 
 /* The signs of a cube's corners, corner n in bit n. */
 inline_always uint pattern_at(ulong8 corners, uint bit) {
+#ifdef WORD_SHUFFLES
+    return signs_packed(corners << (ulong8)(63 - bit));
+#endif
     char8 inside = convert_char8((corners & (ulong8)(1ul << bit)) != 0ul);
     return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
 }
@@ -154,27 +157,23 @@ inline_always uint cubes_list(const slab *s, uint mask, uint count, brick_work *
 }
 #else
 inline_always uint cubes_list(const slab *s, uint mask, uint count, brick_work *work) {
-    const uint first = count;
     for (; mask; mask &= mask - 1) {
-        uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
+        const uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
+        const ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
+        ulong8 zero_corners = 0;
+        if (ZEROS)
+            zero_corners =
+                (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
         ulong active = work->active[z][y];
-        uint end = count + (uint)popcount(active);
+        const uint end = count + (uint)popcount(active);
         do {
-            work->list[count++] = brick_row << 7 | lowest_bit(active);
+            const uint x = lowest_bit(active), odd = (x ^ row_odd(s, y, z)) & 1;
+            uint pattern = pattern_at(corners, x) | odd << PARITY_BIT;
+            if (ZEROS) pattern |= pattern_at(zero_corners, x) << 8;
+            work->list[count++] = pattern | NUMBER_INDEX(x, y, z) << CASE_BITS;
             active &= active - 1;
         } while (active);
         count = end;
-    }
-    for (uint n = first; n < count; n++) {
-        uint x = work->list[n] & 0x7f, y = (work->list[n] >> 7) % BRICK_ROWS, z = (work->list[n] >> 7) / BRICK_ROWS;
-        uint odd = (x ^ row_odd(s, y, z)) & 1;
-        ulong8 corners = (ulong8)(vload4(0, work->corners[z] + 2 * y), vload4(0, work->corners[z + 1] + 2 * y));
-        uint pattern = pattern_at(corners, x) | odd << PARITY_BIT;
-        if (ZEROS) {
-            corners = (ulong8)(vload4(0, work->zero_corners[z] + 2 * y), vload4(0, work->zero_corners[z + 1] + 2 * y));
-            pattern |= pattern_at(corners, x) << 8;
-        }
-        work->list[n] = pattern | NUMBER_INDEX(x, y, z) << CASE_BITS;
     }
     return count;
 }
@@ -220,27 +219,44 @@ inline_always uint border_list(const slab *s, corner c, uint mask, row_results k
 
 #endif
 
-/* Stores the vertex numbers of a cube's triangles, by the indices in its case (CASE_INDEX).
- * Surplus numbers follow them. `number` points to the entry of the cube's first sample. */
-#ifdef MASK_REGISTERS /* compilers know no such shuffle by name */
-inline_always words16 numbers_shuffled(const words16 rows[4], global const uchar *lanes_named) {
-    int16 lane = convert_int16(vload16(0, lanes_named));
-    int16 here = words_shuffled(rows[0], lane, rows[1]), deep = words_shuffled(rows[2], lane, rows[3]);
-    return as_uint16((lane & (2 * NUMBER_LANES)) != 0 ? deep : here);
+/* Stores the vertex numbers of a cube's triangles, by the slots in its case. Surplus numbers follow them. `number`
+ * points to the entry of the cube's first sample. */
+#ifdef WORD_SHUFFLES
+#define WORDS_AT(words) (*(const words16 *)(words))
+
+/* Brings the numbers of a cube's vertices into their slots. */
+inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
+    const uint *up = number + NUMBER_STEP * NUMBER_INDEX(0, 1, 0), *deep = number + NUMBER_STEP * NUMBER_INDEX(0, 0, 1);
+    const uint *up_deep = up + (deep - number);
+    if (NUMBER_STEP == 4) {
+        *low = words_with(words_with(WORDS_AT(number), 0xff00, WORDS_AT(up - 8)), 1 << 4, WORDS_AT(up_deep - 4));
+        *high = words_with(WORDS_AT(deep), 0xff00, WORDS_AT(up_deep - 8));
+        return;
+    }
+    *low = words_with(WORDS_AT(number), 1 << 8, WORDS_AT(up_deep - 8));
+    *low = words_with(words_with(*low, 1 << 11, WORDS_AT(up - 1)), 1 << 12, WORDS_AT(deep - 3));
+    *high = words_with(words_with(WORDS_AT(up), 1 << 1 | 1 << 3, WORDS_AT(deep)), 1 << 5, WORDS_AT(deep - 5));
+    if (VERTEX_TYPES <= PLACE_TYPE) return;
+    *high = words_with(words_with(*high, 1 << 10, WORDS_AT(up_deep + 4)), 1 << 11, WORDS_AT(up_deep - 5));
+    *high = words_with(words_with(*high, 1 << 12, WORDS_AT(deep + 2)), 1 << 13, WORDS_AT(deep - 7));
+    *high = words_with(words_with(*high, 1 << 14, WORDS_AT(up - 8)), 1 << 15, WORDS_AT(up - 1));
 }
 
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
-    words16 rows[4];
-    loop_unrolled for (uint n = 0; n < 4; n++) rows[n] =
-        *(const words16 *)(number + NUMBER_STEP * NUMBER_INDEX(0, n & 1, n >> 1));
-    *(words16 *)out = numbers_shuffled(rows, entry + 1);
-    *(words16 *)(out + 15) = numbers_shuffled(rows, entry + 16);
+    uint16 low, high;
+    slots_fill(number, &low, &high);
+    *(words16 *)out = words_shuffled(low, high, *(global const bytes16 *)(entry + 1), VERTEX_TYPES > PLACE_TYPE);
+#ifndef MASK_REGISTERS /* few cubes have more, and their shuffles are several */
+    if (entry[0] <= 5) return;
+#endif
+    *(words16 *)(out + 15) =
+        words_shuffled(low, high, *(global const bytes16 *)(entry + 16), VERTEX_TYPES > PLACE_TYPE);
 }
 #else
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
-    loop_copied for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->lane_index[entry[1 + n]]];
+    loop_copied for (uint n = 0; n < CASE_STEP; n++) out[n] = number[work->slot_index[entry[1 + n]]];
     if (3 * entry[0] > CASE_STEP)
-        loop_copied for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->lane_index[entry[1 + n]]];
+        loop_copied for (uint n = CASE_STEP; n < CASE_ITEMS; n++) out[n] = number[work->slot_index[entry[1 + n]]];
 }
 #endif
 

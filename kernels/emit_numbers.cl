@@ -6,13 +6,14 @@
  * brick has: those that the brick owns and, numbered from kernel 1's results, those that its neighbours own. The table
  * is never cleared: only crossed edges are looked up.
  *
- * A row has about one crossed edge of each type. A row without any also stores an item in a list, which the next row
- * overwrites: that is cheaper than a branch that is hard to predict.
+ * A row has about one crossed edge of each type. A row with fewer than EDGES_USUAL also stores items in the list, which
+ * the next row overwrites: that is cheaper than a branch that is hard to predict.
  */
 #ifndef EMIT_NUMBERS_CL
 #define EMIT_NUMBERS_CL
 
 #include "border.cl"
+#include "case_slots.h"
 #include "mesh.cl"
 #include "snapped.cl"
 #include "tetrahedra.cl"
@@ -41,7 +42,7 @@ typedef struct brick_work {
     bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
     bytes64 zero_patterns[ZEROS ? BRICK_WORDS + 1 : 1];
 #endif
-    ushort lane_index[4 * NUMBER_LANES];
+    ushort slot_index[CASE_SLOTS]; /* where a slot's number is in that table, from the cube's first sample on */
     uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
 #ifdef REAL
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
@@ -54,9 +55,13 @@ typedef struct brick_work {
 } brick_work;
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) {
-    for (uint n = 0; n < 4 * NUMBER_LANES; n++)
-        work->lane_index[n] =
-            NUMBER_STEP * NUMBER_INDEX(0, n / NUMBER_LANES & 1, n / NUMBER_LANES >> 1) + n % NUMBER_LANES;
+#define SLOT(slot, x, y, z, type) work->slot_index[slot] = NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type);
+    if (NUMBER_STEP == 8) {
+        SLOTS_OF_EIGHT(SLOT)
+    } else {
+        SLOTS_OF_FOUR(SLOT)
+    }
+#undef SLOT
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
     if (ZEROS) link_offsets(s, work->link_offsets);
@@ -174,6 +179,14 @@ inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong pl
     return count;
 }
 
+/* Edges of a row and type that are listed without a branch. */
+#define EDGES_USUAL 2
+
+inline_always void edge_list(const uint codes[2], uint bit, uint *number, uint first, uint count, brick_work *work) {
+    work->list[count] = (bit & 1 ? codes[1] : codes[0]) + bit;
+    number[NUMBER_STEP * bit] = first + count;
+}
+
 /* Lists and numbers the vertices that the brick owns; returns their count. */
 inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, brick_work *work) {
     uint count = 0;
@@ -186,13 +199,11 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
         loop_unrolled for (uint type = 0; type < PLACE_TYPE && any; type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
-            uint end = count + (uint)popcount(crossed);
-            do {
-                uint bit = lowest_bit(crossed);
-                work->list[count] = (bit & 1 ? codes[1] : codes[0]) + bit;
-                number[NUMBER_STEP * bit + type] = first + count++;
-                crossed &= crossed - 1;
-            } while (crossed);
+            const uint end = count + (uint)popcount(crossed);
+            loop_unrolled for (uint n = 0; n < EDGES_USUAL; n++, crossed &= crossed - 1)
+                edge_list(codes, lowest_bit(crossed), number + type, first, count++, work);
+            for (; crossed; crossed &= crossed - 1)
+                edge_list(codes, lowest_bit(crossed), number + type, first, count++, work);
             count = end;
         }
         if (VERTEX_TYPES > PLACE_TYPE)

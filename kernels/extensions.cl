@@ -13,6 +13,11 @@
 #define MASK_REGISTERS
 #endif
 
+/* Vectors of 8 words can be shuffled by variable indices. Tests define NO_AVX2 as well, for processors without. */
+#if defined(MASK_REGISTERS) || (defined(__AVX2__) && !defined(NO_AVX2))
+#define WORD_SHUFFLES
+#endif
+
 /* A work-item alone leaves nothing to vectorise across work-items; Intel's compiler for CPUs tries for minutes. */
 #ifdef cl_intel_vec_len_hint
 #define kernel __kernel __attribute__((intel_vec_len_hint(1)))
@@ -100,9 +105,49 @@ inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
     return (uint)popcount((ushort)mask);
 }
 
-/* Element n: of the 32 words of low and high, the one that the lower five bits of lane[n] name. */
-inline_always int16 words_shuffled(words16 low, int16 lane, words16 high) {
-    return __builtin_ia32_vpermi2vard512(as_int16(low), lane, as_int16(high));
+#endif
+
+#ifdef WORD_SHUFFLES
+
+/* Bit n: the highest bit of element n. */
+inline_always uint signs_packed(ulong8 x) {
+#ifdef MASK_REGISTERS
+    return (uint)__builtin_ia32_cvtq2mask512(as_long8(x));
+#else
+    return (uint)__builtin_ia32_movmskpd256(__builtin_astype(x.lo, double4)) |
+           (uint)__builtin_ia32_movmskpd256(__builtin_astype(x.hi, double4)) << 4;
+#endif
+}
+
+#ifndef MASK_REGISTERS
+/* Element n: of four vectors, or three, the word that n[n] names. */
+inline_always uint8 words_chosen(uint16 low, uint16 high, uint8 n, bool all_four) {
+    const int8 by_8 = as_int8(n << 28), by_16 = as_int8(n << 27);
+    const uint8 a = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.lo), as_int8(n)), uint8);
+    const uint8 b = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.hi), as_int8(n)), uint8);
+    const uint8 c = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.lo), as_int8(n)), uint8);
+    const uint8 d = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.hi), as_int8(n)), uint8);
+    const uint8 of_low = by_8 < 0 ? b : a, of_high = !all_four ? c : by_8 < 0 ? d : c;
+    return by_16 < 0 ? of_high : of_low;
+}
+#endif
+
+/* Element n: of the 32 words of low and high, the one that lane[n] names. all: else none of the last eight. */
+inline_always words16 words_shuffled(uint16 low, uint16 high, bytes16 lane, bool all) {
+#ifdef MASK_REGISTERS
+    return as_uint16(__builtin_ia32_vpermi2vard512(as_int16(low), convert_int16((uchar16)lane), as_int16(high)));
+#else
+    const uchar16 n = lane;
+    return (uint16)(words_chosen(low, high, convert_uint8(n.lo), all),
+                    words_chosen(low, high, convert_uint8(n.hi), all));
+#endif
+}
+
+/* a, with the elements of b whose bits are set in slots. */
+inline_always uint16 words_with(uint16 a, uint slots, uint16 b) {
+    const int16 bit = (int16)(1 << 0, 1 << 1, 1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6, 1 << 7, 1 << 8, 1 << 9, 1 << 10,
+                              1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15);
+    return (bit & (int16)(int)slots) != 0 ? b : a;
 }
 
 #endif

@@ -56,17 +56,12 @@ enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FAC
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
- * make their number a power of two. */
+ * make their number a power of two. The table of cases names a vertex by its slot (case_slots.h). */
 #define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
 /* The index of a sample in that table, in samples. */
 #define NUMBER_INDEX(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
-
-/* For that kernel the table of cases has for every corner of a triangle an index into 4 x NUMBER_LANES numbers: those
- * that begin at the cube's first sample in its four rows of the table of vertex numbers. */
-#define CASE_INDEX(x, y, z, type, vertex_types)                                                                        \
-    (NUMBER_LANES * ((y) + 2 * (z)) + (x)*NUMBER_TYPES(vertex_types) + (type))
 
 /* Local memory that a group takes for every 32 of its work-items: at most kernel 2's table of a brick's rows
  * (emit_rows.cl). */

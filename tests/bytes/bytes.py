@@ -39,8 +39,9 @@ def runs_list(folder):
     """Name, tier and environment of every run."""
     runs = [(f"installed, {n} thread(s)", "whole", threads(n)) for n in ("1", "2", "16")]
     runs.append(("installed, small grids", "small", {}))
-    runs.append(("installed, variant for other processors", "sample",
-                 {"POCL_EXTRA_BUILD_FLAGS": "-DNO_AVX512", "TETRACUBES_CACHE_DIR": ""}))
+    for missing, flags in (("AVX-512", "-DNO_AVX512"), ("AVX2", "-DNO_AVX512 -DNO_AVX2")):
+        runs.append((f"installed, for processors without {missing}", "sample",
+                     {"POCL_EXTRA_BUILD_FLAGS": flags, "TETRACUBES_CACHE_DIR": ""}))
     second = second_find(os.path.join(folder, "second"))
     if second:
         own = {"OCL_ICD_VENDORS": second, "TETRACUBES_CACHE_DIR": os.path.join(folder, "cache")}

@@ -3,7 +3,7 @@ import collections
 
 # what: the fault in words. nth: which of several places with the text, from 0 on; None where there is one. at: the place
 # itself, of mutants that a program finds. tests: names of those that are run first. same: why no test can tell. needs: the
-# processor's feature, as /proc/cpuinfo spells it, without which the text is not compiled. point: what the text was put
+# processor's feature, as processor_features() of mutants.py spells it, without which the text is not compiled. point: what the text was put
 # right for (table_faults.py): then the mutant's own tests alone are to catch it.
 Mutant = collections.namedtuple("Mutant", "file old new what nth at tests same sample needs point")
 Mutant.__new__.__defaults__ = (None, None, (), None, False, None, None)

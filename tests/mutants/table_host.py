@@ -4,6 +4,7 @@ from mutant import group
 SLABS_MISSING = {"tests": ("test_device, slabs with missing",)}
 SCATTERED = {"tests": ("test_complex, scattered",)}
 SNAP = {"tests": ("test_snap",)}
+HYBRID = {"tests": ("test_hybrid, u8",)}
 PIECES = {"tests": ("test_grid_pieces, reference",)}
 DEVICE_PIECES = {"tests": ("test_grid_pieces, u8",)}
 WHOLE = {"tests": ("test_cells, reference",)}
@@ -586,9 +587,10 @@ MUTANTS = [
            ("s->results.tiles_offset = r->plan->slab_count * STATE_WORDS +", "s->results.tiles_offset = STATE_WORDS +",
             "slabs: tiles of the scan overlap heads")),
     *group("host/lib/structured/structured_emit.c",
-           ("CASE_INDEX(v.dx, v.dy, v.dz,", "CASE_INDEX(v.dx, v.dz, v.dy,",
+           ("slots[of_eight][n].dy == v.dy", "slots[of_eight][n].dy == v.dz",
             "kernel 2: a cube's edges, y and z exchanged"),
-           ("v.dz, v.type,", "v.dz, (v.type + 1) % 6,", "kernel 2: a cube's edges, types"),
+           ("slots[of_eight][n].type == v.type", "slots[of_eight][n].type == (v.type + 1) % 6", "kernel 2: a cube's edges, types"),
+           ("slot_of(v, NUMBER_TYPES(types) == 8)", "slot_of(v, true)", "kernel 2: slots of the hybrid", HYBRID),
            ("derive(cases, r->grid->mirrored);", "derive(cases, 0);",
             "winding: mirrored grids are not turned over")),
     *group("host/lib/tetrahedra/complex_surface.c",

@@ -11,6 +11,8 @@ F32 = {"tests": ("test_random, f32",)}
 NORMALS = {"tests": ("test_random, f32 with normals",)}
 POINTS = {"tests": ("test_curvilinear, points", "test_curvilinear, u8 points")}
 AVX512 = {"needs": "avx512bw"}
+AVX2 = {"needs": "avx2"}
+NO_AVX512 = {"needs": "avx2 without avx512bw"}
 HYBRID = {"tests": ("test_hybrid, u8",)}
 SNAP = {"tests": ("test_snap, u8",)}
 SNAP_GROUPS = {"tests": ("test_device, snap in groups",)}
@@ -53,7 +55,13 @@ MUTANTS = [
            ("__builtin_convertvector(samples <= most, bytes64)", "__builtin_convertvector(samples < most, bytes64)",
             "inside: the greatest value is out"),
            ("return (uint)popcount((ushort)mask);", "return (uint)popcount(mask);", "cubes: more are counted than are listed",
-            AVX512)),
+            AVX512),
+           ("return by_16 < 0 ? of_high : of_low;", "return of_low;", "shuffles: the second vector", NO_AVX512),
+           ("by_8 < 0 ? d : c", "c", "shuffles: the upper half of the second vector", {**SNAP, **NO_AVX512}),
+           ("double4)) << 4;", "double4)) << 3;", "cases: signs of the next plane's corners", NO_AVX512)),
+    *group("kernels/case_slots.h",
+           ("SLOT(13, 1, 0, 0, 5)", "SLOT(14, 1, 0, 0, 5)", "slots: one of two edges in yz"),
+           ("SLOT(21, 1, 0, 1, 1)", "SLOT(20, 1, 0, 1, 1)", "slots: an edge of the hybrid", HYBRID)),
     *group("kernels/sign_alone.cl",
            ("most = parts.line[n] > most ? parts.line[n] : most;", "most = parts.line[n];", "ranges: the greatest of the last row"),
            ("word[first + n][brick_row] = word_make(bits, &s->test);", "word[n][brick_row] = word_make(bits, &s->test);",
@@ -214,8 +222,8 @@ MUTANTS = [
             "cubes: the next brick's first row"),
            ("return (s->parity ^ y ^ z) & 1;", "return (s->parity ^ y) & 1;", "parity of a row"),
            ("(bit & 1 ? codes[1] : codes[0])", "codes[0]", "edges: parity"),
-           ("number[NUMBER_STEP * bit + type] = first + count++;", "number[NUMBER_STEP * bit + type] = first, count++;",
-            "numbers of a row's vertices"),
+           ("number[NUMBER_STEP * bit] = first + count;", "number[NUMBER_STEP * bit] = first;", "numbers of a row's vertices"),
+           ("for (; crossed; crossed &= crossed - 1)", "for (; 0; crossed &= crossed - 1)", "a third edge of a type in a row"),
            ("number[NUMBER_STEP * lowest_bit(crossed)] = first++;", "number[NUMBER_STEP * lowest_bit(crossed)] = first;",
             "numbers of another brick's vertices"),
            ("neighbour_row_number(number + 1, crossed[1][y], number_of(o, 1));", "neighbour_row_number(number + 1, crossed[1][y], number_of(o, 0));",
@@ -245,7 +253,10 @@ MUTANTS = [
            ("convert_uint16(vload16(0, patterns + x))", "convert_uint16(vload16(0, patterns))", "cubes: another one's case",
             AVX512),
            ("x += 16, active >>= 16;", "x += 15, active >>= 16;", "cubes: the brick_row of the next sixteen", AVX512),
-           ("(lane & (2 * NUMBER_LANES)) != 0", "(lane & NUMBER_LANES) != 0", "triangles: the plane of a number", AVX512),
+           ("1 << 11, WORDS_AT(up - 1)", "1 << 11, WORDS_AT(up)", "slots: an edge of the next row", AVX2),
+           ("1 << 5, WORDS_AT(deep - 5)", "1 << 5, WORDS_AT(deep)", "slots: an edge of the next plane", AVX2),
+           ("0xff00, WORDS_AT(up_deep - 8)", "0xff00, WORDS_AT(up_deep)", "slots: edges of the hybrid", {**HYBRID, **AVX2}),
+           ("1 << 13, WORDS_AT(deep - 7)", "1 << 13, WORDS_AT(deep)", "slots: a sample of the next plane", {**SNAP, **AVX2}),
            ("3ul * (uint)(state.triangles - s->mesh.triangle_window)", "3ul * (uint)state.triangles", "slabs: triangles of a window",
             SLABS)),
     *group("kernels/vertex.cl",
@@ -470,14 +481,14 @@ MUTANTS = [
            ("return c->active_count ? edge_find", "return true ? edge_find", "caps: edges of a surface that has none",
             {"same": "a face of a present cell with points on both sides makes that cell active"}),
            ("return (inside & 1) | (inside >> 1 & 6);", "return (inside & 1) | (inside >> 1 & 2);", "caps: second halves"),
-           ("0x1210u >> 4", "0x1220u >> 4", "caps: triangles of one inside point"),
+           ("return count == 2 ? 2 : count != 0;", "return count && count < 3 ? 2 : count != 0;", "caps: triangles of one inside point"),
            ("triangle_parts(second_half(inside)) : (uint)popcount(inside);", "triangle_parts(second_half(inside)) : 2;",
             "caps: triangles of quadrilaterals that are cut off whole"),
            ("if (has_point && !recount) a.numbers[n] = inside ? before.x : EDGE_NONE;", "if (has_point && !recount) a.numbers[n] = before.x;",
             "caps: points outside are inside"),
            ("if (has_face && !recount)", "if (has_face)", "caps: a recount stores what it counts", {"same": "it is the same"}),
            ("return e.state[HEAD_VERTICES] + tile_before", "return tile_before", "caps: vertices among the surface's"),
-           ("0x9a10u >> 2", "0x9210u >> 2", "caps: where triangles begin"),
+           ("inside >= 4 ? 2 : 0;", "inside == 4 || inside == 7 ? 2 : 0;", "caps: where triangles begin"),
            ("if (turn == 1) p = p.yzx;", "if (turn == 1) p = p.zxy;", "caps: triangles turned the other way"),
            ("if (count == 2) cap_put(a, between, last, out);", "", "caps: one triangle where two points are inside"),
            ("if (!(inside & 1)) p = p.zwxy,", "if (false) p = p.zwxy,", "caps: quadrilaterals begin at their smallest point"),

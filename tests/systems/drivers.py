@@ -72,8 +72,9 @@ def drivers_list(folder, rusticl_folder):
     mesa, rusticl = rusticl_find(rusticl_folder)
     return [
         ("PoCL", icd_library("pocl"), with_avx512 + [
-            ("one work-item, plain", 0, {"POCL_EXTRA_BUILD_FLAGS": "-DNO_AVX512"}), ("groups of 32", 32, {}),
-            ("groups of 64", 64, {})]),
+            ("one work-item, plain", 0, {"POCL_EXTRA_BUILD_FLAGS": "-DNO_AVX512"}),
+            ("one work-item, no AVX2", 0, {"POCL_EXTRA_BUILD_FLAGS": "-DNO_AVX512 -DNO_AVX2"}),
+            ("groups of 32", 32, {}), ("groups of 64", 64, {})]),
         ("rusticl, as a CPU", mesa, [(*groups, dict(rusticl, RUSTICL_DEVICE_TYPE="cpu", RUSTICL_FEATURES="fp64"))]),
         ("rusticl, as a GPU", mesa, [(*groups, dict(rusticl, RUSTICL_DEVICE_TYPE="gpu"))]),
         ("Intel's runtime for CPUs", second_library(folder), with_avx512 + [("groups of 32", 32, {})]),

@@ -5,6 +5,7 @@
  */
 #include "structured/structured_emission.h"
 
+#include "case_slots.h"
 #include "failure.h"
 #include "grid/method.h"
 
@@ -56,14 +57,29 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
     return status;
 }
 
+/* The slot of a vertex in kernel 2 where a work-item has a brick to itself. */
+static uint8_t slot_of(owned_edge v, bool of_eight) {
+    static const struct {
+        uint8_t slot, dx, dy, dz, type;
+    } slots[2][CASE_SLOTS] = {
+#define SLOT(...) {__VA_ARGS__},
+        {SLOTS_OF_FOUR(SLOT)}, {SLOTS_OF_EIGHT(SLOT)}};
+#undef SLOT
+    for (int n = 0; n < CASE_SLOTS; n++)
+        if (slots[of_eight][n].type == v.type && slots[of_eight][n].dx == v.dx && slots[of_eight][n].dy == v.dy &&
+            slots[of_eight][n].dz == v.dz)
+            return slots[of_eight][n].slot;
+    return 0;
+}
+
 /* How kernel 2 finds a vertex of a cube: by its owner and type, or, where a work-item has a brick to itself, by its
- * index among their numbers. The type of vertices at samples follows those of edges. */
+ * slot. The type of vertices at samples follows those of edges. */
 static uint8_t vertex_item(const run *r, uint8_t vertex) {
     const int types = methods[r->method].vertex_types;
     owned_edge v = cube_vertex(vertex);
     if (v.type == VERTEX_SAMPLE && types < VERTEX_SAMPLE) v.type = (uint8_t)types;
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(v.dx, v.dy, v.dz, v.type);
-    return (uint8_t)CASE_INDEX(v.dx, v.dy, v.dz, v.type, types);
+    return slot_of(v, NUMBER_TYPES(types) == 8);
 }
 
 /* Names the vertices of cases as kernel 2 does. */
