@@ -40,14 +40,15 @@
  * time. Different threads may use different contexts at once. Functions without a context, grid or mesh may be called
  * by any thread at any time.
  *
- * Ownership. What a create function or tc_extract makes is the caller's to destroy: meshes and grids before their
- * context. Arrays and strings are read during the call only, unless the field says that they are borrowed for longer.
+ * Ownership. What a create function, an extracting function or tc_tetrahedralize makes is the caller's to destroy or
+ * release: grids, meshes and interval volumes before their context. Arrays and strings are read during the call only,
+ * unless the field says that they are borrowed for longer.
  *
  * Structs begin with struct_size, the size of the struct in the header that the caller was built with: options have an
  * init function that sets it and the defaults; in other structs the caller sets it, and zeros all else that it does
- * not fill. A newer library reads and fills only that much, and takes defaults for what is not there. A size that no
- * header up to the library's can have given (0, one that is not a multiple of 8, one of a newer header) is
- * TC_ERROR_ARGUMENT.
+ * not fill; in structs that callbacks get the library has set it. A newer library reads and fills only that much, and
+ * takes defaults for what is not there. A size that no header up to the library's can have given (0, one that is not a
+ * multiple of 8, one of a newer header) is TC_ERROR_ARGUMENT.
  *
  * Floating-point environment (rounding, traps, flushing of subnormal numbers): results do not depend on the caller's,
  * which is as it was when a call returns, flags included. Callbacks run in it. Threads that drivers start within a call
@@ -98,11 +99,12 @@ TC_API const char *tc_version(void);
 typedef enum tc_status {
     TC_OK = 0,
     TC_ERROR_ARGUMENT,     /* an argument or option is not valid: the caller's mistake */
-    TC_ERROR_DATA,         /* the grid cannot be contoured: one sample along an axis, sizes that overflow, coordinates
-                              that are not finite, cells that cannot be cut */
+    TC_ERROR_DATA,         /* the grid cannot be contoured: one sample along an axis, more than 2^24 along one, sizes
+                              that overflow, coordinates that are not finite, cells that cannot be cut */
     TC_ERROR_DEVICE,       /* no OpenCL, no such device, or the device failed */
     TC_ERROR_MEMORY,       /* host or device memory ran out */
-    TC_ERROR_LIMIT,        /* more than 2^32 - 1 vertices, points or tetrahedra, or a plane of samples too large */
+    TC_ERROR_LIMIT,        /* more than 2^32 - 1 vertices, points or tetrahedra, or planes of samples too large for the
+                              kernels */
     TC_ERROR_CANCELLED,    /* a callback asked to stop */
     TC_ERROR_FILE,         /* a file of the cache that the caller asked for cannot be written */
     TC_ERROR_WRONG_RESULT, /* the device computes wrongly: found by check_device, or by a trial in a child process */
@@ -264,8 +266,8 @@ typedef struct tc_grid_options {
                                             points, and what is blanked, of a rectilinear or curvilinear grid. Of a
                                             uniform grid the matrix is the part's, and the part lies within (else
                                             TC_ERROR_ARGUMENT). Samples may be NULL. NULL: a grid by itself */
-    int64_t owned[2]; /* of a piece of the whole: the grid's planes owned[0] <= z < owned[1] are its own, the others are
-                         halo; see "pieces of a grid". 0, 0: all */
+    int64_t owned[2]; /* of a piece of the whole: of this grid's planes, counted from its own first one, those with
+                         owned[0] <= z < owned[1] are its own, the others are halo; see "pieces of a grid". 0, 0: all */
 } tc_grid_options;
 
 /* Samples at points, ready for extraction: of a structured grid, or of tetrahedra. */
@@ -278,7 +280,7 @@ TC_API void tc_grid_options_init(tc_grid_options *options);
  * context. Samples may not change while the grid lives: it remembers what it has seen of them, so that further
  * isovalues leave most unread. TC_ERROR_DATA for one sample along an axis, for sizes that overflow or are above the
  * limits, and for coordinates that are not finite; TC_ERROR_LIMIT where four planes of samples have more than 2^30 / 10
- * samples (OpenCL engine). */
+ * samples (OpenCL engine); closed surfaces and interval volumes have lower limits, and meet them when extracted. */
 TC_API tc_status tc_grid_create(tc_context *context, const tc_grid_options *options, tc_grid **grid);
 TC_API void tc_grid_destroy(tc_grid *grid); /* waits for what is under way on it */
 
@@ -295,7 +297,8 @@ typedef enum tc_method {
                              ambiguous the tetrahedra decide, so that the topology is theirs. Unstructured grids: see
                              `source` of tc_tetrahedra_grid_options */
     TC_METHOD_SNAP = 2,   /* structured grids: as tetra, but samples near the surface become vertices of it where the
-                             topology stays: of smooth fields less than 0.3 of the triangles, of better shape */
+                             topology stays: of smooth fields 0.22 to 0.3 of the triangles, of better shape; of noise, and
+                             of   samples in few steps, more */
 } tc_method;
 
 /* "tetra", "hybrid", "snap", valid forever; NULL for a value that is no method. */
@@ -314,7 +317,7 @@ typedef struct tc_extract_options {
                      sample, with its gradient as normal. The mesh then bounds the present part of {f >= isovalue}.
                      The border of a grid of tetrahedra is found by threads of the host, when a surface of it is
                      first closed; the grid keeps it */
-    int reserved; /* 0 */
+    int reserved; /* 0, or TC_ERROR_ARGUMENT: room for what may come */
 } tc_extract_options;
 
 /* What classification alone tells. */
@@ -327,7 +330,7 @@ typedef struct tc_counts {
     double classify_ms;
 } tc_counts;
 
-/* Milliseconds of the last extraction into a mesh, by the host's clock. Only ever a part of tc_mesh_data. */
+/* Milliseconds of the last extraction into a mesh, by the host's clock. A part of other structs, so it never grows. */
 typedef struct tc_timings {
     double classify_ms; /* kernel 1 over all slabs, reading of totals included */
     double emit_ms;     /* allocation of the mesh, kernel 2 over all slabs */
@@ -362,7 +365,8 @@ TC_API tc_status tc_count(tc_grid *grid, const tc_extract_options *options, tc_c
 
 /* Extracts a surface. *mesh NULL: a new mesh is made, the caller's to destroy before the context. Else *mesh, of the
  * same context, is overwritten and its memory used again. On failure a new mesh is not made, an old one is empty.
- * TC_ERROR_LIMIT for more than 2^32 - 1 vertices. */
+ * TC_ERROR_LIMIT for more than 2^32 - 1 vertices, and where four planes of samples are too large for the kernels of
+ * closed surfaces. */
 TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh **mesh);
 
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
@@ -378,8 +382,8 @@ typedef struct tc_labels_options {
                                with a count of 0: all */
     uint64_t label_count;
     uint32_t smoothing; /* sweeps of smoothing, at most 1000; 0 leaves stairs. Uniform grids only */
-    int closed; /* nonzero: around the grid is a layer of background, so that surfaces end half a cell beyond its
-                   border; else they have borders there */
+    int closed; /* nonzero: as if a layer of background lay around the grid, so that surfaces end half a cell beyond its
+                   border (those of tc_extract end on it); else they have borders there */
 } tc_labels_options;
 
 /* Defaults: all labels, 8 sweeps, not closed. */
@@ -401,7 +405,8 @@ TC_API void tc_labels_options_init(tc_labels_options *options);
  * Smoothing moves every vertex three quarters of the way to the mean of its neighbours, `smoothing` times, but no
  * farther from its place than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there
  * count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations",
- * 2022). It runs on threads of the host, whose number changes nothing.
+ * 2022). It runs on threads of the host, whose number changes nothing. There are no normals, and tc_interpolate_field
+ * does not know these vertices.
  *
  * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
  * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1
@@ -416,7 +421,7 @@ TC_API tc_status tc_extract_labels(tc_grid *grid, const tc_labels_options *optio
  * The order of vertices and triangles is by bricks, and bricks follow each other by layers of four planes. So a piece
  * that owns whole layers has consecutive vertices and triangles of the whole mesh. It is a tc_grid with `whole` and
  * `owned` set: both begin at a multiple of 4 planes from the whole's first, and end at one or with the whole. Beside
- * the planes that it owns the grid has, but at the ends of the whole, a halo of at least 4 planes before and 2 behind;
+ * the planes that it owns the grid has, but at the ends of the whole, a halo of at least 4 planes before and 2 after;
  * for TC_METHOD_SNAP 8 on either side. tc_count, tc_extract and tc_interpolate_field give what the piece owns.
  *
  * Cells between two pieces use vertices of the later one. Their numbers follow from its seam: how many of its vertices
@@ -434,7 +439,7 @@ TC_API uint64_t tc_seam_size(const tc_grid *grid);
 TC_API tc_status tc_count_piece(tc_grid *grid, const tc_extract_options *options, tc_counts *counts, uint32_t *seam,
                                 uint64_t seam_size);
 
-/* As tc_extract. next_seam: of the piece behind, by the same options; NULL with 0 where the whole ends with this one.
+/* As tc_extract. next_seam: of the next piece, by the same options; NULL with 0 where the whole ends with this one.
  * TC_ERROR_LIMIT also where vertices of the next piece have no number of 32 bits beside those of this one. */
 TC_API tc_status tc_extract_piece(tc_grid *grid, const tc_extract_options *options, const uint32_t *next_seam,
                                   uint64_t seam_size, tc_mesh **mesh);
@@ -447,8 +452,8 @@ TC_API tc_status tc_extract_piece(tc_grid *grid, const tc_extract_options *optio
 
 /* Planes of samples of a stream's grid, x fastest. */
 typedef struct tc_planes {
-    size_t struct_size;
-    int64_t first, count;     /* of the whole: planes first to first + count - 1 */
+    size_t struct_size;       /* set by the library */
+    int64_t first, count;     /* planes first to first + count - 1, from 0 at the whole's first, whatever first_index */
     void *samples;            /* aligned to the type */
     uint8_t *blanked_samples; /* one per sample, as in tc_grid_options; NULL where the grid has none */
     uint8_t *blanked_cells;   /* planes first to first + count - 1 of cells, less where the whole ends; likewise */
@@ -459,18 +464,18 @@ typedef struct tc_planes {
  * last may be asked for again, where a mesh is too large. Nonzero ends the stream. */
 typedef int (*tc_read_planes)(void *user, tc_planes *planes);
 
-/* Told once, between the passes: counts of each surface, in their order. Nonzero ends the stream. */
-typedef int (*tc_take_counts)(void *user, const tc_counts *counts);
+/* Called between the passes, once for each surface in their order: its counts. Nonzero ends the stream. */
+typedef int (*tc_take_counts)(void *user, size_t surface, const tc_counts *counts);
 
 /* A piece of a mesh. */
 typedef struct tc_mesh_piece {
-    size_t struct_size;
+    size_t struct_size;                    /* set by the library */
     size_t surface;                        /* index of the surface */
     uint64_t first_vertex, first_triangle; /* in the whole mesh */
     const tc_mesh_data *mesh; /* valid during the call; add first_vertex to the indices of its triangles, of which those
                                  from mesh->vertex_count on are vertices of the next piece */
     tc_grid *grid;            /* of the piece, for tc_interpolate_field and tc_grid_origin */
-    int64_t first_plane, plane_count; /* of the whole: those that the grid has */
+    int64_t first_plane, plane_count; /* those that the grid has, from 0 at the whole's first */
 } tc_mesh_piece;
 
 /* Takes the next piece: of each surface in the order of the mesh, those without vertices and triangles left out.
@@ -490,9 +495,9 @@ typedef struct tc_stream_options {
     tc_take_counts counted; /* NULL: none */
     tc_take_piece take;     /* NULL: the stream ends when all is counted */
     void *user;             /* handed to these three, which run on the thread of the call */
-    int64_t owned[2];       /* only the pieces of planes owned[0] to before owned[1] of the whole, multiples of 4 or its
+    int64_t owned[2];       /* only the pieces of the whole's planes owned[0] <= z < owned[1], multiples of 4 or its
                                ends: numbers then count from 0 there, and the last triangles may use vertices of the
-                               piece behind, as in tc_extract_piece. 0, 0: all */
+                               next piece, as in tc_extract_piece. 0, 0: all */
 } tc_stream_options;
 
 /* Defaults: nothing given. */
@@ -516,9 +521,8 @@ typedef struct tc_field {
  * values[vertex][component] = a + t (b - a), in double precision, then rounded. a and b are the field at the two points
  * between which the vertex lies, t is what placed the vertex; a or b itself where t is 0 or 1, whatever the other is.
  * value_count: the floats that values has room for, which has to be vertices times components (TC_ERROR_ARGUMENT
- * otherwise). Shortest after tc_extract or tc_count of the same grid and
- * surface, whose results it uses; else the surface is counted first. Runs on threads of the host; not for grids with
- * cl_samples. */
+ * otherwise). Fastest after tc_extract or tc_count of the same grid and surface, whose results it uses; else the
+ * surface is counted first. Runs on threads of the host; not for grids with cl_samples. */
 TC_API tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options, const tc_field *field,
                                       float *values, uint64_t value_count);
 
@@ -577,7 +581,8 @@ TC_API tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *opt
  * point number, of points that a tetrahedron without missing samples has; tetrahedra by that which they are a part of.
  *
  * TC_ERROR_MEMORY, with the bytes that it takes, where the host has not so much: tc_count_interval tells them before.
- * TC_ERROR_LIMIT for more than 2^32 - 1 vertices. TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the
+ * TC_ERROR_LIMIT for more than 2^32 - 1 vertices, and where eight planes of samples are too large for the kernels.
+ * TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the
  * OpenCL engine for grids of tetrahedra, and for u32, i32 and f64 samples on a device without fp64: use the reference
  * engine. */
 TC_API tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options, tc_interval **interval);

@@ -31,6 +31,9 @@ tc_status extract_options_take(tc_extract_options *o, const tc_extract_options *
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no method", (int)o->method);
     if (!status && o->method == TC_METHOD_SNAP && !(o->snap >= 0 && o->snap <= 0.5))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "snap %g: it has to be from 0 to 0.5", o->snap);
+    if (!status && o->reserved)
+        status =
+            (tc_status)fail(TC_ERROR_ARGUMENT, "reserved is %d in the extract options: it has to be 0", o->reserved);
     return status;
 }
 

@@ -171,7 +171,8 @@ static tc_status stream_run(stream *s) {
     if (!s->no_vertices) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the seams of a stream");
     tc_status status = stream_count(s, window_planes(s));
     if (status) return status;
-    if (s->o.counted) CALL_BACK(s->o.counted(s->o.user, s->totals));
+    for (size_t n = 0; n < s->o.surface_count && s->o.counted; n++)
+        CALL_BACK(s->o.counted(s->o.user, n, &s->totals[n]));
     return s->o.take ? units_emit(s) : TC_OK;
 }
 

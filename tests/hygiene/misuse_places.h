@@ -106,7 +106,7 @@ typedef struct place {
     AT(call, grid, null), AT(call, extract_options_at, null), AT(call, extract_options.isovalue, isovalues),           \
         AT(call, extract_options.method, no_enumerator), AT(call, extract_options.snap, any_f64),                      \
         AT(call, extract_options.closed, LISTED({1, OK | ARGUMENT | DEVICE})),                                         \
-        AT(call, extract_options.reserved, any_i32)
+        AT(call, extract_options.reserved, LISTED({1, ARGUMENT}, {I64(-1), ARGUMENT}))
 
 #define OPTIONS_OF_INTERVALS(call)                                                                                     \
     AT(call, grid, null), AT(call, interval_options_at, null), AT(call, interval_options.low, bounds),                 \

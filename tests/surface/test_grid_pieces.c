@@ -254,14 +254,13 @@ static int planes_give(void *user, tc_planes *planes) {
     return flow_call(f);
 }
 
-static int counts_take(void *user, const tc_counts *counts) {
+static int counts_take(void *user, size_t surface, const tc_counts *counts) {
     flow *f = user;
-    for (int n = 0; n < SURFACES; n++) {
-        f->counts[n].struct_size = sizeof f->counts[n];
-        f->counts[n].vertex_count += counts[n].vertex_count;
-        f->counts[n].triangle_count += counts[n].triangle_count;
-        f->counts[n].active_cell_count += counts[n].active_cell_count;
-    }
+    tc_counts *sums = &f->counts[surface];
+    sums->struct_size = sizeof *sums;
+    sums->vertex_count += counts->vertex_count;
+    sums->triangle_count += counts->triangle_count;
+    sums->active_cell_count += counts->active_cell_count;
     return flow_call(f);
 }
 

@@ -33,7 +33,8 @@ static int planes_give(void *user, tc_planes *planes) {
     return 0;
 }
 
-static int counts_take(void *user, const tc_counts *counts) {
+static int counts_take(void *user, size_t surface, const tc_counts *counts) {
+    EXPECT(surface == 0, "surface %zu of one", surface);
     ((flow *)user)->counts = *counts;
     return 0;
 }

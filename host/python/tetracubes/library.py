@@ -151,7 +151,7 @@ class tc_mesh_piece(_Sized):
 
 
 tc_read_planes = CFUNCTYPE(c_int, c_void_p, POINTER(tc_planes))
-tc_take_counts = CFUNCTYPE(c_int, c_void_p, POINTER(tc_counts))
+tc_take_counts = CFUNCTYPE(c_int, c_void_p, c_size_t, POINTER(tc_counts))
 tc_take_piece = CFUNCTYPE(c_int, c_void_p, POINTER(tc_mesh_piece))
 
 

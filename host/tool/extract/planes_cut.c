@@ -59,9 +59,10 @@ static int read_planes(void *user, tc_planes *planes) {
     return c->how->read(c->how->user, planes);
 }
 
-static int take_counts(void *user, const tc_counts *counts) {
+static int take_counts(void *user, size_t surface, const tc_counts *counts) {
     cost_count *c = user;
-    for (size_t n = 0; n < c->how->surface_count; n++) c->mesh_bytes += counts[n].mesh_bytes;
+    (void)surface;
+    c->mesh_bytes += counts->mesh_bytes;
     return 0;
 }
 

@@ -146,16 +146,15 @@ static int count_together(stream_job *j) {
     return note(j, status);
 }
 
-static int take_counts(void *user, const tc_counts *counts) {
+static int take_counts(void *user, size_t surface, const tc_counts *counts) {
     stream_job *j = user;
-    for (size_t n = 0; n < j->count; n++) {
-        surface_report *s = j->surfaces[n].report;
-        j->surfaces[n].counts = counts[n];
-        s->vertex_count = counts[n].vertex_count;
-        s->triangle_count = counts[n].triangle_count;
-        s->active_cell_count = counts[n].active_cell_count;
-        s->classify_ms = counts[n].classify_ms;
-    }
+    surface_report *s = j->surfaces[surface].report;
+    j->surfaces[surface].counts = *counts;
+    s->vertex_count = counts->vertex_count;
+    s->triangle_count = counts->triangle_count;
+    s->active_cell_count = counts->active_cell_count;
+    s->classify_ms = counts->classify_ms;
+    if (surface + 1 < j->count) return 0;
     if (j->in->team) return count_together(j);
     j->fits = !is_asked_for(j->in) && fits_memory(j);
     return j->fits;
@@ -260,10 +259,8 @@ static int begin(stream_job *j, surface_report *surfaces) {
 
 /* Of more parts than layers some have nothing. */
 static int run_without_planes(stream_job *j) {
-    tc_counts *none = calloc(j->count, sizeof *none);
-    if (!none) return fail(STATUS_FAILED, "out of memory for the surfaces");
-    take_counts(j, none);
-    free(none);
+    const tc_counts none = {.struct_size = sizeof none};
+    for (size_t n = 0; n < j->count; n++) take_counts(j, n, &none);
     return j->status ? fail(j->status, "%s", j->text) : 0;
 }
 
