@@ -308,23 +308,30 @@ def methods_of(peers):
     return [method for method in METHODS if any(f"{method}_ms" in peer for peer in peers)]
 
 
-def brief_row(peer, methods):
-    """The first of the other programs is the fastest of them."""
-    key, title = next((key, title.removesuffix(", ms")) for key, title in PEERS + GRID_PEERS if f"{key}_ms" in peer)
-    theirs, ours = peer[f"{key}_ms"]["median"], peer["extract_ms"]["median"]
-    times = [number(peer[f"{method}_ms"]["median"]) if f"{method}_ms" in peer else "" for method in methods]
-    return [peer_name(peer), number(ours), *times, title, number(theirs), f"**{theirs / ours:.2f}**", f"{peer['triangles']:,}", f"{peer['vtk_triangles']:,}"
-            if "vtk_triangles" in peer else f"{peer[f'{key}_triangles']:,}"]
+def brief_cell(peer):
+    """Our time, and how many times that the other takes: the first of the programs is the fastest of them."""
+    theirs = next(peer[f"{key}_ms"] for key, _ in PEERS + GRID_PEERS if f"{key}_ms" in peer)["median"]
+    ours = peer["extract_ms"]["median"]
+    return f"{number(ours)} (**{theirs / ours:.1f}**)"
 
 
-def brief(result):
-    """The section of a machine in the project's README: nothing of one without peers."""
-    peers = list(filter(is_headline_peer, result.get("peers", [])))
-    methods = methods_of(peers)
-    head = ["samples", "Tetracubes, ms", *(f"{method}, ms" for method in methods), "VTK's filter", "its ms",
-            "times ours", "our triangles", "VTK's"]
-    return [f"On {result['cpu']}, {result['cores']} cores, OpenCL device {result['device']}, beside VTK "
-            f"{result['vtk']['version']} ({result['date']}):", table(head, [brief_row(peer, methods) for peer in peers])] if peers else []
+def brief(results):
+    """The section in the project's README: a column for each machine that has peers."""
+    results = [result for result in results if result.get("peers")]
+    letters = "ABCDEFGH"[:len(results)]
+    peers = [{peer_name(peer): peer for peer in filter(is_headline_peer, result["peers"])} for result in results]
+    names = list(dict.fromkeys(name for of_machine in peers for name in of_machine))
+    rows = []
+    for name in names:
+        peer = next(of_machine[name] for of_machine in peers if name in of_machine)
+        key, title = next((key, title.removesuffix(", ms")) for key, title in PEERS + GRID_PEERS if f"{key}_ms" in peer)
+        count = peer.get("vtk_triangles", peer.get(f"{key}_triangles"))
+        rows.append([name, title, *(brief_cell(of_machine[name]) if name in of_machine else "" for of_machine in peers),
+                     f"{peer['triangles']:,}", f"{count:,}", method_triangles(peer, "snap")])
+    machines = [f"{letter}: {result['cpu']}, {result['cores']} cores, {result['device'].split('-' + result['cpu'])[0]}, "
+                f"VTK {result['vtk']['version']}, {result['date']}" for letter, result in zip(letters, results)]
+    head = ["samples", "VTK's filter", *(f"{letter}: ours, ms" for letter in letters), "our triangles", "VTK's", "snap's"]
+    return [table(head, rows), "In bold: VTK's time divided by ours. " + ". ".join(machines) + "."] if results else []
 
 
 def everything(result):
@@ -370,7 +377,7 @@ def main():
             results.append(json.load(file))
     if not results:
         sys.exit(f"table.py: no results in {arguments.results}; run bench/run first")
-    replace(arguments.readme, [part for result in results for part in brief(result)])
+    replace(arguments.readme, brief(results))
     out_of_core = []
     for path in sorted(glob.glob(os.path.join(arguments.results, "out_of_core", "*.json"))):
         with open(path, encoding="utf-8") as file:

@@ -35,8 +35,9 @@ inline_always uint cap_edge(const complex_job *c, uint a, uint b, cap_arrays in)
                            : EDGE_NONE;
 }
 
-/* Bit n of inside: point n is. False where the face's diagonal is crossed and has no vertex. */
-inline_always bool cap_has_diagonal(const complex_job *c, const cap_face *f, uint inside, cap_arrays in) {
+/* Whether a face is cut as two triangles: not where its diagonal is crossed but has no vertex, as no tetrahedron has it
+ * for an edge. Bit n of inside: point n is inside. */
+inline_always bool cap_splits(const complex_job *c, const cap_face *f, uint inside, cap_arrays in) {
     const uint end = cap_is_half(f) ? 1 : 2;
     if (f->points[3] == CAP_TRIANGLE || !((inside ^ inside >> end) & 1)) return true;
     return cap_edge(c, f->points[0], end == 1 ? f->points[1] : f->points[2], in) != EDGE_NONE;
@@ -46,12 +47,15 @@ inline_always bool cap_has_diagonal(const complex_job *c, const cap_face *f, uin
 inline_always uint second_half(uint inside) { return (inside & 1) | (inside >> 1 & 6); }
 
 /* Triangles of a triangle's inside part, by how many points are inside: 0, 1, 2, 1. */
-inline_always uint triangle_parts(uint inside) { return 0x1210u >> 4 * popcount(inside & 7) & 3; }
+inline_always uint triangle_parts(uint inside) {
+    const uint count = (uint)popcount(inside & 7);
+    return count == 2 ? 2 : count != 0;
+}
 
 inline_always uint cap_parts(const complex_job *c, const cap_face *f, uint inside, cap_arrays in) {
-    const bool has = cap_has_diagonal(c, f, inside, in);
-    if (cap_is_triangle(f)) return has ? triangle_parts(inside) : 0;
-    return has ? triangle_parts(inside) + triangle_parts(second_half(inside)) : (uint)popcount(inside);
+    const bool splits = cap_splits(c, f, inside, in);
+    if (cap_is_triangle(f)) return splits ? triangle_parts(inside) : 0;
+    return splits ? triangle_parts(inside) + triangle_parts(second_half(inside)) : (uint)popcount(inside);
 }
 
 /* --------------------------------------------------------------------------------------------------------- counting */
@@ -168,7 +172,8 @@ inline_always void cap_put(uint a, uint b, uint c, global uint **out) {
 /* The inside part of a triangle. */
 inline_always void triangle_emit(const complex_job *c, uint3 p, uint inside, cap_emit e, global uint **out,
                                  uint *wrong) {
-    const uint turn = 0x9a10u >> 2 * inside & 3, count = (uint)popcount(inside); /* turn: where a is */
+    const uint count = (uint)popcount(inside);
+    const uint turn = inside == 2 || inside == 6 ? 1 : inside >= 4 ? 2 : 0; /* where a is */
     if (!count) return;
     if (turn == 1) p = p.yzx;
     if (turn == 2) p = p.zxy;
@@ -208,7 +213,7 @@ inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e, uint 
     uint inside = 0;
     for (uint m = 0; m < 3; m++) inside |= (uint)(e.numbers[f.points[m]] != EDGE_NONE) << m;
     if (!triangle) inside |= (uint)(e.numbers[f.points[3]] != EDGE_NONE) << 3;
-    const bool has = cap_has_diagonal(c, &f, inside, e.in);
+    const bool has = cap_splits(c, &f, inside, e.in);
     const uint3 first = (uint3)(f.points[0], f.points[1], f.points[2]);
     const uint3 second = (uint3)(f.points[0], f.points[2], f.points[3]);
     if (!triangle && !has) quadrilateral_emit(c, (uint4)(first, f.points[3]), inside, e, &out, wrong);

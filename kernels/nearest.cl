@@ -59,9 +59,9 @@ inline_always bool wishes_inside(const slab *s, global const BITS *at, const lon
     return difference > 0 && near_enough(s, *at, difference);
 }
 
-/* The index in its link of the nearest crossing of any sample; LINK_EVEN: none is near enough. On a border a sample
- * moves within that only. */
-inline_always uint nearest_on_border(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
+/* The index in its link of the nearest crossing of any sample; LINK_EVEN: none is near enough. A sample on a border of
+ * the grid moves within the border only. */
+inline_always uint nearest_of_sample(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
     const bool border_x = x == 0 || x + 1 == s->nx, border_y = y == 0 || y + 1 == s->ny;
     const bool border_z = z == 0 || z + 1 == s->nz;
     const uint count = (s->parity + x + y + z) & 1 ? LINK_ODD : LINK_EVEN;
@@ -87,7 +87,7 @@ inline_always ulong border_wishes(const slab *s, uint y, uint z, uint w, ulong r
     ulong wishes = 0;
     for (; rest; rest &= rest - 1) {
         const uint bit = lowest_bit(rest);
-        if (nearest_on_border(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
+        if (nearest_of_sample(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
     }
     return wishes;
 }

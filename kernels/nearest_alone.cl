@@ -42,8 +42,8 @@ inline_always ulong bits_after16(ulong bits) {
     return bit < 48 ? bits & ~0ul << (bit + 16) : 0;
 }
 
-/* Numbers that grow towards the other side of the isovalue, seen from a sample: those of two samples differ as their
- * values do. Of integers they are integers, of which more fit a register. */
+/* Values turned so that the greater, the farther on the other side of the isovalue, seen from one sample: pulls of two
+ * samples differ as their values do. Those of integers are integers, of which more fit a register. */
 #if FLOATING
 typedef REAL16 pulls16;
 #define pulls_of(bits, turn)  PASTE(as_, REAL16)((bits) ^ (turn))
@@ -84,7 +84,7 @@ inline_always samples16 samples16_of(const slab *s, global const BITS *at, uint 
 /* ---------------------------------------------------------------------------------------------------------- crossings
  */
 
-/* By how much half the value of a neighbour with these pulls is further on the other side. */
+/* Half the difference in value to neighbours with these pulls, positive towards the other side. */
 inline_always REAL16 differences16(const samples16 *here, pulls16 pulls) {
     return (REAL)0.5f * pulls_real(pulls) - (REAL)0.5f * pulls_real(here->pulls);
 }

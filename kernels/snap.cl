@@ -171,8 +171,8 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
         if (n + 2 < count) around_prefetch(&s, words, wishes, wishing[n + 2]);
         const ulong index = BRICK_WORDS * (ulong)wishing[n];
         const brick_place p = brick_place_of(&s, wishing[n]);
-        for (uint set = ITEM_ROW; set < SETS_SPREAD; set += BRICK_ITEMS) {
-            const row_set r = set_spread(p.y, p.z, p.w, set, odd_y, odd_z);
+        for (uint set = ITEM_ROW; set < SETS_STRIDED; set += BRICK_ITEMS) {
+            const row_set r = set_strided(p.y, p.z, p.w, set, odd_y, odd_z);
             lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
             around_make(&s, words, bricks, wishing[n], &a);

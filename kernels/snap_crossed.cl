@@ -8,7 +8,7 @@
 #include "snap_samples.cl"
 
 #if MISSING
-/* Samples of a set that is not spread of which all cubes in the grid are present. */
+/* Samples of a dense set of which all cubes in the grid are present. */
 inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_set r) {
     lanes present = ~(lanes)0;
 #pragma unroll 1

@@ -22,8 +22,8 @@ inline_always brick_place brick_place_of(const slab *s, uint number) {
     return p;
 }
 
-/* Rows of a brick. In sets that are not spread: from (y, z) on, one after another in y. In spread ones, of even samples
- * of one colour: every second one of a plane from (y, z) on, then those of the plane after the next. */
+/* Rows of a brick. In a dense set: from (y, z) on, one after another in y. In a strided one, of even samples of one
+ * colour: rows y, y + 2, y + 4, y + 6 of plane z, then those of plane z + 2. */
 typedef struct row_set {
     uint y, z, w;
     lanes at_y, at_z; /* where each row is */

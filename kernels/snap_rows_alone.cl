@@ -8,7 +8,7 @@
 
 /* Sets of a brick: its planes; or one set of the rows of a colour. */
 #define SETS_OF_PLANES BRICK_PLANES
-#define SETS_SPREAD    1
+#define SETS_STRIDED   1
 
 inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
     row_set r = {y0, z0 + set, w, LANE_NUMBERS + y0, (lanes)(z0 + set)};
@@ -16,7 +16,7 @@ inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
 }
 
 /* Of the rows that begin at odd_y and odd_z of the brick. */
-inline_always row_set set_spread(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
+inline_always row_set set_strided(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
     row_set r = {y0 + odd_y, z0 + odd_z, w, (lanes)(0, 2, 4, 6, 0, 2, 4, 6) + (y0 + odd_y),
                  (lanes)(0, 0, 0, 0, 2, 2, 2, 2) + (z0 + odd_z)};
     return r;
@@ -71,10 +71,10 @@ inline_always ulong4 rows_second(const slab *s, const brick_around *a, int y, in
 
 /* Words at w + step_w of the rows a step from those of the set, 0 where there are none; words of a constant brick go on
  * outside the grid. */
-inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool spread, int step_y, int step_z,
+inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool strided, int step_y, int step_z,
                                  int step_w, bool zeros) {
     const int plane = (int)(r.z % BRICK_PLANES) + step_z;
-    if (spread) {
+    if (strided) {
         const int y = (int)(r.y & 1) + step_y;
         return (lanes)(rows_second(s, a, y, plane, step_w, zeros), rows_second(s, a, y, plane + 2, step_w, zeros));
     }
@@ -84,16 +84,16 @@ inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r
     return here;
 }
 
-/* Where a set's words are in those of its brick; of a spread set, of its two planes. */
-inline_always lanes set_load(global const ulong *brick, row_set r, bool spread) {
-    if (!spread) return vload8(r.z % BRICK_PLANES, brick);
+/* Where a set's words are in those of its brick; of a strided set, of its two planes. */
+inline_always lanes set_load(global const ulong *brick, row_set r, bool strided) {
+    if (!strided) return vload8(r.z % BRICK_PLANES, brick);
     const lanes a = vload8(r.z % BRICK_PLANES, brick), b = vload8(r.z % BRICK_PLANES + 2, brick);
     return r.y & 1 ? (lanes)(a.odd, b.odd) : (lanes)(a.even, b.even);
 }
 
 inline_always void set_store(lanes x, global ulong *brick, row_set r) { vstore8(x, r.z % BRICK_PLANES, brick); }
 
-/* Adds the bits of a spread set. */
+/* Adds the bits of a strided set. */
 inline_always void set_add(lanes x, global ulong *brick, row_set r) {
     for (uint plane = 0; plane < 2; plane++) {
         const uint z = r.z % BRICK_PLANES + 2 * plane;

@@ -7,7 +7,7 @@
 #include "snap_rows.cl"
 
 #define SETS_OF_PLANES BRICK_WORDS
-#define SETS_SPREAD    8
+#define SETS_STRIDED   8
 
 inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
     const uint y = y0 + set % BRICK_ROWS, z = z0 + set / BRICK_ROWS;
@@ -15,7 +15,7 @@ inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
     return r;
 }
 
-inline_always row_set set_spread(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
+inline_always row_set set_strided(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
     const uint y = y0 + odd_y + 2 * (set % 4), z = z0 + odd_z + 2 * (set / 4);
     row_set r = {y, z, w, y, z};
     return r;
@@ -36,7 +36,7 @@ inline_always void around_make(const slab *s, global const ulong *words, global 
 inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *wishes, uint number) {}
 
 /* The word at w + step_w of the row a step from that of the set, 0 where there is none. */
-inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool spread, int step_y, int step_z,
+inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool strided, int step_y, int step_z,
                                  int step_w, bool zeros) {
     const uint w = r.w + step_w, z = r.z + step_z, y = r.y + step_y; /* wrap below 0 */
     if (w >= s->words_x || y >= s->ny || z < s->results.word_z || z >= s->z1) return 0;
@@ -46,7 +46,7 @@ inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r
 }
 
 inline_always uint set_row(row_set r) { return r.z % BRICK_PLANES * BRICK_ROWS + r.y % BRICK_ROWS; }
-inline_always lanes set_load(global const ulong *brick, row_set r, bool spread) { return brick[set_row(r)]; }
+inline_always lanes set_load(global const ulong *brick, row_set r, bool strided) { return brick[set_row(r)]; }
 inline_always void set_store(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] = x; }
 inline_always void set_add(lanes x, global ulong *brick, row_set r) { brick[set_row(r)] |= x; }
 

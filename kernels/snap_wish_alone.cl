@@ -18,8 +18,8 @@ typedef struct wish_list {
     ulong wishes[BRICK_WORDS];
 } wish_list;
 
-/* A brick is gone through after the samples with crossings of the next brick are found, when its samples have been
- * fetched. */
+/* Two lists in turn: a brick is finished after samples of the next one have been asked for, so that its own have
+ * arrived. */
 typedef struct wish_room {
     long offsets[LINK_EVEN];
     wish_list lists[2];

@@ -1,5 +1,5 @@
 /*
- * snap_wishes.cl - method snap: what becomes of the wishes of samples to be snapped
+ * snap_wishes.cl - method snap: the list of bricks in which samples wish to be snapped
  */
 #ifndef SNAP_WISHES_CL
 #define SNAP_WISHES_CL

@@ -21,7 +21,7 @@ inline_always uint link_code(uint n) {
 /* In its link the other end of a snapped sample's edge. There is always one, unless the caller changes samples
  * meanwhile. */
 inline_always uint snapped_to(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
-    const uint nearest = nearest_on_border(s, x, y, z, samples);
+    const uint nearest = nearest_of_sample(s, x, y, z, samples);
     return nearest < LINK_EVEN ? nearest : x + 1 < s->nx ? 1 : 0;
 }
 

@@ -25,7 +25,7 @@ inline_always global const uint *cell_words(const complex_job *c, uint cell, com
     return in.tetrahedra + point * c->word_step;
 }
 
-/* Whether a point number is above the grid's: it has 64 bits, or its one word. */
+/* Whether a point number, of one word or two (64 bits), is not below the number of points. */
 inline_always bool point_invalid(const complex_job *c, global const uint *word) {
     return word[0] >= c->point_count || (c->word_step == 2 && word[1]);
 }
@@ -56,7 +56,7 @@ inline_always brick_range cells_range(const complex_job *c, uint n, complex_arra
     return range;
 }
 
-/* Which corners of a cell are inside; none where a sample is missing. */
+/* Which corners of a cell are inside; 0 too where a sample is missing, and where all are inside. */
 inline_always uint cell_pattern(const complex_job *c, global const uint *words, global const uchar *shape,
                                 global const BITS *samples) {
     const uint corners = shape[SHAPE_CORNERS];

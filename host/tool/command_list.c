@@ -79,7 +79,7 @@ const command command_list[] = {
     {"devices", COMMAND_DEVICES, devices_run, NULL, "every OpenCL device, with the limits that matter",
      "tetracubes devices [--json]",
      "Lists the devices of all OpenCL platforms. --device takes the index in front, the\n"
-     "platform:device pair behind it, a type (cpu, gpu) or part of a name."},
+     "platform:device pair after it, a type (cpu, gpu) or part of a name."},
     {"generate", COMMAND_GENERATE, generate_run, generate_help, "a volume of an analytic field, to try things on",
      "tetracubes generate FIELD --dims NX,NY,NZ --type T -o FILE [options]",
      "Writes a NRRD file (samples raw, native byte order, aligned so that they can be mapped) or,\n"

@@ -56,6 +56,16 @@ def test_links(source, pages):
         expect(name in linked or name.startswith(".github/CHANGELOG"), f"README.md does not lead to {name}")
 
 
+def test_members(source, pages):
+    """`member` of `tc_struct` is a member of that struct in the header."""
+    header = (source / "host/include/tetracubes.h").read_text(encoding="utf-8")
+    named = [(name, *found) for name, text in pages.items() for found in re.findall(r"`(\w+)` of `(tc_\w+)`", text)]
+    expect(len(named) > 5, f"only {len(named)} members of structs are named")
+    for name, member, struct in named:
+        body = re.search(rf"typedef struct {struct} \{{(.*?)\n\}} {struct};", header, re.DOTALL)
+        expect(body and re.search(rf"\b{member}\b", body.group(1)), f"{name}: {struct} has no {member}")
+
+
 def test_formats(tool):
     """Help names every format that is written; what is read is printed from the table (test_formats.c has the README)."""
     version = run(tool, "--version").stdout
@@ -296,6 +306,7 @@ def main():
     source, build, tool = Path(sys.argv[1]).resolve(), sys.argv[2], Path(sys.argv[3]).resolve()
     pages = {name: (source / name).read_text(encoding="utf-8") for name in PAGES}
     test_links(source, pages)
+    test_members(source, pages)
     test_readme(source, pages, tool)
     test_formats(tool)
     test_options(pages["host/tool/README.md"], tool)

@@ -100,7 +100,7 @@ const option option_table[] = {
      "fields to have at the vertices; their means and integrals are reported"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
      "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
-     "name that the file needs itself, as Normals, gets _ behind"},
+     "name that the file needs itself, as Normals, gets _ at its end"},
     {"--blocks", NULL, "B", COMMAND_EXTRACT, VALUE_CHOICE, IN(separate_blocks), blocks_choices,
      "of data in several blocks: joined (default): one mesh; separate: one\n"
      "file per block, FILE with _b0, _b1, ... before its ending"},
@@ -217,7 +217,7 @@ const option option_table[] = {
     {"--quick", NULL, NULL, COMMAND_SELFTEST, VALUE_NONE, IN(quick), NULL,
      "some trials of every group; of vectors those up to 128 x 128 x 128"},
     {"--vectors", NULL, NULL, COMMAND_SELFTEST, VALUE_NONE, IN(vectors), NULL,
-     "compare with a list of hashes: that of a FILE behind, else the tool's own"},
+     "compare with a list of hashes: that of a FILE given, else the tool's own"},
     {"--timeout", NULL, "SECONDS", COMMAND_SELFTEST, VALUE_NUMBER, IN(timeout), NULL,
      "no trial goes on longer: those that are left then fail"},
     {"--junit", NULL, "FILE", COMMAND_SELFTEST, VALUE_TEXT, IN(junit), NULL,
