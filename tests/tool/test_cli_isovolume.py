@@ -141,7 +141,7 @@ class Isovolume(GridCase):
                                             [("x", "f32", [float(p[0]) for p in lattice((3, 3, 3))])]))
         result = self.expect(0, "isovolume", grid, "--range", "0.5,1", "--carry", "x", "--check", "--verify", *self.engine)
         self.assertIn("volume      2\n", result.stdout)
-        self.assertRegex(result.stdout, r"x +mean 0\.75")
+        self.assertRegex(result.stdout, r"carried +x: mean 0\.75, ")
 
 
 if __name__ == "__main__":
