@@ -34,12 +34,41 @@ inline_always bool is_above(BITS bits, const volume_count *a) {
     return a->v->has_high && bits_inside(bits, &a->high->test);
 }
 
+/* Of samples, a bit each: not below, above, missing. */
+typedef struct sides {
+    ulong low, high, missing;
+} sides;
+
+#if WORK_ITEMS == 1
+
+inline_always void sides_add16(BITS16 bits, uint first, const volume_count *a, sides *s) {
+    s->low |= (ulong)(a->v->has_low ? mask_pack(inside_mask(bits, &a->low->test)) : 0xffffu) << first;
+    if (a->v->has_high) s->high |= (ulong)mask_pack(inside_mask(bits, &a->high->test)) << first;
+#if FLOATING
+    s->missing |= (ulong)mask_pack(missing_mask(bits, &a->low->test)) << first;
+#endif
+}
+
+inline_always sides sides_of64(global const BITS *samples, const volume_count *a) {
+    sides s = {0, 0, 0};
+    for (uint m = 0; m < 64; m += 16) sides_add16(vload16(0, samples + m), m, a, &s);
+    return s;
+}
+
+#endif
+
 /* Which of 64 points are vertices. Those of present tetrahedra have finite samples. */
 inline_always ulong points_within(uint n, const volume_count *a) {
     ulong within = a->used[n];
+#if WORK_ITEMS == 1
+    if (within && 64ul * n + 64 <= a->low->point_count) {
+        const sides all = sides_of64(a->in.samples + 64ul * n, a);
+        return within & all.low & ~all.high;
+    }
+#endif
     for (ulong rest = within; rest; rest &= rest - 1) {
         const uint bit = lowest_bit(rest);
-        const BITS bits = a->in.samples[64 * n + bit];
+        const BITS bits = a->in.samples[64ul * n + bit];
         if (!not_below(bits, a) || is_above(bits, a)) within &= ~(1ul << bit);
     }
     return within;
@@ -60,19 +89,24 @@ inline_always bool is_as_classified(uint n, const volume_cluster *found, const v
 
 /* The sides of points of tetrahedra without missing samples, by reading all of them. */
 inline_always volume_cluster cluster_read(uint n, const volume_count *a) {
+    volume_cluster found = {0, 0, 0, 0};
+    sides s = {0, 0, 0};
+#if WORK_ITEMS == 1
+    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) sides_add16(cluster_samples(a->low, n, m, a->in), 16 * m, a, &s);
+    s.missing |= ~cluster_points(n, a);
+#else
     global const uint *points = a->in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(a->low, n);
-    volume_cluster found = {0, 0, 0, 0};
-    ulong missing = 0;
 #pragma unroll 4
     for (uint m = 0; m < count; m++) {
         const BITS bits = a->in.samples[points[m]];
-        found.low |= (ulong)not_below(bits, a) << m;
-        found.high |= (ulong)is_above(bits, a) << m;
-        missing |= (ulong)bits_missing(bits, &a->low->test) << m;
+        s.low |= (ulong)not_below(bits, a) << m;
+        s.high |= (ulong)is_above(bits, a) << m;
+        s.missing |= (ulong)bits_missing(bits, &a->low->test) << m;
     }
-    missing = nibbles_any(missing) * 15;
-    found.low &= ~missing, found.high &= ~missing;
+#endif
+    s.missing = nibbles_any(s.missing) * 15;
+    found.low = s.low & ~s.missing, found.high = s.high & ~s.missing;
     if (is_as_classified(n, &found, a)) return found;
     atomic_or(&a->head[VOLUME_CHANGED], 1u);
     found.low = found.high = 0;

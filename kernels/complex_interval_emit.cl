@@ -29,6 +29,23 @@ inline_always void crossings_store(const complex_job *c, uint first, uint a, glo
     }
 }
 
+/* Prefetches in two stages: the table entries of tetrahedron a; what the entries of a - FETCH_AHEAD / 2 name, and its
+ * samples and points. */
+inline_always void crossings_prefetch(const complex_job *c, uint a, global const BITS *samples,
+                                      global const float *points, global const active_tetrahedron *active,
+                                      global const uchar *cases, global const uint *table, global const uint *entries) {
+    if (a < c->active_count)
+        for (uint slot = 4 * a; slot < 4 * a + edges_of(a, active, cases); slot++) line_prefetch(table + entries[slot]);
+    a -= FETCH_AHEAD / 2;
+    if (a >= c->active_count) return;
+    for (uint slot = 4 * a; slot < 4 * a + edges_of(a, active, cases); slot++)
+        line_prefetch(active + slot_item(c, table[entries[slot]]));
+    for (uint n = 0; n < 4 && active[a].owned; n++) {
+        line_prefetch(samples + active[a].points[n]);
+        line_prefetch(points + 3ul * active[a].points[n]);
+    }
+}
+
 /* first: the number of the bound's first vertex. offset: floats in the buffer of positions before that. */
 kernel void complex_interval_crossings(complex_job c, uint first, ulong offset, global const BITS *samples,
                                        global const float *points, global const active_tetrahedron *active,
@@ -41,6 +58,9 @@ kernel void complex_interval_crossings(complex_job c, uint first, ulong offset, 
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_EMIT], shared);
         for (uint start = 0; start < c.tile_actives && number < c.active_tiles; start += WORK_ITEMS) {
             const uint m = start + (uint)get_local_id(0), a = number * c.tile_actives + m;
+#if WORK_ITEMS == 1
+            crossings_prefetch(&c, a + FETCH_AHEAD, samples, points, active, cases, table, entries);
+#endif
             if (m < c.tile_actives && a < c.active_count)
                 crossings_store(&c, first, a, samples, points, active, cases, tiles, table, entries, positions);
         }
@@ -89,14 +109,14 @@ inline_always void point_store(uint n, uint bit, const volume_emit *e) {
     vstore3(vload3(point, e->coordinates), point_number(point, e) - e->v->window, e->positions);
 }
 
-/* The numbers in the first slot of an active tetrahedron and after it: of tetrahedron m of cluster n. Not of others. */
-inline_always global const uint *slots_of(const complex_job *c, bound_slots b, uint n, uint m) {
-    const cluster_state cluster = b.clusters[n];
-    const uint before = (uint)popcount(nibbles_any(cluster.patterns) & ((1ul << 4 * m) - 1));
-    return b.numbers + 4ul * (tile_before(b.tiles, n / c->tile_clusters, TILE_VERTICES) + cluster.active_before + before);
-}
-
 inline_always bool is_active(uint pattern) { return pattern != 0 && pattern != 15; }
+
+/* Where the numbers in the slots of a bound begin that the active tetrahedra of cluster n have; before: so many of them
+ * come first. Not of clusters without any. */
+inline_always global const uint *slots_of(const complex_job *c, bound_slots b, uint n, uint before) {
+    return b.numbers +
+           4ul * (tile_before(b.tiles, n / c->tile_clusters, TILE_VERTICES) + b.clusters[n].active_before + before);
+}
 
 /* The order of a tetrahedron's points. */
 inline_always uint order_of(uint4 p, global const uchar *cases) {
@@ -110,22 +130,10 @@ typedef struct tetrahedron_vertices {
     global const uint *points, *low, *high;
 } tetrahedron_vertices;
 
-inline_always uint vertex_of(uint vertex, tetrahedron_vertices t, const volume_emit *e) {
-    if (vertex >= VOLUME_HIGH_SLOT) return t.high[vertex - VOLUME_HIGH_SLOT];
-    return vertex >= VOLUME_LOW_SLOT ? t.low[vertex - VOLUME_LOW_SLOT] : point_number(t.points[vertex], e);
-}
-
-/* Tetrahedron m of cluster n, of which a part lies within. */
-inline_always global uint *tetrahedron_store(uint n, uint m, uint pattern, const volume_emit *e, global uint *out) {
-    tetrahedron_vertices t = {e->tetrahedra + 4ul * (CLUSTER_TETRAHEDRA * n + m), 0, 0};
-    global const uchar *entry =
-        e->cases + VOLUME_ENTRIES +
-        VOLUME_ENTRY_BYTES * (VOLUME_CASES * order_of(vload4(0, t.points), e->cases) + e->cases[VOLUME_CASE_OF + pattern]);
-    if (is_active(pattern >> 4)) t.low = slots_of(e->low, e->low_slots, n, m);
-    if (is_active(pattern & 15)) t.high = slots_of(e->high, e->high_slots, n, m);
-    const uint corners = 4 * (uint)entry[0];
-    for (uint corner = 0; corner < corners; corner++) out[corner] = vertex_of(entry[1 + corner], t, e);
-    return out + corners;
+/* What its case gives of a tetrahedron, of which a part lies within. */
+inline_always global const uchar *entry_of(global const uint *points, uint pattern, global const uchar *cases) {
+    return cases + VOLUME_ENTRIES +
+           VOLUME_ENTRY_BYTES * (VOLUME_CASES * order_of(vload4(0, points), cases) + cases[VOLUME_CASE_OF + pattern]);
 }
 
 inline_always global uint *cluster_out(uint n, const volume_cluster *c, const volume_emit *e) {
@@ -134,16 +142,62 @@ inline_always global uint *cluster_out(uint n, const volume_cluster *c, const vo
 
 #if WORK_ITEMS < 32
 
-/* Word and cluster n. */
+/* Brings two numbers into order; whether they were not. */
+inline_always uint pair_order(uint *a, uint *b) {
+    const uint low = min(*a, *b), high = max(*a, *b);
+    const uint exchanged = *a > *b;
+    *a = low, *b = high;
+    return exchanged;
+}
+
+/* A tetrahedron that lies within whole: its points by number, the last two exchanged where that takes an odd number of
+ * exchanges. Numbers of vertices are in the order of the points. */
+inline_always void within_store(global const uint *points, const volume_emit *e, global uint *out) {
+    uint a = point_number(points[0], e), b = point_number(points[1], e);
+    uint c = point_number(points[2], e), d = point_number(points[3], e);
+    uint odd = pair_order(&a, &b) ^ pair_order(&c, &d);
+    odd ^= pair_order(&a, &c) ^ pair_order(&b, &d);
+    odd ^= pair_order(&b, &c);
+    vstore4((uint4)(a, b, odd ? d : c, odd ? c : d), 0, out);
+}
+
+/* What lies within of a tetrahedron, of which a part does. Of a bound that does not cut it t has any slots. All numbers
+ * that it may take come first, as which ones it takes is hard to predict. */
+inline_always global uint *part_store(tetrahedron_vertices t, uint pattern, const volume_emit *e, global uint *out) {
+    global const uchar *entry = entry_of(t.points, pattern, e->cases);
+    const uint corners = 4 * (uint)entry[0];
+    uint numbers[VOLUME_HIGH_SLOT + 4];
+    for (uint n = 0; n < 4; n++) numbers[n] = point_number(t.points[n], e);
+    vstore4(vload4(0, t.low), 0, numbers + VOLUME_LOW_SLOT);
+    vstore4(vload4(0, t.high), 0, numbers + VOLUME_HIGH_SLOT);
+    for (uint corner = 0; corner < corners; corner++) out[corner] = numbers[entry[1 + corner]];
+    return out + corners;
+}
+
+/* Word and cluster n. Active tetrahedra of a cluster have slots one after the other. */
 inline_always void item_store(uint n, const volume_emit *e) {
     if (n < e->v->word_count)
         for (ulong rest = e->points[n].within; rest; rest &= rest - 1) point_store(n, lowest_bit(rest), e);
     if (n >= e->low->cluster_count) return;
     const volume_cluster c = e->clusters[n];
+    const ulong reached = cluster_reached(&c);
+    if (!reached) return;
+    global const uint *points = e->tetrahedra + (ulong)CLUSTER_POINTS * n;
+    tetrahedron_vertices t = {points, points, points};
     global uint *out = cluster_out(n, &c, e);
-    for (ulong rest = cluster_reached(&c); rest; rest &= rest - 1) {
-        const uint m = lowest_bit(rest) / 4;
-        out = tetrahedron_store(n, m, pattern_of(&c, m), e, out);
+    if (active_sides(c.low)) t.low = slots_of(e->low, e->low_slots, n, 0);
+    if (active_sides(c.high)) t.high = slots_of(e->high, e->high_slots, n, 0);
+    for (ulong rest = reached; rest; rest &= rest - 1) {
+        const uint m = lowest_bit(rest) / 4, pattern = pattern_of(&c, m);
+        t.points = points + 4 * m;
+        if (pattern == VOLUME_WITHIN) {
+            within_store(t.points, e, out);
+            out += 4;
+            continue;
+        }
+        out = part_store(t, pattern, e, out);
+        if (is_active(pattern >> 4)) t.low += 4;
+        if (is_active(pattern & 15)) t.high += 4;
     }
 }
 
@@ -154,15 +208,27 @@ inline_always void volume_tile_emit(uint number, const volume_emit *e) {
 
 #else
 
+inline_always uint vertex_of(uint vertex, tetrahedron_vertices t, const volume_emit *e) {
+    if (vertex >= VOLUME_HIGH_SLOT) return t.high[vertex - VOLUME_HIGH_SLOT];
+    return vertex >= VOLUME_LOW_SLOT ? t.low[vertex - VOLUME_LOW_SLOT] : point_number(t.points[vertex], e);
+}
+
 /* Tetrahedron m of cluster n, if a part of it lies within. */
 inline_always void own_store(uint n, uint m, const volume_emit *e) {
     const volume_cluster c = e->clusters[n];
-    const ulong reached = cluster_reached(&c);
+    const ulong reached = cluster_reached(&c), before = (1ul << 4 * m) - 1;
+    const uint pattern = pattern_of(&c, m);
+    tetrahedron_vertices t = {e->tetrahedra + 4ul * (CLUSTER_TETRAHEDRA * n + m), 0, 0};
     global uint *out = cluster_out(n, &c, e);
     if (!(reached >> 4 * m & 1)) return;
-    for (ulong rest = reached & ((1ul << 4 * m) - 1); rest; rest &= rest - 1)
+    for (ulong rest = reached & before; rest; rest &= rest - 1)
         out += 4 * (uint)e->cases[pattern_of(&c, lowest_bit(rest) / 4)];
-    tetrahedron_store(n, m, pattern_of(&c, m), e, out);
+    if (is_active(pattern >> 4))
+        t.low = slots_of(e->low, e->low_slots, n, (uint)popcount(nibbles_any(active_sides(c.low)) & before));
+    if (is_active(pattern & 15))
+        t.high = slots_of(e->high, e->high_slots, n, (uint)popcount(nibbles_any(active_sides(c.high)) & before));
+    global const uchar *entry = entry_of(t.points, pattern, e->cases);
+    for (uint corner = 0; corner < 4 * (uint)entry[0]; corner++) out[corner] = vertex_of(entry[1 + corner], t, e);
 }
 
 inline_always void volume_tile_emit(uint number, const volume_emit *e) {
