@@ -3,8 +3,8 @@
  * gives, and prefix sums of both
  *
  * Words of points and clusters are counted together: item n is word n, of 64 points, and cluster n. A cluster that lies
- * on one side of both bounds, by its range, is not read. One that is read has to have the active tetrahedra that the
- * surfaces have: where samples have changed since, the call fails, as nothing is known of other edges.
+ * on one side of a bound, by its range, has no patterns of it; of others kernel 1 has found them. So samples are read
+ * again at points only, and where a bound is lacking and samples are missing.
  */
 #ifndef COMPLEX_INTERVAL_COUNT_CL
 #define COMPLEX_INTERVAL_COUNT_CL
@@ -34,25 +34,17 @@ inline_always bool is_above(BITS bits, const volume_count *a) {
     return a->v->has_high && bits_inside(bits, &a->high->test);
 }
 
-/* Of samples, a bit each: not below, above, missing. */
-typedef struct sides {
-    ulong low, high, missing;
-} sides;
-
 #if WORK_ITEMS == 1
 
-inline_always void sides_add16(BITS16 bits, uint first, const volume_count *a, sides *s) {
-    s->low |= (ulong)(a->v->has_low ? mask_pack(inside_mask(bits, &a->low->test)) : 0xffffu) << first;
-    if (a->v->has_high) s->high |= (ulong)mask_pack(inside_mask(bits, &a->high->test)) << first;
-#if FLOATING
-    s->missing |= (ulong)mask_pack(missing_mask(bits, &a->low->test)) << first;
-#endif
-}
-
-inline_always sides sides_of64(global const BITS *samples, const volume_count *a) {
-    sides s = {0, 0, 0};
-    for (uint m = 0; m < 64; m += 16) sides_add16(vload16(0, samples + m), m, a, &s);
-    return s;
+/* Which of 64 samples are within. */
+inline_always ulong samples_within(global const BITS *samples, const volume_count *a) {
+    ulong low = 0, high = 0;
+    for (uint m = 0; m < 64; m += 16) {
+        const BITS16 bits = vload16(0, samples + m);
+        low |= (ulong)mask_pack(inside_mask(bits, &a->low->test)) << m;
+        high |= (ulong)mask_pack(inside_mask(bits, &a->high->test)) << m;
+    }
+    return (a->v->has_low ? low : ~0ul) & ~(a->v->has_high ? high : 0);
 }
 
 #endif
@@ -61,10 +53,7 @@ inline_always sides sides_of64(global const BITS *samples, const volume_count *a
 inline_always ulong points_within(uint n, const volume_count *a) {
     ulong within = a->used[n];
 #if WORK_ITEMS == 1
-    if (within && 64ul * n + 64 <= a->low->point_count) {
-        const sides all = sides_of64(a->in.samples + 64ul * n, a);
-        return within & all.low & ~all.high;
-    }
+    if (within && 64ul * n + 64 <= a->low->point_count) return within & samples_within(a->in.samples + 64ul * n, a);
 #endif
     for (ulong rest = within; rest; rest &= rest - 1) {
         const uint bit = lowest_bit(rest);
@@ -79,50 +68,32 @@ inline_always ulong cluster_points(uint n, const volume_count *a) {
     return ~0ul >> (64 - 4 * cluster_size(a->low, n));
 }
 
-/* The sides of points of tetrahedra that a surface passes through. */
-inline_always ulong active_sides(ulong sides) { return sides & (nibbles_any(sides) & nibbles_any(~sides)) * 15; }
-
-inline_always bool is_as_classified(uint n, const volume_cluster *found, const volume_count *a) {
-    return (!a->v->has_low || active_sides(found->low) == a->low_clusters[n].patterns) &&
-           (!a->v->has_high || active_sides(found->high) == a->high_clusters[n].patterns);
-}
-
-/* The sides of points of tetrahedra without missing samples, by reading all of them. */
-inline_always volume_cluster cluster_read(uint n, const volume_count *a) {
-    volume_cluster found = {0, 0, 0, 0};
-    sides s = {0, 0, 0};
-#if WORK_ITEMS == 1
-    for (uint m = 0; m < CLUSTER_POINTS / 16; m++) sides_add16(cluster_samples(a->low, n, m, a->in), 16 * m, a, &s);
-    s.missing |= ~cluster_points(n, a);
-#else
+/* The same of those without missing samples, by reading all of them. */
+inline_always ulong cluster_present(uint n, const volume_count *a) {
     global const uint *points = a->in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(a->low, n);
-#pragma unroll 4
-    for (uint m = 0; m < count; m++) {
-        const BITS bits = a->in.samples[points[m]];
-        s.low |= (ulong)not_below(bits, a) << m;
-        s.high |= (ulong)is_above(bits, a) << m;
-        s.missing |= (ulong)bits_missing(bits, &a->low->test) << m;
-    }
-#endif
-    s.missing = nibbles_any(s.missing) * 15;
-    found.low = s.low & ~s.missing, found.high = s.high & ~s.missing;
-    if (is_as_classified(n, &found, a)) return found;
-    atomic_or(&a->head[VOLUME_CHANGED], 1u);
-    found.low = found.high = 0;
-    return found;
+    ulong missing = 0;
+    for (uint m = 0; m < count; m++)
+        missing |= (ulong)bits_missing(a->in.samples[points[m]], &a->low->test) << m;
+    return cluster_points(n, a) & ~(nibbles_any(missing) * 15);
 }
 
+/* Where its points are. A surface that may pass through the cluster has told by its patterns, which are 0 of tetrahedra
+ * with missing samples. */
 inline_always volume_cluster cluster_sides(uint n, const volume_count *a) {
     volume_cluster found = {0, 0, 0, 0};
-    uint low = SIGN_MIXED, high = SIGN_MIXED;
-    if (a->low->ranges_known && range_finite(a->ranges[n])) {
-        low = a->v->has_low ? range_sign(&a->low->test, a->ranges[n]) : SIGN_INSIDE;
-        high = a->v->has_high ? range_sign(&a->high->test, a->ranges[n]) : SIGN_OUTSIDE;
-    }
+    uint low = SIGN_INSIDE, high = SIGN_OUTSIDE;
+    if (a->v->has_low) low = range_sign(&a->low->test, a->ranges[n]);
+    if (a->v->has_high) high = range_sign(&a->high->test, a->ranges[n]);
     if (low == SIGN_OUTSIDE || high == SIGN_INSIDE) return found;
-    if (low == SIGN_MIXED || high == SIGN_MIXED) return cluster_read(n, a);
-    found.low = cluster_points(n, a);
+    if (high == SIGN_MIXED) found.high = a->high_clusters[n].patterns;
+    if (low == SIGN_MIXED)
+        found.low = a->low_clusters[n].patterns;
+    else if (a->low->ranges_known && range_finite(a->ranges[n]))
+        found.low = cluster_points(n, a);
+    else
+        found.low = cluster_present(n, a);
+    found.high &= found.low; /* it is, but where the caller has changed samples in between */
     return found;
 }
 
@@ -138,7 +109,7 @@ inline_always ulong cluster_reached(const volume_cluster *c) {
 
 inline_always uint cluster_tetrahedra(const volume_cluster *c, global const uchar *cases) {
     uint sum = 0;
-    if (!(nibbles_any(c->low) & nibbles_any(~c->low)) && !c->high) return (uint)popcount(nibbles_any(c->low));
+    if (!nibbles_mixed(c->low) && !c->high) return (uint)popcount(nibbles_any(c->low));
     for (ulong rest = cluster_reached(c); rest; rest &= rest - 1) sum += cases[pattern_of(c, lowest_bit(rest) / 4)];
     return sum;
 }

@@ -2,8 +2,8 @@
  * complex_interval_emit.cl - kernels complex_interval_crossings and complex_interval_emit: vertices and tetrahedra of an
  * interval volume
  *
- * The first one makes the vertices on crossed edges of a bound, and leaves the number of its vertex in the slot of each
- * edge. So the second one finds the vertices of a tetrahedron by its place in the list of active ones.
+ * The first one makes the vertices on crossed edges of a bound, and leaves their numbers in the table of edges. The
+ * second one finds those of a tetrahedron by its place in the list of active ones, whose slots name entries of the table.
  */
 #ifndef COMPLEX_INTERVAL_EMIT_CL
 #define COMPLEX_INTERVAL_EMIT_CL
@@ -15,32 +15,24 @@
 
 /* -------------------------------------------------------------------------------------------------------- crossings */
 
-/* Numbers of all vertices of active tetrahedron a; those that it owns are made. */
+/* The vertices that active tetrahedron a owns. Where the table has named the owner of an edge it then names the vertex. */
 inline_always void crossings_store(const complex_job *c, uint first, uint a, global const BITS *samples,
                                    global const float *points, global const active_tetrahedron *active,
-                                   global const uchar *cases, global const uint *tiles, global const uint *table,
-                                   global uint *entries, global float *positions) {
-    const uint edges = edges_of(a, active, cases);
-    for (uint slot = 4 * a; slot < 4 * a + edges; slot++) {
-        const uint owner = table[entries[slot]], number = vertex_number(c, owner, active, tiles);
-        if (owner == slot)
-            edge_vertex(c, edge_points(c, active, owner, cases), samples, points, positions + 3ul * number);
-        entries[slot] = first + number;
+                                   global const uchar *cases, global const uint *tiles, global const uint *entries,
+                                   global uint *table, global float *positions) {
+    uint number = tile_before(tiles, a / c->tile_actives, TILE_VERTICES) + active[a].vertex;
+    for (uint rest = active[a].owned; rest; rest &= rest - 1, number++) {
+        const uint slot = 4 * a + lowest_bit(rest);
+        edge_vertex(c, edge_points(c, active, slot, cases), samples, points, positions + 3ul * number);
+        table[entries[slot]] = first + number;
     }
 }
 
-/* Prefetches in two stages: the table entries of tetrahedron a; what the entries of a - FETCH_AHEAD / 2 name, and its
- * samples and points. */
+/* Prefetches the samples and points of an active tetrahedron that owns vertices. */
 inline_always void crossings_prefetch(const complex_job *c, uint a, global const BITS *samples,
-                                      global const float *points, global const active_tetrahedron *active,
-                                      global const uchar *cases, global const uint *table, global const uint *entries) {
-    if (a < c->active_count)
-        for (uint slot = 4 * a; slot < 4 * a + edges_of(a, active, cases); slot++) line_prefetch(table + entries[slot]);
-    a -= FETCH_AHEAD / 2;
-    if (a >= c->active_count) return;
-    for (uint slot = 4 * a; slot < 4 * a + edges_of(a, active, cases); slot++)
-        line_prefetch(active + slot_item(c, table[entries[slot]]));
-    for (uint n = 0; n < 4 && active[a].owned; n++) {
+                                      global const float *points, global const active_tetrahedron *active) {
+    if (a >= c->active_count || !active[a].owned) return;
+    for (uint n = 0; n < 4; n++) {
         line_prefetch(samples + active[a].points[n]);
         line_prefetch(points + 3ul * active[a].points[n]);
     }
@@ -50,7 +42,7 @@ inline_always void crossings_prefetch(const complex_job *c, uint a, global const
 kernel void complex_interval_crossings(complex_job c, uint first, ulong offset, global const BITS *samples,
                                        global const float *points, global const active_tetrahedron *active,
                                        global const uchar *cases, global uint *state, global const uint *tiles,
-                                       global const uint *table, global uint *entries, global float *positions) {
+                                       global uint *table, global const uint *entries, global float *positions) {
     local uint shared[4];
     uint number = 0;
     samples += c.sample_offset, points += c.point_offset, positions += offset;
@@ -59,21 +51,24 @@ kernel void complex_interval_crossings(complex_job c, uint first, ulong offset, 
         for (uint start = 0; start < c.tile_actives && number < c.active_tiles; start += WORK_ITEMS) {
             const uint m = start + (uint)get_local_id(0), a = number * c.tile_actives + m;
 #if WORK_ITEMS == 1
-            crossings_prefetch(&c, a + FETCH_AHEAD, samples, points, active, cases, table, entries);
+            crossings_prefetch(&c, a + FETCH_AHEAD, samples, points, active);
 #endif
             if (m < c.tile_actives && a < c.active_count)
-                crossings_store(&c, first, a, samples, points, active, cases, tiles, table, entries, positions);
+                crossings_store(&c, first, a, samples, points, active, cases, tiles, entries, table, positions);
         }
     }
 }
 
 /* --------------------------------------------------------------------------------------------------------- emission */
 
-/* A bound's active tetrahedra: where those of each cluster begin, and the numbers of their vertices. */
+/* A bound's active tetrahedra: where those of each cluster begin, the entries of their slots, the numbers there. */
 typedef struct bound_slots {
     global const cluster_state *clusters;
-    global const uint *tiles, *numbers;
+    global const uint *tiles, *entries, *table;
 } bound_slots;
+
+/* Where a work-item is alone, it prefetches what clusters need so many before it comes to them. */
+enum { CLUSTERS_AHEAD = 3 };
 
 /* What the kernel that emits reads and writes. */
 typedef struct volume_emit {
@@ -111,10 +106,10 @@ inline_always void point_store(uint n, uint bit, const volume_emit *e) {
 
 inline_always bool is_active(uint pattern) { return pattern != 0 && pattern != 15; }
 
-/* Where the numbers in the slots of a bound begin that the active tetrahedra of cluster n have; before: so many of them
- * come first. Not of clusters without any. */
+/* The slots of a bound that the active tetrahedra of cluster n have, from the first on or behind so many. Not of clusters
+ * without any. */
 inline_always global const uint *slots_of(const complex_job *c, bound_slots b, uint n, uint before) {
-    return b.numbers +
+    return b.entries +
            4ul * (tile_before(b.tiles, n / c->tile_clusters, TILE_VERTICES) + b.clusters[n].active_before + before);
 }
 
@@ -140,7 +135,7 @@ inline_always global uint *cluster_out(uint n, const volume_cluster *c, const vo
     return e->out + 4ul * (tile_before(e->tiles, n >> e->v->tile_shift, TILE_TRIANGLES) + c->tetrahedra);
 }
 
-#if WORK_ITEMS < 32
+#if WORK_ITEMS == 1
 
 /* Brings two numbers into order; whether they were not. */
 inline_always uint pair_order(uint *a, uint *b) {
@@ -161,17 +156,39 @@ inline_always void within_store(global const uint *points, const volume_emit *e,
     vstore4((uint4)(a, b, odd ? d : c, odd ? c : d), 0, out);
 }
 
-/* What lies within of a tetrahedron, of which a part does. Of a bound that does not cut it t has any slots. All numbers
- * that it may take come first, as which ones it takes is hard to predict. */
+/* Numbers of the vertices on a tetrahedron's crossed edges of a bound: three, or four where two and two points are on
+ * either side. */
+inline_always void slots_read(global const uint *slots, uint pattern, bound_slots b, uint *numbers) {
+    if (!is_active(pattern)) return;
+    for (uint n = 0; n < 3; n++) numbers[n] = b.table[slots[n]];
+    if (popcount(pattern) == 2) numbers[3] = b.table[slots[3]];
+}
+
+/* What lies within of a tetrahedron, of which a part does. All numbers that it may take come first, as which ones it
+ * takes is hard to predict. */
 inline_always global uint *part_store(tetrahedron_vertices t, uint pattern, const volume_emit *e, global uint *out) {
     global const uchar *entry = entry_of(t.points, pattern, e->cases);
     const uint corners = 4 * (uint)entry[0];
     uint numbers[VOLUME_HIGH_SLOT + 4];
     for (uint n = 0; n < 4; n++) numbers[n] = point_number(t.points[n], e);
-    vstore4(vload4(0, t.low), 0, numbers + VOLUME_LOW_SLOT);
-    vstore4(vload4(0, t.high), 0, numbers + VOLUME_HIGH_SLOT);
+    slots_read(t.low, pattern >> 4, e->low_slots, numbers + VOLUME_LOW_SLOT);
+    slots_read(t.high, pattern & 15, e->high_slots, numbers + VOLUME_HIGH_SLOT);
     for (uint corner = 0; corner < corners; corner++) out[corner] = numbers[entry[1 + corner]];
     return out + corners;
+}
+
+/* Prefetches the entries of the table that the slots of cluster n name. */
+inline_always void bound_prefetch(const complex_job *c, bound_slots b, uint n, ulong sides) {
+    const uint active = (uint)popcount(nibbles_mixed(sides));
+    if (!active) return;
+    global const uint *slots = slots_of(c, b, n, 0);
+    for (uint m = 0; m < 4 * active; m++) line_prefetch(b.table + slots[m]);
+}
+
+inline_always void slots_prefetch(uint n, const volume_emit *e) {
+    if (n >= e->low->cluster_count) return;
+    bound_prefetch(e->low, e->low_slots, n, e->clusters[n].low);
+    bound_prefetch(e->high, e->high_slots, n, e->clusters[n].high);
 }
 
 /* Word and cluster n. Active tetrahedra of a cluster have slots one after the other. */
@@ -183,10 +200,10 @@ inline_always void item_store(uint n, const volume_emit *e) {
     const ulong reached = cluster_reached(&c);
     if (!reached) return;
     global const uint *points = e->tetrahedra + (ulong)CLUSTER_POINTS * n;
-    tetrahedron_vertices t = {points, points, points};
+    tetrahedron_vertices t = {points, 0, 0};
     global uint *out = cluster_out(n, &c, e);
-    if (active_sides(c.low)) t.low = slots_of(e->low, e->low_slots, n, 0);
-    if (active_sides(c.high)) t.high = slots_of(e->high, e->high_slots, n, 0);
+    if (nibbles_mixed(c.low)) t.low = slots_of(e->low, e->low_slots, n, 0);
+    if (nibbles_mixed(c.high)) t.high = slots_of(e->high, e->high_slots, n, 0);
     for (ulong rest = reached; rest; rest &= rest - 1) {
         const uint m = lowest_bit(rest) / 4, pattern = pattern_of(&c, m);
         t.points = points + 4 * m;
@@ -203,14 +220,18 @@ inline_always void item_store(uint n, const volume_emit *e) {
 
 inline_always void volume_tile_emit(uint number, const volume_emit *e) {
     const uint items = 1u << e->v->tile_shift;
-    for (uint m = 0; m < items; m++) item_store(number * items + m, e);
+    for (uint m = 0; m < items; m++) {
+        slots_prefetch(number * items + m + CLUSTERS_AHEAD, e);
+        item_store(number * items + m, e);
+    }
 }
 
 #else
 
 inline_always uint vertex_of(uint vertex, tetrahedron_vertices t, const volume_emit *e) {
-    if (vertex >= VOLUME_HIGH_SLOT) return t.high[vertex - VOLUME_HIGH_SLOT];
-    return vertex >= VOLUME_LOW_SLOT ? t.low[vertex - VOLUME_LOW_SLOT] : point_number(t.points[vertex], e);
+    if (vertex >= VOLUME_HIGH_SLOT) return e->high_slots.table[t.high[vertex - VOLUME_HIGH_SLOT]];
+    if (vertex >= VOLUME_LOW_SLOT) return e->low_slots.table[t.low[vertex - VOLUME_LOW_SLOT]];
+    return point_number(t.points[vertex], e);
 }
 
 /* Tetrahedron m of cluster n, if a part of it lies within. */
@@ -224,9 +245,9 @@ inline_always void own_store(uint n, uint m, const volume_emit *e) {
     for (ulong rest = reached & before; rest; rest &= rest - 1)
         out += 4 * (uint)e->cases[pattern_of(&c, lowest_bit(rest) / 4)];
     if (is_active(pattern >> 4))
-        t.low = slots_of(e->low, e->low_slots, n, (uint)popcount(nibbles_any(active_sides(c.low)) & before));
+        t.low = slots_of(e->low, e->low_slots, n, (uint)popcount(nibbles_mixed(c.low) & before));
     if (is_active(pattern & 15))
-        t.high = slots_of(e->high, e->high_slots, n, (uint)popcount(nibbles_any(active_sides(c.high)) & before));
+        t.high = slots_of(e->high, e->high_slots, n, (uint)popcount(nibbles_mixed(c.high) & before));
     global const uchar *entry = entry_of(t.points, pattern, e->cases);
     for (uint corner = 0; corner < 4 * (uint)entry[0]; corner++) out[corner] = vertex_of(entry[1 + corner], t, e);
 }
@@ -247,9 +268,10 @@ kernel void complex_interval_emit(complex_job low, complex_job high, volume_job 
                                   global const float *coordinates, global const uchar *cases,
                                   global const volume_cluster *clusters, global const volume_points *points,
                                   global uint *state, global const cluster_state *low_clusters,
-                                  global const uint *low_state, global const uint *low_numbers,
-                                  global const cluster_state *high_clusters, global const uint *high_state,
-                                  global const uint *high_numbers, global float *positions, global uint *out) {
+                                  global const uint *low_state, global const uint *low_entries,
+                                  global const uint *low_table, global const cluster_state *high_clusters,
+                                  global const uint *high_state, global const uint *high_entries,
+                                  global const uint *high_table, global float *positions, global uint *out) {
     local uint shared[4];
     const volume_emit e = {&low,
                            &high,
@@ -260,8 +282,8 @@ kernel void complex_interval_emit(complex_job low, complex_job high, volume_job 
                            clusters,
                            points,
                            state + VOLUME_HEAD_WORDS,
-                           {low_clusters, low_state + HEAD_WORDS, low_numbers},
-                           {high_clusters, high_state + HEAD_WORDS, high_numbers},
+                           {low_clusters, low_state + HEAD_WORDS, low_entries, low_table},
+                           {high_clusters, high_state + HEAD_WORDS, high_entries, high_table},
                            positions,
                            out};
     uint number = 0;

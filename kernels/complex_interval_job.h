@@ -27,7 +27,6 @@ typedef struct volume_points {
 enum {
     VOLUME_TICKET_COUNT,
     VOLUME_TICKET_EMIT,
-    VOLUME_CHANGED, /* not 0: samples are not those that the surfaces were classified by */
     VOLUME_SAMPLES, /* totals */
     VOLUME_TETRAHEDRA,
     VOLUME_HEAD_WORDS

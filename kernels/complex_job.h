@@ -17,10 +17,10 @@
  * cluster. */
 enum { CLUSTER_TETRAHEDRA = 16, CLUSTER_CELLS = 8 };
 
-/* What kernel 1 finds out about a cluster that the surface passes through. */
+/* What kernel 1 finds out about a cluster that the surface may pass through, by its range. */
 typedef struct cluster_state {
-    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where n is not active. Of cells bit n:
-                               cell n is active */
+    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where one of its samples is missing. Of
+                               cells bit n: cell n is active */
     slab_u32 active_before; /* active items before the cluster in its tile */
     slab_u32 triangles_before;
 } cluster_state;

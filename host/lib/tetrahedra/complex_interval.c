@@ -131,7 +131,7 @@ tc_status volume_count(volume_run *v) {
     if (!status) status = count_launch(v);
     const uint64_t vertices = (uint64_t)v->head[VOLUME_SAMPLES] + volume_bound_vertices(v, BOUND_LOW) +
                               volume_bound_vertices(v, BOUND_HIGH);
-    if (status || (!v->head[VOLUME_CHANGED] && (vertices || v->is_cut || !v->head[VOLUME_TETRAHEDRA]))) return status;
+    if (status || vertices || v->is_cut || !v->head[VOLUME_TETRAHEDRA]) return status;
     return (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
 }
 
@@ -174,9 +174,11 @@ tc_status volume_emit(volume_run *v) {
                                          ARGUMENT(*memory_of(v, &low->work->clusters)),
                                          ARGUMENT(*memory_of(v, &low->work->state)),
                                          ARGUMENT(*memory_of(v, &low->work->entries)),
+                                         ARGUMENT(*memory_of(v, &low->work->table)),
                                          ARGUMENT(*memory_of(v, &high->work->clusters)),
                                          ARGUMENT(*memory_of(v, &high->work->state)),
                                          ARGUMENT(*memory_of(v, &high->work->entries)),
+                                         ARGUMENT(*memory_of(v, &high->work->table)),
                                          ARGUMENT(w->positions.memory),
                                          ARGUMENT(w->tetrahedra.memory)};
     tc_status status = TC_OK;

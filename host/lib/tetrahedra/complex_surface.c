@@ -145,7 +145,6 @@ tc_status surface_clusters_reserve(complex_run *r) {
     const uint64_t state_bytes = 4 * (HEAD_WORDS + (uint64_t)TILE_WORDS * r->job.cluster_tiles);
     tc_status status = surface_reserve(r, &r->work->clusters, sizeof(cluster_state) * clusters, "clusters");
     if (!status) status = surface_reserve(r, &r->work->active_clusters, 4 * clusters, "active clusters");
-    if (!status && r->interval) status = surface_fill(r, &r->work->clusters, 0, 0, sizeof(cluster_state) * clusters);
     if (!status) status = surface_reserve(r, &r->work->state, state_bytes, "the scan");
     return status ? status : surface_fill(r, &r->work->state, 0, 0, state_bytes);
 }
