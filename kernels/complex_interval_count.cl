@@ -1,6 +1,6 @@
 /*
- * complex_interval_count.cl - kernel complex_interval_count: which points are vertices, how many tetrahedra each cluster
- * gives, and prefix sums of both
+ * complex_interval_count.cl - kernel complex_interval_count: which points are vertices, how many tetrahedra each
+ * cluster gives, and prefix sums of both
  *
  * Words of points and clusters are counted together: item n is word n, of 64 points, and cluster n. A cluster that lies
  * on one side of a bound, by its range, has no patterns of it; of others kernel 1 has found them. So samples are read
@@ -64,17 +64,14 @@ inline_always ulong points_within(uint n, const volume_count *a) {
 }
 
 /* The bits of all points of a cluster's tetrahedra. */
-inline_always ulong cluster_points(uint n, const volume_count *a) {
-    return ~0ul >> (64 - 4 * cluster_size(a->low, n));
-}
+inline_always ulong cluster_points(uint n, const volume_count *a) { return ~0ul >> (64 - 4 * cluster_size(a->low, n)); }
 
 /* The same of those without missing samples, by reading all of them. */
 inline_always ulong cluster_present(uint n, const volume_count *a) {
     global const uint *points = a->in.tetrahedra + (ulong)CLUSTER_POINTS * n;
     const uint count = 4 * cluster_size(a->low, n);
     ulong missing = 0;
-    for (uint m = 0; m < count; m++)
-        missing |= (ulong)bits_missing(a->in.samples[points[m]], &a->low->test) << m;
+    for (uint m = 0; m < count; m++) missing |= (ulong)bits_missing(a->in.samples[points[m]], &a->low->test) << m;
     return cluster_points(n, a) & ~(nibbles_any(missing) * 15);
 }
 
@@ -103,9 +100,7 @@ inline_always uint pattern_of(const volume_cluster *c, uint m) {
 }
 
 /* The tetrahedra of a cluster that lie within in part: the lowest bit of four for each. */
-inline_always ulong cluster_reached(const volume_cluster *c) {
-    return nibbles_any(c->low) & nibbles_any(~c->high);
-}
+inline_always ulong cluster_reached(const volume_cluster *c) { return nibbles_any(c->low) & nibbles_any(~c->high); }
 
 inline_always uint cluster_tetrahedra(const volume_cluster *c, global const uchar *cases) {
     uint sum = 0;
@@ -151,24 +146,15 @@ inline_always void volume_tile_settle(tile_tools tools, uint number, const volum
 kernel void complex_interval_count(complex_job low, complex_job high, volume_job v, global const BITS *samples,
                                    global const uint *tetrahedra, global const brick_range *ranges,
                                    global const ulong *used, global const uchar *cases,
-                                   global const cluster_state *low_clusters,
-                                   global const cluster_state *high_clusters, global volume_cluster *clusters,
-                                   global volume_points *points, global uint *state) {
+                                   global const cluster_state *low_clusters, global const cluster_state *high_clusters,
+                                   global volume_cluster *clusters, global volume_points *points, global uint *state) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
     tile_tools tools = {&low, {low.spin_limit, state + VOLUME_HEAD_WORDS, shared, sums}};
-    const volume_count a = {&low,
-                            &high,
-                            &v,
-                            {samples + low.sample_offset, tetrahedra + low.tetrahedron_offset},
-                            ranges,
-                            used,
-                            cases,
-                            low_clusters,
-                            high_clusters,
-                            clusters,
-                            points,
-                            state};
+    const volume_count a = {
+        &low,          &high,    &v,     {samples + low.sample_offset, tetrahedra + low.tetrahedron_offset},
+        ranges,        used,     cases,  low_clusters,
+        high_clusters, clusters, points, state};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
     while (number < v.tile_count) {

@@ -1,9 +1,10 @@
 /*
- * complex_interval_emit.cl - kernels complex_interval_crossings and complex_interval_emit: vertices and tetrahedra of an
- * interval volume
+ * complex_interval_emit.cl - kernels complex_interval_crossings and complex_interval_emit: vertices and tetrahedra of
+ * an interval volume
  *
  * The first one makes the vertices on crossed edges of a bound, and leaves their numbers in the table of edges. The
- * second one finds those of a tetrahedron by its place in the list of active ones, whose slots name entries of the table.
+ * second one finds those of a tetrahedron by its place in the list of active ones, whose slots name entries of the
+ * table.
  */
 #ifndef COMPLEX_INTERVAL_EMIT_CL
 #define COMPLEX_INTERVAL_EMIT_CL
@@ -15,7 +16,8 @@
 
 /* -------------------------------------------------------------------------------------------------------- crossings */
 
-/* The vertices that active tetrahedron a owns. Where the table has named the owner of an edge it then names the vertex. */
+/* The vertices that active tetrahedron a owns. Where the table has named the owner of an edge it then names the vertex.
+ */
 inline_always void crossings_store(const complex_job *c, uint first, uint a, global const BITS *samples,
                                    global const float *points, global const active_tetrahedron *active,
                                    global const uchar *cases, global const uint *tiles, global const uint *entries,
@@ -106,8 +108,8 @@ inline_always void point_store(uint n, uint bit, const volume_emit *e) {
 
 inline_always bool is_active(uint pattern) { return pattern != 0 && pattern != 15; }
 
-/* The slots of a bound that the active tetrahedra of cluster n have, from the first on or behind so many. Not of clusters
- * without any. */
+/* The slots of a bound that the active tetrahedra of cluster n have, from the first on or behind so many. Not of
+ * clusters without any. */
 inline_always global const uint *slots_of(const complex_job *c, bound_slots b, uint n, uint before) {
     return b.entries +
            4ul * (tile_before(b.tiles, n / c->tile_clusters, TILE_VERTICES) + b.clusters[n].active_before + before);

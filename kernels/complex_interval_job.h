@@ -53,9 +53,9 @@ enum {
 };
 
 typedef struct volume_job {
-    slab_u32 has_low, has_high;    /* without a bound all samples are on the inner side of it */
-    slab_u32 word_count;           /* of points, 64 each; 0: vertices at points have the points' numbers */
-    slab_u32 tile_shift;           /* a tile has 2^tile_shift clusters, and as many words of points */
+    slab_u32 has_low, has_high; /* without a bound all samples are on the inner side of it */
+    slab_u32 word_count;        /* of points, 64 each; 0: vertices at points have the points' numbers */
+    slab_u32 tile_shift;        /* a tile has 2^tile_shift clusters, and as many words of points */
     slab_u32 tile_count;
     slab_u32 low_first, high_first; /* numbers of the first vertices of both bounds */
     slab_u32 window;                /* number of the vertex that the buffer of positions starts with */

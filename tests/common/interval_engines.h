@@ -1,11 +1,12 @@
 /*
- * interval_engines.h - interval volumes by the reference and by contexts with kernels: the same bytes, in place, copied,
- * and with hardly enough memory
+ * interval_engines.h - interval volumes by the reference and by contexts with kernels: the same bytes, in place,
+ * copied, and with hardly enough memory
  */
 #ifndef INTERVAL_ENGINES_H
 #define INTERVAL_ENGINES_H
 
 #include "engines.h"
+#include "random.h"
 
 #include <inttypes.h>
 
@@ -44,6 +45,16 @@ static inline void engines_close(void) {
     }
 }
 
+/* Bounds about the values of random fields, with ties, none, or beyond what a type has. */
+static inline void range_choose(tc_interval_options *o) {
+    static const double far[] = {-5, -1e30, -1e300, 300, 1e30, 1e300};
+    tc_interval_options_init(o);
+    const uint32_t kind = random_below(8);
+    if (kind) o->low = kind == 1 ? far[random_below(3)] : 58 + 0.5 * (double)random_below(8);
+    if (kind != 2) o->high = kind == 3 ? far[3 + random_below(3)] : 60 + 0.5 * (double)(1 + random_below(8));
+    if (!(o->low < o->high)) o->high = o->low + 0.5;
+}
+
 static inline bool interval_make(engine *e, const tc_interval_options *how, const char *name) {
     e->data = (tc_interval_data){.struct_size = sizeof e->data};
     tc_status status = tc_extract_interval(e->grid, how, &e->interval);
@@ -52,7 +63,8 @@ static inline bool interval_make(engine *e, const tc_interval_options *how, cons
     return !status;
 }
 
-static inline void expect_count(engine *e, const tc_interval_options *how, const tc_interval_data *d, const char *name) {
+static inline void expect_count(engine *e, const tc_interval_options *how, const tc_interval_data *d,
+                                const char *name) {
     tc_interval_counts c = {.struct_size = sizeof c};
     EXPECT(!tc_count_interval(e->grid, how, &c), "%s: %s", name, tc_message());
     EXPECT(c.sample_count == d->sample_count && c.low_count == d->low_count && c.high_count == d->high_count &&
@@ -61,7 +73,8 @@ static inline void expect_count(engine *e, const tc_interval_options *how, const
            c.low_count, c.high_count, c.tetrahedron_count);
 }
 
-static inline void expect_same(const tc_interval_data *a, const tc_interval_data *b, const char *name, const char *how) {
+static inline void expect_same(const tc_interval_data *a, const tc_interval_data *b, const char *name,
+                               const char *how) {
     EXPECT(a->sample_count == b->sample_count && a->low_count == b->low_count && a->high_count == b->high_count &&
                a->tetrahedron_count == b->tetrahedron_count,
            "%s, %s: sizes differ", name, how);
@@ -93,8 +106,7 @@ static inline void grids_close(void) {
 
 /* With hardly enough memory: the same bytes, by buffers that fit. What a refusal advises is enough, at the latest. */
 static inline void expect_bounded(const tc_context_options *usual, grid_maker *make, const void *grid_options,
-                                  const tc_interval_options *how, const tc_interval_data *expected,
-                                  const char *name) {
+                                  const tc_interval_options *how, const tc_interval_data *expected, const char *name) {
     tc_context_options options = *usual;
     uint64_t budget = 40000;
     for (int attempt = 0; attempt < 20; attempt++) {

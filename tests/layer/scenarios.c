@@ -223,13 +223,12 @@ static bool interval_is_right(int index, int n, const tc_interval *interval) {
     tc_interval_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
     if (tc_interval_get(interval, &found) || tc_interval_get(expected_intervals[index][n], &wanted)) return false;
     const bool sizes = found.vertex_count == wanted.vertex_count && found.tetrahedron_count == wanted.tetrahedron_count;
-    const char *difference = !sizes ? "sizes differ"
-                             : memcmp(found.positions, wanted.positions, 12 * (size_t)wanted.vertex_count)
-                                 ? "positions differ"
-                             : memcmp(found.tetrahedra, wanted.tetrahedra, 16 * (size_t)wanted.tetrahedron_count)
-                                 ? "tetrahedra differ"
-                             : scenarios[index].slabs && found.slab_count < 2 ? "the grid was not cut into slabs"
-                                                                              : NULL;
+    const char *difference =
+        !sizes                                                                               ? "sizes differ"
+        : memcmp(found.positions, wanted.positions, 12 * (size_t)wanted.vertex_count)        ? "positions differ"
+        : memcmp(found.tetrahedra, wanted.tetrahedra, 16 * (size_t)wanted.tetrahedron_count) ? "tetrahedra differ"
+        : scenarios[index].slabs && found.slab_count < 2 ? "the grid was not cut into slabs"
+                                                         : NULL;
     if (difference) snprintf(problem, sizeof problem, "interval volume from %g on: %s", isovalues[n], difference);
     return !difference;
 }
@@ -244,7 +243,8 @@ static tc_status intervals_run(int index, trial *t, tc_grid *grid) {
         const tc_interval_options how = interval_describe(n % 2);
         tc_interval_counts counts = {.struct_size = sizeof counts};
         if (n < 2) fine = TRIED(t, tc_count_interval(grid, &how, &counts));
-        fine = fine && TRIED(t, tc_extract_interval(grid, &how, &interval)) && interval_is_right(index, n % 2, interval);
+        fine =
+            fine && TRIED(t, tc_extract_interval(grid, &how, &interval)) && interval_is_right(index, n % 2, interval);
     }
     if (fine) {
         const tc_interval_options how = interval_describe(0);
@@ -514,7 +514,8 @@ bool scenarios_prepare(void) {
 void scenarios_release(void) {
     cl_mem buffers[] = {their_samples, their_positions, their_triangles};
     for (int index = 0; index < SCENARIOS; index++)
-        for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]), tc_interval_destroy(expected_intervals[index][n]);
+        for (int n = 0; n < 2; n++)
+            tc_mesh_destroy(expected[index][n]), tc_interval_destroy(expected_intervals[index][n]);
     tc_tetrahedra_release(&complex);
     tc_tetrahedra_release(&of_cells);
     folder_remove();

@@ -3,14 +3,14 @@
  * byte, and so are fields at their vertices
  *
  * Random blocks of mixed cells, in any order, with the cells given or not; tetrahedra that share nothing, or one edge;
- * all sample types: noise, ties, samples all within and few; some not finite. Of each grid several ranges, so that later
- * ones go by the ranges of clusters: counted and extracted; in place; copied, with every sum of the scan made again; in
- * slabs, as little memory as goes; with surfaces in between. Cancelled at every call of the callback, and refused where
- * a point is not there. test_interval looks at what the reference makes.
+ * all sample types: noise, ties, samples all within and few; some not finite. Of each grid several ranges, so that
+ * later ones go by the ranges of clusters: counted and extracted; in place; copied, with every sum of the scan made
+ * again; in slabs, as little memory as goes; with surfaces in between. Cancelled at every call of the callback, and
+ * refused where a point is not there. test_interval looks at what the reference makes.
  *
  * Usage: test_interval_complex [alone|groups [SEED [COUNT]]]: a failure names the seed of its grid,
- * `test_interval_complex groups SEED 1` repeats it. From 1000 grids on of all types, as each takes PoCL seconds to build
- * its kernels.
+ * `test_interval_complex groups SEED 1` repeats it. From 1000 grids on of all types, as each takes PoCL seconds to
+ * build its kernels.
  */
 #include "cut.h"
 #include "interval_engines.h"
@@ -123,15 +123,6 @@ static void subject_free(subject *s) {
     free(s->points);
     free(s->tetrahedra);
     free(s->samples);
-}
-
-static void range_choose(tc_interval_options *o) {
-    static const double far[] = {-5, -1e30, -1e300, 300, 1e30, 1e300};
-    tc_interval_options_init(o);
-    const uint32_t kind = random_below(8);
-    if (kind) o->low = kind == 1 ? far[random_below(3)] : 58 + 0.5 * (double)random_below(8);
-    if (kind != 2) o->high = kind == 3 ? far[3 + random_below(3)] : 60 + 0.5 * (double)(1 + random_below(8));
-    if (!(o->low < o->high)) o->high = o->low + 0.5;
 }
 
 /* --------------------------------------------------------------------------------------------------------- volumes */

@@ -95,15 +95,6 @@ static void grid_choose(tc_grid_options *g) {
     missing_count += g->type == TC_F32;
 }
 
-static void range_choose(tc_interval_options *o) {
-    static const double far[] = {-5, -1e30, -1e300, 300, 1e30, 1e300};
-    tc_interval_options_init(o);
-    const uint32_t kind = random_below(8);
-    if (kind) o->low = kind == 1 ? far[random_below(3)] : 58 + 0.5 * (double)random_below(8);
-    if (kind != 2) o->high = kind == 3 ? far[3 + random_below(3)] : 60 + 0.5 * (double)(1 + random_below(8));
-    if (!(o->low < o->high)) o->high = o->low + 0.5;
-}
-
 /* --------------------------------------------------------------------------------------------------------- volumes */
 
 static tc_status grid_make(tc_context *context, const void *options, tc_grid **grid) {

@@ -43,10 +43,10 @@ typedef struct complex_grid {
 
     /* Under an OpenCL engine: */
     complex_part part;
-    struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
+    struct complex_slabs *slabs;          /* how it is cut; NULL: the device has it whole */
     struct complex_slabs *interval_slabs; /* the same for interval volumes */
-    uint64_t *used_points; /* a bit for each point that a present tetrahedron has; NULL: not asked for yet */
-    double classified_isovalue;  /* where context->classified_grid is this grid */
+    uint64_t *used_points;      /* a bit for each point that a present tetrahedron has; NULL: not asked for yet */
+    double classified_isovalue; /* where context->classified_grid is this grid */
     tc_method classified_method;
     bool classified_closed;
     surface_size size;              /* of the surface there */
@@ -116,9 +116,9 @@ bool complex_is_classified(const tc_grid *grid, const tc_extract_options *option
 tc_status complex_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                                uint64_t *vertex_count);
 
-/* Interval volumes on the device path (complex_interval.c): as tc_count_interval and tc_extract_interval, with arguments
- * checked and kernels vetted. A field carried to the vertices at points alone, as many as there is room for; *count:
- * how many there are. */
+/* Interval volumes on the device path (complex_interval.c): as tc_count_interval and tc_extract_interval, with
+ * arguments checked and kernels vetted. A field carried to the vertices at points alone, as many as there is room for;
+ * *count: how many there are. */
 tc_status complex_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
                                  double *classify_ms);
 tc_status complex_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval);

@@ -37,8 +37,8 @@ static tc_status bound_begin(volume_run *v, int bound) {
     return complex_run_open(&v->bounds[bound], &surface);
 }
 
-tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options,
-                       const bool exists[BOUND_COUNT], bool is_cut) {
+tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
+                       bool is_cut) {
     *v = (volume_run){.grid = grid,
                       .context = grid->context,
                       .options = options,
@@ -51,7 +51,8 @@ tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *
     return status ? status : table_provide(v);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- count */
+/* ------------------------------------------------------------------------------------------------------------- count
+ */
 
 tc_status volume_bound_classify(volume_run *v, int bound) {
     complex_run *r = &v->bounds[bound];
@@ -92,8 +93,7 @@ static tc_status buffers_reserve(volume_run *v) {
         surface_reserve(r, &w->clusters, sizeof(volume_cluster) * (uint64_t)r->job.cluster_count, "clusters");
     if (!status) status = surface_reserve(r, &w->points, sizeof(volume_points) * (uint64_t)v->job.word_count, "points");
     if (!status) status = surface_reserve(r, &w->state, state_bytes(v), "the scan");
-    if (!status && !v->is_cut)
-        status = surface_reserve(r, &w->used, 8 * (uint64_t)v->job.word_count, "points");
+    if (!status && !v->is_cut) status = surface_reserve(r, &w->used, 8 * (uint64_t)v->job.word_count, "points");
     if (status || v->is_cut) return status;
     return buffer_upload(v->context, &w->used, c->used_points, 8 * (uint64_t)v->job.word_count, "points");
 }
@@ -129,8 +129,8 @@ tc_status volume_count(volume_run *v) {
     tc_status status = buffers_reserve(v);
     if (!status) status = surface_fill(&v->bounds[BOUND_LOW], &v->work->state, 0, 0, state_bytes(v));
     if (!status) status = count_launch(v);
-    const uint64_t vertices = (uint64_t)v->head[VOLUME_SAMPLES] + volume_bound_vertices(v, BOUND_LOW) +
-                              volume_bound_vertices(v, BOUND_HIGH);
+    const uint64_t vertices =
+        (uint64_t)v->head[VOLUME_SAMPLES] + volume_bound_vertices(v, BOUND_LOW) + volume_bound_vertices(v, BOUND_HIGH);
     if (status || vertices || v->is_cut || !v->head[VOLUME_TETRAHEDRA]) return status;
     return (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
 }
@@ -193,7 +193,8 @@ tc_status volume_emit(volume_run *v) {
 /* Whether a buffer has room on the device; else the complex is cut. */
 static tc_status room_check(volume_run *v, uint64_t bytes, const char *name) {
     if (surface_fits(&v->bounds[BOUND_LOW], bytes)) return TC_OK;
-    return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for the %s of its interval volume", name);
+    return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for the %s of its interval volume",
+                           name);
 }
 
 static tc_status volume_open(volume_run *v, const tc_interval *interval, uint64_t bytes[2]) {
@@ -205,9 +206,9 @@ static tc_status volume_open(volume_run *v, const tc_interval *interval, uint64_
     if (!status)
         status = mesh_part_open(v->context, &w->positions, &interval->positions, 0, bytes[0], &offset, "vertices");
     if (!status) status = room_check(v, bytes[1], "tetrahedra");
-    return status ? status
-                  : mesh_part_open(v->context, &w->tetrahedra, &interval->tetrahedra, 0, bytes[1], &offset,
-                                   "tetrahedra");
+    return status
+               ? status
+               : mesh_part_open(v->context, &w->tetrahedra, &interval->tetrahedra, 0, bytes[1], &offset, "tetrahedra");
 }
 
 static tc_status one_piece_emit(volume_run *v, tc_interval *interval) {
@@ -236,7 +237,7 @@ static interval_size size_of(const volume_run *v) {
 
 /* share: of the whole call, for progress. */
 static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval_options *options,
-                             const bool exists[BOUND_COUNT], double share) {
+                                 const bool exists[BOUND_COUNT], double share) {
     tc_status status = volume_begin(v, grid, options, exists, false);
     for (int n = 0; n < BOUND_COUNT && !status; n++) {
         status = volume_bound_classify(v, n);
@@ -248,7 +249,7 @@ static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval
 
 /* In one piece; *too_large: it does not fit the device. interval NULL: counts. */
 static tc_status one_piece_make(tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                            interval_size *size, double *classify_ms, tc_interval *interval, bool *too_large) {
+                                interval_size *size, double *classify_ms, tc_interval *interval, bool *too_large) {
     volume_run v;
     tc_status status = one_piece_count(&v, grid, options, exists, interval ? 0.5 : 1);
     if (!status) *size = size_of(&v);

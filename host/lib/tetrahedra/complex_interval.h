@@ -1,9 +1,9 @@
 /*
  * complex_interval.h - interval volumes of complexes on a device: what their stages share
  *
- * The surfaces of both bounds are classified and numbered, each in a workspace of its own. complex_interval_count counts
- * vertices at points, and tetrahedra; the kernels of complex_interval_emit.cl emit. What does not fit the device goes in
- * slabs, which are cut smaller than those of surfaces.
+ * The surfaces of both bounds are classified and numbered, each in a workspace of its own. complex_interval_count
+ * counts vertices at points, and tetrahedra; the kernels of complex_interval_emit.cl emit. What does not fit the device
+ * goes in slabs, which are cut smaller than those of surfaces.
  */
 #ifndef COMPLEX_INTERVAL_H
 #define COMPLEX_INTERVAL_H
@@ -27,8 +27,8 @@ typedef struct volume_run {
 } volume_run;
 
 /* Kernels and workspaces; exists: which bounds separate any samples. */
-tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options,
-                       const bool exists[BOUND_COUNT], bool is_cut);
+tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
+                       bool is_cut);
 
 /* Classifies the surface of a bound in the part that is on the device, and numbers its vertices. */
 tc_status volume_bound_classify(volume_run *v, int bound);

@@ -41,7 +41,8 @@ typedef struct volume_slabs {
 static bool slab_possible(const volume_slabs *t, uint32_t slab_index) {
     const volume_run *v = &t->v;
     const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t->slabs, slab_index);
-    for (uint32_t n = 0; n < slab_cluster_count(t->grid->complex, t->slabs, slab_index) && t->slabs->ranges_known; n++) {
+    for (uint32_t n = 0; n < slab_cluster_count(t->grid->complex, t->slabs, slab_index) && t->slabs->ranges_known;
+         n++) {
         const bool below = v->exists[BOUND_LOW] && ranges[n].high < v->bounds[BOUND_LOW].test.key_outside;
         const bool above = v->exists[BOUND_HIGH] && ranges[n].low >= v->bounds[BOUND_HIGH].test.key_inside;
         if (!below && !above) return true;
@@ -143,8 +144,7 @@ static void slab_append(volume_slabs *t, slab_size size) {
     const float *from = t->positions;
     for (uint64_t n = 0; n < 4ull * size.tetrahedra; n++) tetrahedra[n] = vertex_number(t, tetrahedra[n]);
     for (int n = 0; n < BOUND_COUNT; n++) {
-        float *out =
-            (float *)t->interval->positions.memory + 3 * interval_first(&t->interval->size, BLOCK_LOW + n);
+        float *out = (float *)t->interval->positions.memory + 3 * interval_first(&t->interval->size, BLOCK_LOW + n);
         t->vertices_done[n] = positions_append(t->joined[n].numbers + t->numbers_done[n], size.vertices[n], from, out,
                                                t->vertices_done[n]);
         t->numbers_done[n] += size.vertices[n];
@@ -158,8 +158,7 @@ static tc_status slab_launch(volume_slabs *t, slab_size size) {
     complex_run *r = &v->bounds[BOUND_LOW];
     v->job.low_first = v->job.window = r->part->point_count;
     v->job.high_first = v->job.low_first + size.vertices[BOUND_LOW];
-    tc_status status =
-        surface_reserve(r, &v->work->positions, CHANNEL_BYTES * crossing_count(size), "vertices");
+    tc_status status = surface_reserve(r, &v->work->positions, CHANNEL_BYTES * crossing_count(size), "vertices");
     if (!status)
         status = surface_reserve(r, &v->work->tetrahedra, TETRAHEDRON_BYTES * (uint64_t)size.tetrahedra, "tetrahedra");
     return status ? status : volume_emit(v);

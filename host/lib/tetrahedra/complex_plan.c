@@ -97,9 +97,7 @@ bool complex_fits(const tc_grid *grid) {
            need_fits(grid->context, part_need(grid, c->point_count, c->tetrahedron_count));
 }
 
-bool complex_interval_sums_fit(const tc_grid *grid) {
-    return grid->complex->tetrahedron_count <= slab_tetrahedra_most;
-}
+bool complex_interval_sums_fit(const tc_grid *grid) { return grid->complex->tetrahedron_count <= slab_tetrahedra_most; }
 
 static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points_whole, bool interval) {
     const complex_grid *c = grid->complex;
@@ -147,8 +145,10 @@ static tc_status slabs_make(const tc_grid *grid, bool interval, struct complex_s
         free(slabs);
         return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the ranges of clusters");
     }
-    /* Points of their own cost more than smaller slabs do. Of interval volumes, points share their numbers with vertices. */
-    slabs->points_whole = whole > 0 && whole >= local / 4 && (!interval || grid->complex->point_count <= UINT32_MAX / 2);
+    /* Points of their own cost more than smaller slabs do. Of interval volumes, points share their numbers with
+     * vertices. */
+    slabs->points_whole =
+        whole > 0 && whole >= local / 4 && (!interval || grid->complex->point_count <= UINT32_MAX / 2);
     slabs->slab_clusters = slabs->points_whole ? whole : local;
     slabs->slab_count = (clusters + slabs->slab_clusters - 1) / slabs->slab_clusters;
     *out = slabs;

@@ -39,8 +39,8 @@ bool complex_fits(const tc_grid *grid);
 /* Brings the arrays of a complex that is not cut to the device, where they are not there. */
 tc_status complex_arrays_provide(tc_grid *grid);
 
-/* Cuts the complex, which is not cut yet; for interval volumes, whose slabs are others. TC_ERROR_MEMORY, with what would
- * be needed, where the least slab is too large: nothing has changed then. */
+/* Cuts the complex, which is not cut yet; for interval volumes, whose slabs are others. TC_ERROR_MEMORY, with what
+ * would be needed, where the least slab is too large: nothing has changed then. */
 tc_status complex_cut(tc_grid *grid);
 tc_status complex_interval_cut(tc_grid *grid);
 void complex_slabs_release(struct complex_slabs *slabs); /* NULL: nothing */
@@ -166,7 +166,7 @@ void complex_slabs_close(tc_grid *grid, const struct complex_slabs *slabs, local
 
 /* Brings a slab to the device, with its ranges where they are known; keeps the ranges that kernel 1 has found. */
 tc_status complex_slab_load(tc_grid *grid, struct complex_slabs *slabs, local_points *local, uint32_t slab_index,
-                    bool ranges_known);
+                            bool ranges_known);
 tc_status complex_slab_ranges_keep(tc_grid *grid, struct complex_slabs *slabs, uint32_t slab_index);
 
 /* The crossed edges of all slabs so far, and the numbers that the vertices of each slab have in the mesh. */

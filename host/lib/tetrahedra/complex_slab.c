@@ -61,7 +61,7 @@ static tc_status ranges_move(tc_grid *grid, struct complex_slabs *slabs, uint32_
 }
 
 tc_status complex_slab_load(tc_grid *grid, struct complex_slabs *slabs, local_points *local, uint32_t slab_index,
-                    bool ranges_known) {
+                            bool ranges_known) {
     const uint64_t first = (uint64_t)CLUSTER_TETRAHEDRA * slab_first_cluster(slabs, slab_index);
     const uint32_t *tetrahedra = grid->complex->tetrahedra + 4 * first;
     const uint32_t count = slab_tetrahedron_count(grid->complex, slabs, slab_index);

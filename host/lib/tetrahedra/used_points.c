@@ -86,8 +86,7 @@ tc_status points_within_find(tc_grid *grid, const tc_interval_options *options, 
         out->before[n] = (uint32_t)out->count;
         out->words[n] = grid->complex->used_points[n];
         for (uint64_t rest = out->words[n]; rest; rest &= rest - 1)
-            if (!is_within(grid, options, 64 * n + (uint64_t)__builtin_ctzll(rest)))
-                out->words[n] &= ~(rest & -rest);
+            if (!is_within(grid, options, 64 * n + (uint64_t)__builtin_ctzll(rest))) out->words[n] &= ~(rest & -rest);
         out->count += (uint64_t)__builtin_popcountll(out->words[n]);
     }
     return TC_OK;
