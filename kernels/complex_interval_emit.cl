@@ -170,13 +170,16 @@ inline_always void slots_read(global const uint *slots, uint pattern, bound_slot
  * takes is hard to predict. */
 inline_always global uint *part_store(tetrahedron_vertices t, uint pattern, const volume_emit *e, global uint *out) {
     global const uchar *entry = entry_of(t.points, pattern, e->cases);
-    const uint corners = 4 * (uint)entry[0];
+    const uint count = entry[0];
     uint numbers[VOLUME_HIGH_SLOT + 4];
     for (uint n = 0; n < 4; n++) numbers[n] = point_number(t.points[n], e);
     slots_read(t.low, pattern >> 4, e->low_slots, numbers + VOLUME_LOW_SLOT);
     slots_read(t.high, pattern & 15, e->high_slots, numbers + VOLUME_HIGH_SLOT);
-    for (uint corner = 0; corner < corners; corner++) out[corner] = numbers[entry[1 + corner]];
-    return out + corners;
+    for (uint n = 0; n < count; n++) {
+        const uchar4 at = vload4(n, entry + 1);
+        vstore4((uint4)(numbers[at.x], numbers[at.y], numbers[at.z], numbers[at.w]), n, out);
+    }
+    return out + 4 * count;
 }
 
 /* Prefetches the entries of the table that the slots of cluster n name. */
