@@ -346,7 +346,7 @@ MUTANTS = [
     *group("kernels/complex_interval_emit.cl",
            ("table[entries[slot]] = first + number;", "table[entries[slot]] = number;",
             "intervals of tetrahedra: crossings among the points"),
-           ("positions += offset;", "", "intervals of tetrahedra: crossings in the place of points"),
+           ("points += c.point_offset, positions += offset;", "points += c.point_offset;", "intervals of tetrahedra: crossings in the place of points"),
            ("TILE_VERTICES) + active[a].vertex;", "TILE_VERTICES);", "intervals of tetrahedra: crossings before a tetrahedron's"),
            ("b.clusters[n].active_before + before);", "before);", "intervals of tetrahedra: active tetrahedra before a cluster"),
            ("(uint)(p.y > p.w) << 4", "(uint)(p.y > p.w) << 5", "intervals of tetrahedra: the order of points"),
