@@ -10,6 +10,9 @@ clips at the lower value, and another one that clips its output at the upper one
 count. VTK keeps voxels that lie within whole, where ours are five tetrahedra. The limit is that of the device: all
 samples read once, vertices and tetrahedra written once, by the bandwidths that tetracubes-bench measures here.
 
+Some cases are unstructured: the same samples on a grid cut into tetrahedra by `tetrahedralize`, smaller (--unstructured),
+from one file. Both sides then begin and end with tetrahedra. The limit counts points and tetrahedra read once, too.
+
 vtkClipDataSet, which takes twenty times as long as vtkTableBasedClipDataSet, is measured once, with --all.
 """
 
@@ -27,22 +30,54 @@ from peer_filters import vtk_start
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersGeneral import vtkClipDataSet, vtkTableBasedClipDataSet
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 CASES = [("sphere", "60,100"), ("sphere", "40,"), ("gyroid", "100,150")]
+UNSTRUCTURED = [("sphere", "60,100"), ("gyroid", "100,150")]
 
 
 def told(command):
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
 
 
-def image_of(path, side):
-    image = vtkImageData()
-    image.SetDimensions(side, side, side)
-    values = numpy.fromfile(path, numpy.float32)
-    scalars = numpy_to_vtk(values, deep=1)
-    scalars.SetName("samples")  # without a name the filter's output would have no scalars
-    image.GetPointData().SetScalars(scalars)
-    return image
+class Image:
+    """Samples of a field in a file, the tool's arguments for it, and VTK's grid of it."""
+
+    def __init__(self, arguments, folder, field):
+        self.dims = [arguments.dims] * 3
+        path, dims = os.path.join(folder, f"{field}.raw"), ",".join(map(str, self.dims))
+        self.input = [path, "--dims", dims, "--type", "f32"]
+        self.bytes = 4 * arguments.dims ** 3
+        if not os.path.exists(path):
+            subprocess.run([arguments.tool, "generate", field, "--dims", dims, "--type", "f32", "-o", path, "--quiet"],
+                           check=True)
+        self.grid = vtkImageData()
+        self.grid.SetDimensions(self.dims)
+        self.name(numpy_to_vtk(numpy.fromfile(path, numpy.float32), deep=1))
+
+    def name(self, scalars):
+        """Without a name the filter's output would have no scalars."""
+        scalars.SetName("samples")
+        self.grid.GetPointData().SetScalars(scalars)
+
+
+class Tetrahedra(Image):
+    """The same cut into tetrahedra."""
+
+    def __init__(self, arguments, folder, field):
+        small = argparse.Namespace(**{**vars(arguments), "dims": arguments.unstructured})
+        place = os.path.join(folder, "unstructured")
+        os.makedirs(place, exist_ok=True)
+        super().__init__(small, place, field)
+        path = os.path.join(place, f"{field}.vtu")
+        subprocess.run([arguments.tool, "tetrahedralize", *self.input, "-o", path, "--quiet"], check=True)
+        self.input = [path]
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(path)
+        reader.Update()
+        self.grid = reader.GetOutput()
+        self.name(self.grid.GetPointData().GetArray(0))
+        self.bytes += 12 * self.grid.GetNumberOfPoints() + 16 * self.grid.GetNumberOfCells()
 
 
 def clipped(kind, image, low, high):
@@ -64,31 +99,25 @@ def middle(times):
     return {"median": round(statistics.median(times), 2), "min": round(min(times), 2), "max": round(max(times), 2)}
 
 
-def case(arguments, folder, field, bounds):
-    path, side = os.path.join(folder, f"{field}.raw"), arguments.dims
-    dims = ",".join([str(side)] * 3)
-    if not os.path.exists(path):
-        subprocess.run([arguments.tool, "generate", field, "--dims", dims, "--type", "f32", "-o", path, "--quiet"],
-                       check=True)
-    command = [arguments.tool, "isovolume", path, "--dims", dims, "--type", "f32", "--range", bounds, "--range", bounds,
-               "--json"]
+def case(arguments, source, field, bounds):
+    command = [arguments.tool, "isovolume", *source.input, "--range", bounds, "--range", bounds, "--json"]
     low, high = (float(bound) if bound else None for bound in bounds.split(","))
-    image, ours, first, theirs = image_of(path, side), [], [], []
+    ours, first, theirs = [], [], []
     told(command)  # builds the kernels
     for _ in range(arguments.repeat):
         volumes = told(command)["volumes"]
         for volume, times in zip(volumes, (first, ours)):
             times.append(sum(volume["timings_ms"].values()))
-        theirs.append(clipped(vtkTableBasedClipDataSet, image, low, high))
+        theirs.append(clipped(vtkTableBasedClipDataSet, source.grid, low, high))
     volume = volumes[0]
-    limit = (4e-6 * side ** 3) / arguments.read_gbps + 1e-6 * volume["bytes"] / arguments.write_gbps
-    result = {"field": field, "dims": [side] * 3, "range": bounds, "tetrahedra": volume["tetrahedra"],
+    limit = 1e-6 * source.bytes / arguments.read_gbps + 1e-6 * volume["bytes"] / arguments.write_gbps
+    result = {"field": field, "dims": source.dims, "grid": type(source).__name__.lower(), "range": bounds, "tetrahedra": volume["tetrahedra"],
               "bytes": volume["bytes"], "ms": middle(ours), "first_ms": middle(first), "limit_ms": round(limit, 2),
               "limit_ratio": round(statistics.median(ours) / limit, 2),
               "vtk_table_ms": middle([ms for ms, _ in theirs]), "vtk_table_cells": theirs[0][1],
               "times_ours": round(statistics.median(ms for ms, _ in theirs) / statistics.median(ours), 2)}
     if arguments.all:
-        ms, cells = clipped(vtkClipDataSet, image, low, high)
+        ms, cells = clipped(vtkClipDataSet, source.grid, low, high)
         result.update(vtk_clip_ms=round(ms, 2), vtk_clip_cells=cells)
     return result
 
@@ -98,6 +127,7 @@ def main():
     parser.add_argument("tool", help="the program tetracubes")
     parser.add_argument("bench", help="the program tetracubes-bench, which measures bandwidths")
     parser.add_argument("--dims", type=int, default=256, help="samples along each axis")
+    parser.add_argument("--unstructured", type=int, default=81, help="the same of unstructured grids")
     parser.add_argument("--repeat", type=int, default=5)
     parser.add_argument("--threads", type=int, default=0, help="of VTK; 0: all cores")
     parser.add_argument("--all", action="store_true", help="vtkClipDataSet too")
@@ -107,11 +137,12 @@ def main():
     device = told([arguments.bench, "--field", "sphere", "--dims", "64", "--repeat", "3", "--json"])
     arguments.read_gbps, arguments.write_gbps = device["read_gbps"], device["write_gbps"]
     with tempfile.TemporaryDirectory(prefix="tetracubes-interval-") as folder:
-        cases = [case(arguments, folder, *which) for which in CASES]
+        cases = [case(arguments, kind(arguments, folder, field), field, bounds)
+                 for kind, those in ((Image, CASES), (Tetrahedra, UNSTRUCTURED)) for field, bounds in those]
     print(f"{device['device']}: reads {device['read_gbps']:.1f} GB/s, writes {device['write_gbps']:.1f} GB/s; "
           f"VTK {vtk['version']}, {vtk['threads']} threads")
     for c in cases:
-        print(f"{c['field']} {arguments.dims}^3 f32, {c['range']}: {c['ms']['median']:.1f} ms "
+        print(f"{c['grid']}, {c['field']} {c['dims'][0]}^3 f32, {c['range']}: {c['ms']['median']:.1f} ms "
               f"({c['first_ms']['median']:.1f} at first), "
               f"{c['limit_ratio']:.1f} times the limit; two passes of vtkTableBasedClipDataSet "
               f"{c['vtk_table_ms']['median']:.0f} ms, {c['times_ours']:.1f} times ours")

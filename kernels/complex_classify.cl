@@ -75,7 +75,7 @@ inline_always void cluster_list(const complex_job *c, uint n, global const uint 
     uint tile = n / c->tile_clusters;
     uint first = tile_before(tiles, tile, TILE_VERTICES) + cluster.active_before;
     uint triangle = tile_before(tiles, tile, TILE_TRIANGLES) + cluster.triangles_before;
-    for (ulong rest = nibbles_any(cluster.patterns); rest; rest &= rest - 1) {
+    for (ulong rest = nibbles_mixed(cluster.patterns); rest; rest &= rest - 1) {
         uint bit = lowest_bit(rest), pattern = (uint)(cluster.patterns >> bit) & 15;
         uint4 points = vload4(n * CLUSTER_TETRAHEDRA + bit / 4, tetrahedra);
         active_tetrahedron t = {{points.x, points.y, points.z, points.w}, pattern, triangle, 0, 0};
@@ -86,9 +86,9 @@ inline_always void cluster_list(const complex_job *c, uint n, global const uint 
 
 /* Prefetches the tetrahedra of cluster n that will be read; a cache line holds four. */
 inline_always void active_prefetch(global const cluster_state *clusters, uint n, global const uint *tetrahedra) {
-    ulong patterns = clusters[n].patterns;
-    for (uint m = 0; m < CLUSTER_POINTS; m += 16, patterns >>= 16)
-        if (patterns & 0xffff) line_prefetch(tetrahedra + (ulong)CLUSTER_POINTS * n + m);
+    ulong active = nibbles_mixed(clusters[n].patterns);
+    for (uint m = 0; m < CLUSTER_POINTS; m += 16, active >>= 16)
+        if (active & 0xffff) line_prefetch(tetrahedra + (ulong)CLUSTER_POINTS * n + m);
 }
 
 /* Lists the active tetrahedra, and clears `table` and `tiles` for the kernels that follow. */

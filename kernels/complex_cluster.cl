@@ -43,13 +43,17 @@ inline_always uint cluster_size(const complex_job *c, uint n) {
 /* The lowest bit of each nibble: whether any bit of the nibble is set. */
 inline_always ulong nibbles_any(ulong x) { return (x | x >> 1 | x >> 2 | x >> 3) & 0x1111111111111111ul; }
 
+/* Whether some bits of the nibble are set and others are not. */
+inline_always ulong nibbles_mixed(ulong x) { return nibbles_any(x) & nibbles_any(~x); }
+
 /* What the surface makes of a cluster. Each of its points has a bit in `inside` and one in `missing`. A tetrahedron
  * with one point or three inside has one triangle and three crossed edges; with two inside, two and four. */
 inline_always cluster_report report_of(ulong inside, ulong missing) {
-    ulong odd = inside ^ inside >> 1, mixed = nibbles_any(inside) & nibbles_any(~inside) & ~nibbles_any(missing);
+    inside &= ~(nibbles_any(missing) * 15);
+    ulong odd = inside ^ inside >> 1, mixed = nibbles_mixed(inside);
     odd = (odd ^ odd >> 2) & mixed;
     uint one = (uint)popcount(odd), all = (uint)popcount(mixed);
-    cluster_report report = {inside & mixed * 15, all, 2 * all - one, 4 * all - one};
+    cluster_report report = {inside, all, 2 * all - one, 4 * all - one};
     return report;
 }
 

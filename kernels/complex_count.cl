@@ -59,9 +59,10 @@ inline_always void cluster_add(tile_tools tools, uint n, bool none, cluster_arra
     cluster_report report = {0, 0, 0, 0};
     if (!none) report = cluster_count(tools.c, n, a.in);
     uint2 before = group_prefix((uint2)(report.active, report.triangles), running, tools.scan.sums);
-    if (recount || !report.active) return;
+    if (recount || none) return;
     cluster_state state = {report.patterns, before.x, before.y};
     a.clusters[n] = state;
+    if (!report.active) return;
     cluster_append(n, a, sums);
     sums->crossed += report.edges;
 }

@@ -17,10 +17,10 @@
  * cluster. */
 enum { CLUSTER_TETRAHEDRA = 16, CLUSTER_CELLS = 8 };
 
-/* What kernel 1 finds out about a cluster that the surface passes through. */
+/* What kernel 1 finds out about a cluster that the surface may pass through, by its range. */
 typedef struct cluster_state {
-    slab_u64 patterns;      /* bit 4 n + m: point m of tetrahedron n is inside; 0 where n is not active. Of cells bit n:
-                               cell n is active */
+    slab_u64 patterns; /* bit 4 n + m: point m of tetrahedron n is inside; 0 where one of its samples is missing. Of
+                          cells bit n: cell n is active */
     slab_u32 active_before; /* active items before the cluster in its tile */
     slab_u32 triangles_before;
 } cluster_state;
@@ -100,7 +100,8 @@ enum {
 enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, COMPLEX_KERNELS };
 enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS };           /* of cells: after joining, before it */
 enum { KERNEL_CAPS_COUNT = WHOLE_KERNELS, KERNEL_CAPS_EMIT, CLOSED_KERNELS }; /* of closed surfaces: the last two */
-enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT };                /* the others have their own numbers */
+enum { KERNEL_VOLUME_COUNT = CLOSED_KERNELS, KERNEL_VOLUME_CROSSINGS, KERNEL_VOLUME_EMIT, ALL_COMPLEX_KERNELS };
+enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT }; /* the others have their own numbers */
 
 #define EDGE_NONE 0xffffffffu
 

@@ -4,7 +4,7 @@
 #ifndef COMPLEX_VERTEX_CL
 #define COMPLEX_VERTEX_CL
 
-#include "complex_number.cl"
+#include "complex_edges.cl"
 #include "crossing.cl"
 
 /* The vertex on an edge. */

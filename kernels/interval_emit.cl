@@ -96,7 +96,7 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
     row_places p;
     if (!left) return;
     const places_row at = {s, job, low, high, sums, r, cells, y, z, w};
-    places_begin(&at, left & ~whole, &p);
+    places_begin(&at, left, left & ~whole, &p);
     while (left) {
         const uint bit = lowest_bit(left), odd = (uint)(~even >> bit & 1);
         const uint length = min(lowest_bit(~(whole >> bit)), 63 - bit);

@@ -121,10 +121,12 @@ inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
 
 #if WORK_ITEMS < 32
 
-/* For each place its word, the number of the first vertex, and of the first one in the next word. */
+/* For each place its word, the number of the first vertex, and of the first one in the next word, where the last cube of
+ * the row needs that. */
 typedef struct row_places {
     ulong word[INTERVAL_PLACES];
     uint first[INTERVAL_PLACES], next[INTERVAL_PLACES];
+    bool has_next;
 } row_places;
 
 /* Types of edges that cubes have of row n of their rows of samples: a bit each. */
@@ -133,7 +135,7 @@ typedef struct row_places {
 inline_always void place_fill(const places_row *r, uint place, ulong word, row_places *p) {
     p->word[place] = word;
     p->first[place] = place_first(r, place, r->w);
-    p->next[place] = r->w + 1 < r->s->words_x ? place_first(r, place, r->w + 1) : 0;
+    if (p->has_next) p->next[place] = place_first(r, place, r->w + 1);
 }
 
 inline_always void places_of_bound(const places_row *r, const bound *b, const sample_rows rows[4], uint block,
@@ -148,8 +150,10 @@ inline_always void places_of_bound(const places_row *r, const bound *b, const sa
     }
 }
 
-/* partial: cubes that are not within whole, so that their vertices are on edges too. */
-inline_always void places_begin(const places_row *r, ulong partial, row_places *p) {
+/* reached: cubes that have any tetrahedra; partial: those of them that are not within whole, so that their vertices are on
+ * edges too. */
+inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) {
+    p->has_next = reached >> 63;
 #pragma unroll
     for (uint n = 0; n < 4; n++)
         place_fill(r, INTERVAL_PLACE(INTERVAL_SAMPLES, n, 0),
@@ -169,10 +173,13 @@ inline_always uint place_number(const places_row *r, const row_places *p, uint v
 inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
                                        global uint *out) {
     uint numbers[INTERVAL_VERTICES_MOST];
-    const uint corners = 4 * (uint)entry[0], vertices = entry[1];
+    const uint count = entry[0], vertices = entry[1];
     for (uint n = 0; n < vertices; n++) numbers[n] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
-    for (uint m = 0; m < corners; m++) out[m] = numbers[entry[INTERVAL_ENTRY_CORNERS + m]];
-    return out + corners;
+    for (uint n = 0; n < count; n++) {
+        const uchar4 at = vload4(n, entry + INTERVAL_ENTRY_CORNERS);
+        vstore4((uint4)(numbers[at.x], numbers[at.y], numbers[at.z], numbers[at.w]), n, out);
+    }
+    return out + 4 * count;
 }
 
 /* Cubes that lie within whole, `length` of them from a bit on; the last is not the row's. Numbers rise by one from cube
@@ -198,7 +205,7 @@ typedef struct row_places {
     uint none;
 } row_places;
 
-inline_always void places_begin(const places_row *r, ulong partial, row_places *p) { p->none = 0; }
+inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) { p->none = 0; }
 
 inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
     const uint place = vertex >> 1, x = bit + (vertex & 1);

@@ -582,9 +582,8 @@ TC_API tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *opt
  *
  * TC_ERROR_MEMORY, with the bytes that it takes, where the host has not so much: tc_count_interval tells them before.
  * TC_ERROR_LIMIT for more than 2^32 - 1 vertices, and where eight planes of samples are too large for the kernels.
- * TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the
- * OpenCL engine for grids of tetrahedra, and for u32, i32 and f64 samples on a device without fp64: use the reference
- * engine. */
+ * TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the OpenCL engine for u32, i32 and f64 samples on a
+ * device without fp64: use the reference engine. */
 TC_API tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options, tc_interval **interval);
 
 /* Fills *data. Its pointers stay valid until the interval volume is made anew or destroyed. */

@@ -48,17 +48,28 @@ static tc_status interval_begin(const tc_grid *grid, const tc_interval_options *
     return (tc_status)fail(TC_ERROR_ARGUMENT, "%s takes no pieces of a grid", call);
 }
 
+static bool has_kernels(const tc_grid *grid) { return grid->context->options.engine != TC_ENGINE_REFERENCE; }
+
 static tc_status engine_check(const tc_grid *grid) {
     const tc_context *context = grid->context;
-    if (context->options.engine == TC_ENGINE_REFERENCE) return TC_OK;
-    if (grid->complex)
-        return (tc_status)fail(TC_ERROR_DEVICE, "there are no kernels for interval volumes of grids of tetrahedra: use "
-                                                "the reference engine");
-    if (device_makes_vertices(context, grid->type)) return TC_OK;
+    if (!has_kernels(grid) || device_makes_vertices(context, grid->type)) return TC_OK;
     return (tc_status)fail(TC_ERROR_DEVICE,
                            "%s has no fp64: interval volumes of %s samples are made by the reference "
                            "engine",
                            context->info.name, tc_type_name(grid->type));
+}
+
+static kernel_kind interval_kind(const tc_grid *grid) {
+    return grid->complex ? complex_interval_kind(grid) : structured_interval_kind(grid);
+}
+
+static tc_status kernels_run(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+                             double *classify_ms, tc_interval *interval) {
+    if (grid->complex)
+        return interval ? complex_interval_extract(grid, options, interval)
+                        : complex_interval_count(grid, options, size, classify_ms);
+    return interval ? structured_interval_extract(grid, options, interval)
+                    : structured_interval_count(grid, options, size, classify_ms);
 }
 
 /* By kernels that are vetted and tried first; again where they were exchanged on the way. interval NULL: counts. */
@@ -66,14 +77,12 @@ static tc_status device_make(tc_grid *grid, const tc_interval_options *options, 
                              double *classify_ms, tc_interval *interval) {
     tc_status status;
     do {
-        status = call_vet(grid->context, structured_interval_kind(grid));
-        if (!status) structured_reshape(grid);
-        if (!status) status = trial_once(grid->context, structured_interval_kind(grid));
-        if (!status)
-            status = interval ? structured_interval_extract(grid, options, interval)
-                              : structured_interval_count(grid, options, size, classify_ms);
+        status = call_vet(grid->context, interval_kind(grid));
+        if (!status && !grid->complex) structured_reshape(grid);
+        if (!status) status = trial_once(grid->context, interval_kind(grid));
+        if (!status) status = kernels_run(grid, options, size, classify_ms, interval);
         /* Of other kernels, where missing samples were met. */
-        if (!status) status = trial_once(grid->context, structured_interval_kind(grid));
+        if (!status) status = trial_once(grid->context, interval_kind(grid));
     } while (vetting_restarts(grid->context));
     return status;
 }
@@ -88,7 +97,7 @@ static tc_status size_find(tc_grid *grid, const tc_interval_options *options, in
     *size = (interval_size){{0}, 0};
     *classify_ms = 0;
     if (status || grid_is_empty(grid)) return status;
-    if (grid->device) return device_make(grid, options, size, classify_ms, NULL);
+    if (has_kernels(grid)) return device_make(grid, options, size, classify_ms, NULL);
     status = grid->complex ? reference_complex_interval_count(grid, options, size)
                            : reference_interval_count(grid, options, size);
     *classify_ms = clock_ms() - start;
@@ -98,7 +107,7 @@ static tc_status size_find(tc_grid *grid, const tc_interval_options *options, in
 static tc_status interval_make(tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
     tc_status status = engine_check(grid);
     if (status || grid_is_empty(grid)) return status;
-    if (grid->device) return device_make(grid, options, NULL, NULL, interval);
+    if (has_kernels(grid)) return device_make(grid, options, NULL, NULL, interval);
     return grid->complex ? reference_complex_interval_extract(grid, options, interval)
                          : reference_interval_extract(grid, options, interval);
 }
@@ -182,8 +191,9 @@ tc_status tc_interpolate_interval(tc_grid *grid, const tc_interval_options *opti
     if (status) return status;
     const carry c = {&f, values, value_count / (uint64_t)f.components};
     if (!grid_is_empty(grid))
-        status = grid->complex ? reference_complex_interval_carry(grid, &o, &c, &samples)
-                               : reference_interval_carry(grid, &o, &c, &samples);
+        status = !grid->complex      ? reference_interval_carry(grid, &o, &c, &samples)
+                 : has_kernels(grid) ? complex_interval_carry(grid, &o, &c, &samples)
+                                     : reference_complex_interval_carry(grid, &o, &c, &samples);
     used = samples * (uint64_t)f.components;
     for (int n = 0; n < 2 && !status; n++) {
         const uint64_t left = used < value_count ? value_count - used : 0;

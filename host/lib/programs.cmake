@@ -2,7 +2,7 @@
 # programs, what embed.cmake makes of them. Needs kernel_folder.
 file(GLOB kernels CONFIGURE_DEPENDS ${kernel_folder}/*.cl ${kernel_folder}/*.h)
 set(programs)
-foreach(program classify emit snap complex complex_caps labels)
+foreach(program classify emit snap complex complex_caps complex_interval labels)
     list(APPEND programs ${program}_alone=${kernel_folder}/${program}.cl=1
          ${program}_groups=${kernel_folder}/${program}.cl=0)
 endforeach()

@@ -22,6 +22,7 @@ struct scenario {
     coordinates coordinates;
     tc_method method;
     bool normals, always_copy, slabs, cold;
+    bool interval; /* interval volumes are made, from each isovalue on, in place of surfaces */
     tc_engine engine;
 };
 
@@ -48,6 +49,10 @@ static const scenario scenarios[] = {
     {.name = "whole cells", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID},
     {.name = "whole cells, copied buffers", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID, .always_copy = true},
     {.name = "whole cells, slabs", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID, .slabs = true},
+    {.name = "interval", .flow = FLOW_EXTRACT, .interval = true},
+    {.name = "complex interval", .flow = FLOW_COMPLEX, .interval = true},
+    {.name = "complex interval, copied buffers", .flow = FLOW_COMPLEX, .interval = true, .always_copy = true},
+    {.name = "complex interval, slabs", .flow = FLOW_COMPLEX, .interval = true, .slabs = true},
     {.name = "count and emit", .flow = FLOW_EMIT},
     {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
     {.name = "reference, missing samples",
@@ -61,6 +66,7 @@ static const scenario scenarios[] = {
      .coordinates = CURVILINEAR,
      .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, complex", .flow = FLOW_COMPLEX, .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, complex interval", .flow = FLOW_COMPLEX, .interval = true, .engine = TC_ENGINE_REFERENCE},
     {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
 };
 enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
@@ -74,6 +80,7 @@ static uint64_t budgets[SCENARIOS];                             /* of memory, fo
 static tc_tetrahedra complex, of_cells;
 static tc_cells cells; /* of method hybrid */
 static tc_mesh *expected[SCENARIOS][2];
+static tc_interval *expected_intervals[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
 static cl_command_queue their_queue;
 static cl_mem their_samples, their_positions, their_triangles;
@@ -159,6 +166,14 @@ static tc_extract_options surface_describe(const scenario *s, int index) {
     return o;
 }
 
+static tc_interval_options interval_describe(int index) {
+    tc_interval_options o;
+    tc_interval_options_init(&o);
+    o.low = isovalues[index];
+    if (index == 0) o.high = o.low + 30.5;
+    return o;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ trial */
 
 /* Whether a call succeeds, at once or again where the trial wants it made again. */
@@ -204,6 +219,49 @@ static tc_status surfaces_run(int index, trial *t, tc_grid *grid) {
     return status;
 }
 
+static bool interval_is_right(int index, int n, const tc_interval *interval) {
+    tc_interval_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
+    if (tc_interval_get(interval, &found) || tc_interval_get(expected_intervals[index][n], &wanted)) return false;
+    const bool sizes = found.vertex_count == wanted.vertex_count && found.tetrahedron_count == wanted.tetrahedron_count;
+    const char *difference =
+        !sizes                                                                               ? "sizes differ"
+        : memcmp(found.positions, wanted.positions, 12 * (size_t)wanted.vertex_count)        ? "positions differ"
+        : memcmp(found.tetrahedra, wanted.tetrahedra, 16 * (size_t)wanted.tetrahedron_count) ? "tetrahedra differ"
+        : scenarios[index].slabs && found.slab_count < 2 ? "the grid was not cut into slabs"
+                                                         : NULL;
+    if (difference) snprintf(problem, sizeof problem, "interval volume from %g on: %s", isovalues[n], difference);
+    return !difference;
+}
+
+/* Interval volumes as surfaces_run does surfaces, with a field carried to the first. */
+static tc_status intervals_run(int index, trial *t, tc_grid *grid) {
+    const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 1, .values = values};
+    tc_interval *interval = NULL;
+    tc_status status = TC_OK;
+    bool fine = true;
+    for (int n = 0; n < 3 && fine; n++) {
+        const tc_interval_options how = interval_describe(n % 2);
+        tc_interval_counts counts = {.struct_size = sizeof counts};
+        if (n < 2) fine = TRIED(t, tc_count_interval(grid, &how, &counts));
+        fine =
+            fine && TRIED(t, tc_extract_interval(grid, &how, &interval)) && interval_is_right(index, n % 2, interval);
+    }
+    if (fine) {
+        const tc_interval_options how = interval_describe(0);
+        tc_interval_data d = {.struct_size = sizeof d};
+        tc_interval_get(interval, &d);
+        float *carried = calloc((size_t)d.vertex_count, sizeof *carried);
+        (void)TRIED(t, tc_interpolate_interval(grid, &how, &field, carried, d.vertex_count));
+        free(carried);
+    }
+    tc_interval_destroy(interval);
+    return status;
+}
+
+static tc_status results_run(int index, trial *t, tc_grid *grid) {
+    return scenarios[index].interval ? intervals_run(index, t, grid) : surfaces_run(index, t, grid);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ flows */
 
 static tc_status devices_run(trial *t) {
@@ -220,7 +278,7 @@ static tc_status grid_run(int index, trial *t, tc_context *context) {
     tc_grid *grid = NULL;
     tc_status status;
     grid_describe(&scenarios[index], &options);
-    if (TRIED(t, tc_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    if (TRIED(t, tc_grid_create(context, &options, &grid))) status = results_run(index, t, grid);
     tc_grid_destroy(grid);
     return status;
 }
@@ -229,7 +287,7 @@ static tc_status complex_run(int index, trial *t, tc_context *context) {
     const tc_tetrahedra_grid_options options = complex_describe(&scenarios[index]);
     tc_grid *grid = NULL;
     tc_status status;
-    if (TRIED(t, tc_tetrahedra_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    if (TRIED(t, tc_tetrahedra_grid_create(context, &options, &grid))) status = results_run(index, t, grid);
     tc_grid_destroy(grid);
     return status;
 }
@@ -405,7 +463,9 @@ static tc_status reference_extract_all(tc_context *reference) {
                                          : tc_grid_create(reference, &options, &grid);
         for (int n = 0; n < 2 && !status; n++) {
             const tc_extract_options how = surface_describe(s, n);
-            status = tc_extract(grid, &how, &expected[index][n]);
+            const tc_interval_options between = interval_describe(n);
+            status = s->interval ? tc_extract_interval(grid, &between, &expected_intervals[index][n])
+                                 : tc_extract(grid, &how, &expected[index][n]);
         }
         tc_grid_destroy(grid);
     }
@@ -454,7 +514,8 @@ bool scenarios_prepare(void) {
 void scenarios_release(void) {
     cl_mem buffers[] = {their_samples, their_positions, their_triangles};
     for (int index = 0; index < SCENARIOS; index++)
-        for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
+        for (int n = 0; n < 2; n++)
+            tc_mesh_destroy(expected[index][n]), tc_interval_destroy(expected_intervals[index][n]);
     tc_tetrahedra_release(&complex);
     tc_tetrahedra_release(&of_cells);
     folder_remove();

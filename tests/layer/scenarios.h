@@ -2,9 +2,9 @@
  * scenarios.h - what programs do with the library, from the first call to the last, and a question to the test where a
  * call fails
  *
- * A scenario makes a context, a grid and surfaces of two isovalues, gives everything back, and compares all that it got
- * with what the reference engine made beforehand, byte for byte. A call that fails is told to the trial, which decides
- * whether it is made once more: it then has to succeed, with the same context and grid.
+ * A scenario makes a context, a grid and surfaces or interval volumes of two isovalues, gives everything back, and
+ * compares all that it got with what the reference engine made beforehand, byte for byte. A call that fails is told to
+ * the trial, which decides whether it is made once more: it then has to succeed, with the same context and grid.
  */
 #ifndef SCENARIOS_H
 #define SCENARIOS_H

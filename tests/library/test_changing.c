@@ -1,6 +1,7 @@
 /*
- * test_changing.c - samples, blanks and tetrahedra that change while a surface is made of them, which callers may not
- * do: a call then fails, or its mesh is of what there was at some time, but no index leads beyond its vertices
+ * test_changing.c - samples, blanks and tetrahedra that change while a surface or an interval volume is made of them,
+ * which callers may not do: a call then fails, or what it makes is of what there was at some time, but no index leads
+ * beyond its vertices
  *
  * The callback for progress changes them, between the two stages among others.
  */
@@ -161,6 +162,27 @@ static void extract_while_changing(tc_context *context, size_t change, int kind,
     tc_grid_destroy(grid);
 }
 
+static void interval_while_changing(tc_context *context, size_t change, moment *m, int at) {
+    tc_interval_options how;
+    tc_interval *interval = NULL;
+    tc_interval_data data = {.struct_size = sizeof data};
+    tc_interval_options_init(&how);
+    how.low = -0.3, how.high = 0.4;
+    noise_fill();
+    tc_grid *grid = grid_open(context, true, 1);
+    *m = (moment){0, at, changes[change].make};
+    tc_status status = tc_extract_interval(grid, &how, &interval);
+    EXPECT(status == TC_OK || (status == TC_ERROR_DATA && *tc_message()), "%s, interval: status %d: %s",
+           changes[change].name, (int)status, tc_message());
+    if (!status) tc_interval_get(interval, &data);
+    uint64_t beyond = 0;
+    for (uint64_t n = 0; n < 4 * data.tetrahedron_count; n++) beyond += data.tetrahedra[n] >= data.vertex_count;
+    EXPECT(beyond == 0, "%s, interval, at call %d: %llu indices beyond the vertices", changes[change].name, at,
+           (unsigned long long)beyond);
+    tc_interval_destroy(interval);
+    tc_grid_destroy(grid);
+}
+
 static void complex_make(void) {
     tc_grid_options options;
     tc_grid_options_init(&options);
@@ -180,6 +202,7 @@ static void changes_try(tc_context *context, moment *m) {
                 if (changes[change].complex && (kind != 1 || method != TC_METHOD_TETRA)) continue;
                 if (changes[change].complex) complex_make();
                 extract_while_changing(context, change, kind, m, at);
+                if (changes[change].complex) complex_make(), interval_while_changing(context, change, m, at);
             }
 }
 

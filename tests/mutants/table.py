@@ -36,6 +36,11 @@ TESTS = {
     "test_interval, f32": test("surface/test_interval_device", "f32", ("alone",), device=True),
     "test_interval, groups": test("surface/test_interval_device", "f32", ("groups",), device=True),
     "test_interval, slabs": test("surface/test_interval_device", "slabs", ("alone",), device=True),
+    "test_interval_complex, u8": test("surface/test_interval_complex", "u8", ("alone",), device=True),
+    "test_interval_complex, f32": test("surface/test_interval_complex", "f32", ("alone",), device=True),
+    "test_interval_complex, groups": test("surface/test_interval_complex", "f32", ("groups",), device=True),
+    "test_interval_complex, slabs": test("surface/test_interval_complex", "slabs", ("alone",), device=True),
+    "test_changing, device": test("library/test_changing", "", ("device",), device=True),
     "test_measure": test("write/test_measure"),
     "test_grid_pieces, reference": test("surface/test_grid_pieces", arguments=("1", "40")),
     "test_grid_pieces, u8": test("surface/test_grid_pieces", arguments=("1", "40"), device=True),
@@ -152,6 +157,7 @@ DEVICE = ["test_random, u8", "test_rare, one sample"]
 SNAPPED = ["test_snap, u8"]
 WHOLE = ["test_whole, alone", "test_whole, refusals", "test_whole, orders", "test_whole, slabs"]
 CAPS = ["test_whole, alone", "test_whole, slabs"]
+INTERVAL = ["test_interval_complex, u8", "test_interval_complex, f32", "test_interval_complex, slabs"]
 READERS = ["test_read", "test_read_lenient", "test_nrrd_lenient", "test_dataset", "test_read_hostile"]
 LEGACY = ["test_vtk_legacy", "test_vtk_legacy_odd", "test_vtk_legacy_hostile"]
 
@@ -201,7 +207,9 @@ FILES = {
     "host/lib/tetrahedra/complex_surface.c": ["test_complex, u8"],
     "host/lib/tetrahedra/complex_plan.c": ["test_complex, u8", "test_complex_slabs"],
     "host/lib/opencl/buffers.c": ["test_complex, u8", "test_device, slabs", "test_device, copied slabs"],
-    "host/lib/tetrahedra/complex_slabs.c": ["test_complex_slabs"],
+    "host/lib/tetrahedra/complex_slab": ["test_complex_slabs"],
+    "host/lib/tetrahedra/complex_interval": INTERVAL,
+    "host/lib/tetrahedra/used_points": INTERVAL,
     "host/check/complex_check.c": ["test_complex_check"],
     "host/check/tetrahedra_measure.c": ["test_measure"],
     "host/check/": ["test_check", "test_check_blocks"],
@@ -243,6 +251,7 @@ FILES = {
     "kernels/complex_caps.cl": CAPS,
     "kernels/interval": ["test_interval, u8", "test_interval, f32"],
     "kernels/complex": ["test_complex, u8", "test_complex, f32"],
+    "kernels/complex_interval": ["test_interval_complex, u8", "test_interval_complex, f32"],
     "kernels/snap": SNAPPED,
     "kernels/regular_alone.cl": SNAPPED,
     "kernels/nearest": SNAPPED,

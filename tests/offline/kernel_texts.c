@@ -282,6 +282,9 @@ static void complex_programs(tc_context *context) {
         if (!device_makes_vertices(context, kind.type)) continue;
         snprintf(name, sizeof name, "complex-%s", type_names[type]);
         status_check(program_get(context, PROGRAM_COMPLEX, kind, &found));
+        const kernel_kind interval = {.grid = KIND_COMPLEX, .type = (tc_type)type, .emits = true, .interval = true};
+        snprintf(name, sizeof name, "complex-%s-interval", type_names[type]);
+        status_check(program_get(context, PROGRAM_COMPLEX_INTERVAL, interval, &found));
         snprintf(name, sizeof name, "whole-%s", type_names[type]);
         status_check(program_get(context, PROGRAM_WHOLE, kind, &found));
         for (int whole = 0; whole < 2; whole++) {

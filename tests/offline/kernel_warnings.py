@@ -27,7 +27,7 @@ SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybri
           "emit-f32-snap-curvilinear-missing-normals-closed",
           "emit-f32-hybrid-rectilinear-missing-normals-closed",
           "whole-f32", "complex-f32-closed", "whole-f32-closed", "labels-u16",
-          "interval-u8-uniform", "interval-f32-curvilinear-missing"]
+          "interval-u8-uniform", "interval-f32-curvilinear-missing", "complex-f32-interval"]
 
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals-closed"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")

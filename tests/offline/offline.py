@@ -29,8 +29,9 @@ SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybri
           "classify-u8-tetra-closed", "classify-f32-snap-missing-closed", "classify-u8-hybrid-missing-closed",
           "emit-u8-hybrid-uniform-closed", "emit-f32-tetra-uniform-closed",
           "emit-f32-snap-curvilinear-missing-normals-closed", "emit-f64-tetra-rectilinear-missing-normals-closed",
-          "whole-u8", "whole-f32", "complex-f32-closed", "whole-f32-closed", "interval-u8-uniform",
-          "interval-f32-curvilinear-missing", "interval-f64-rectilinear-missing",
+          "whole-u8", "whole-f32", "complex-u8-interval", "complex-f64-interval", "complex-f32-closed",
+          "whole-f32-closed", "interval-u8-uniform", "interval-f32-curvilinear-missing",
+          "interval-f64-rectilinear-missing",
           "labels-u8", "labels-u32"]
 
 # All work-items of a group: other sizes are compiled in the long tier, as samples.

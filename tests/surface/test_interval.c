@@ -1,5 +1,5 @@
 /*
- * test_interval.c - interval volumes of the reference engine: tetrahedra that fill what lies between two surfaces
+ * test_interval.c - interval volumes: tetrahedra that fill what lies between two surfaces
  *
  * Of two tetrahedra side by side all cases and all orders of their points; of random structured grids of all kinds and
  * types, with parts missing, and the grids of tetrahedra that they are cut into:
@@ -9,7 +9,11 @@
  *   quadrilaterals are cut, and the part within of the grid's own border, by its area;
  * - volumes sum up to what the grid's tetrahedra have within, computed from their values; none is inverted.
  *
+ * Of the reference engine; or of kernels, grids of tetrahedra alone, of two types and some of the orders. That kernels
+ * make the reference's bytes is looked at by test_interval_device and test_interval_complex.
+ *
  * Usage: test_interval [SEED [COUNT]]: a failure names the seed of its grid, `test_interval SEED 1` repeats it.
+ * test_interval alone|groups: by kernels.
  */
 #include "engines.h"
 #include "interval_facts.h"
@@ -23,6 +27,7 @@
 enum { SAMPLES_MAX = 20000 };
 
 static tc_context *context;
+static bool by_kernels;
 static double memory[SAMPLES_MAX]; /* aligned for every type */
 static float points[3 * SAMPLES_MAX], axes[3][600];
 static uint8_t blanked[SAMPLES_MAX];
@@ -213,7 +218,8 @@ static void pair_try(const uint32_t order[5], int digits) {
 }
 
 static void orders_try(uint32_t order[5], int n) {
-    if (n == 5)
+    static int order_count;
+    if (n == 5 && (!by_kernels || order_count++ % 13 == 0))
         for (int digits = 0; digits < 243; digits++) pair_try(order, digits);
     for (int m = n; m < 5; m++) {
         const uint32_t a = order[n], b = order[m];
@@ -274,7 +280,7 @@ static void grid_choose(tc_grid_options *g) {
     tc_grid_options_init(g);
     g->dims[0] = xs[random_below(random_below(4) ? 4 : 9)], g->dims[1] = ys[random_below(random_below(4) ? 3 : 6)];
     g->dims[2] = zs[random_below(6)];
-    g->type = (tc_type)random_below(8);
+    g->type = by_kernels ? (random_below(2) ? TC_U8 : TC_F32) : (tc_type)random_below(8);
     g->samples = memory;
     for (int axis = 0; axis < 3; axis++) g->first_index[axis] = random_below(2) ? 0 : (int64_t)random_below(7) - 3;
     if (random_below(2)) memcpy(g->matrix, sheared, sizeof sheared);
@@ -313,12 +319,12 @@ static void complex_try(const subject *structured, const tc_interval_options *ho
     tc_tetrahedra_grid_options_init(&o);
     o.point_count = s.point_count, o.points = s.points, o.type = s.type, o.samples = s.samples;
     o.tetrahedron_count = s.tetrahedron_count, o.tetrahedra = s.tetrahedra;
-    EXPECT(!tc_tetrahedra_grid_create(context, &o, &s.grid), "%s: %s", s.name, tc_message());
     if (s.type >= TC_F32) {
         const uint32_t point = random_below((uint32_t)s.point_count);
         sample_set(memory, s.type, point, (double)NAN);
         kept = without_point(&s, point);
     }
+    EXPECT(!tc_tetrahedra_grid_create(context, &o, &s.grid), "%s: %s", s.name, tc_message());
     expect_interval(&s, how, step);
     tc_grid_destroy(s.grid);
     free(kept);
@@ -339,11 +345,13 @@ static void run(uint64_t seed) {
                  points,       memory,
                  g.type,       (uint64_t)(g.dims[0] * g.dims[1] * g.dims[2]),
                  t.tetrahedra, t.tetrahedron_count};
-    EXPECT(!tc_grid_create(context, &g, &s.grid), "%s: %s", name, tc_message());
     const double step = 2e-7 * (double)(g.dims[0] + g.dims[1] + g.dims[2] + 10);
-    expect_interval(&s, &how, step);
-    tc_grid_destroy(s.grid);
-    if (seed % 3 == 0) complex_try(&s, &how, step);
+    if (!by_kernels) {
+        EXPECT(!tc_grid_create(context, &g, &s.grid), "%s: %s", name, tc_message());
+        expect_interval(&s, &how, step);
+        tc_grid_destroy(s.grid);
+    }
+    if (by_kernels || seed % 3 == 0) complex_try(&s, &how, step);
     tc_tetrahedra_release(&t);
 }
 
@@ -387,16 +395,26 @@ static void test_faults(void) {
            "sheets that differ are not told apart");
 }
 
+static tc_context *kernels_open(bool groups) {
+    tc_context_options options;
+    tc_expert_options expert;
+    options_init(&options, &expert);
+    expert.work_items = groups ? 64 : 1;
+    return context_open(&options);
+}
+
 int main(int argc, char **argv) {
-    const uint64_t first = argc > 1 ? strtoull(argv[1], NULL, 10) : 1;
+    const bool groups = argc > 1 && !strcmp(argv[1], "groups");
+    by_kernels = groups || (argc > 1 && !strcmp(argv[1], "alone"));
+    const uint64_t first = argc > 1 && !by_kernels ? strtoull(argv[1], NULL, 10) : 1;
     const uint64_t count = argc > 2 ? strtoull(argv[2], NULL, 10) : 60;
     uint32_t order[5] = {0, 1, 2, 3, 4};
-    context = reference_open();
-    if (argc < 2) {
-        test_faults();
-        test_refused();
-        orders_try(order, 0);
-    }
+    if (by_kernels && !device_exists()) return SKIPPED;
+    if (groups) groups_begin();
+    context = by_kernels ? kernels_open(groups) : reference_open();
+    if (argc < 2) test_faults();
+    if (argc < 2) test_refused();
+    if (argc < 2 || by_kernels) orders_try(order, 0);
     for (uint64_t n = 0; n < count; n++) run(first + n);
     printf("%" PRIu64 " tetrahedra, %" PRIu64 " grids with parts missing, %" PRIu64 " one-sided, %" PRIu64 " empty\n",
            tally.tetrahedra, tally.missing, tally.one_sided, tally.empty);

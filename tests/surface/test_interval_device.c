@@ -10,12 +10,11 @@
  * Usage: test_interval_device [alone|groups [SEED [COUNT]]]: a failure names the seed of its grid,
  * `test_interval_device groups SEED 1` repeats it.
  */
-#include "engines.h"
+#include "interval_engines.h"
 #include "random.h"
 #include "random_field.h"
 #include "samples.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 enum {
@@ -31,18 +30,7 @@ enum {
 static double memory[SAMPLES_MAX]; /* aligned for every type */
 static float points[3 * SAMPLES_MAX], axes[3][400];
 static uint8_t blanked[SAMPLES_MAX];
-static struct tally { uint64_t volumes, missing, slabs, bounded; } tally;
-
-enum { REFERENCE, DEVICE, COPYING, CONTEXTS };
-
-typedef struct engine {
-    tc_context *context;
-    tc_grid *grid;
-    tc_interval *interval;
-    tc_interval_data data;
-} engine;
-
-static engine engines[CONTEXTS];
+static uint64_t missing_count;
 
 /* ----------------------------------------------------------------------------------------------------------- grids */
 
@@ -104,97 +92,13 @@ static void grid_choose(tc_grid_options *g) {
     if (g->type == TC_F32) g->points = points;
     for (int axis = 0; axis < 3 && g->type == TC_F64; axis++) g->axes[axis] = axes[axis];
     if (g->type == TC_F32) parts_remove(g);
-    tally.missing += g->type == TC_F32;
-}
-
-static void range_choose(tc_interval_options *o) {
-    static const double far[] = {-5, -1e30, -1e300, 300, 1e30, 1e300};
-    tc_interval_options_init(o);
-    const uint32_t kind = random_below(8);
-    if (kind) o->low = kind == 1 ? far[random_below(3)] : 58 + 0.5 * (double)random_below(8);
-    if (kind != 2) o->high = kind == 3 ? far[3 + random_below(3)] : 60 + 0.5 * (double)(1 + random_below(8));
-    if (!(o->low < o->high)) o->high = o->low + 0.5;
+    missing_count += g->type == TC_F32;
 }
 
 /* --------------------------------------------------------------------------------------------------------- volumes */
 
-static bool interval_make(engine *e, const tc_interval_options *how, const char *name) {
-    e->data = (tc_interval_data){.struct_size = sizeof e->data};
-    tc_status status = tc_extract_interval(e->grid, how, &e->interval);
-    if (!status) status = tc_interval_get(e->interval, &e->data);
-    EXPECT(!status, "%s: %s", name, tc_message());
-    return !status;
-}
-
-static void expect_count(engine *e, const tc_interval_options *how, const tc_interval_data *d, const char *name) {
-    tc_interval_counts c = {.struct_size = sizeof c};
-    EXPECT(!tc_count_interval(e->grid, how, &c), "%s: %s", name, tc_message());
-    EXPECT(c.sample_count == d->sample_count && c.low_count == d->low_count && c.high_count == d->high_count &&
-               c.tetrahedron_count == d->tetrahedron_count,
-           "%s: counted %" PRIu64 " + %" PRIu64 " + %" PRIu64 " vertices, %" PRIu64 " tetrahedra", name, c.sample_count,
-           c.low_count, c.high_count, c.tetrahedron_count);
-}
-
-static void expect_same(const tc_interval_data *a, const tc_interval_data *b, const char *name, const char *how) {
-    EXPECT(a->sample_count == b->sample_count && a->low_count == b->low_count && a->high_count == b->high_count &&
-               a->tetrahedron_count == b->tetrahedron_count,
-           "%s, %s: sizes differ", name, how);
-    if (a->vertex_count != b->vertex_count || a->tetrahedron_count != b->tetrahedron_count) return;
-    for (uint64_t n = 0; n < 3 * a->vertex_count; n++)
-        if (memcmp(&a->positions[n], &b->positions[n], sizeof(float))) {
-            EXPECT(false, "%s, %s: vertex %" PRIu64 " of %" PRIu64 " differs", name, how, n / 3, a->vertex_count);
-            break;
-        }
-    for (uint64_t n = 0; n < 4 * a->tetrahedron_count; n++)
-        if (a->tetrahedra[n] != b->tetrahedra[n]) {
-            EXPECT(false, "%s, %s: tetrahedron %" PRIu64 " of %" PRIu64 " differs", name, how, n / 4,
-                   a->tetrahedron_count);
-            break;
-        }
-}
-
-static void grids_open(const tc_grid_options *g, const char *name) {
-    for (int n = 0; n < CONTEXTS; n++)
-        EXPECT(!tc_grid_create(engines[n].context, g, &engines[n].grid), "%s: %s", name, tc_message());
-}
-
-static void grids_close(void) {
-    for (int n = 0; n < CONTEXTS; n++) {
-        tc_grid_destroy(engines[n].grid);
-        engines[n].grid = NULL;
-    }
-}
-
-/* With hardly enough memory: the same bytes, by buffers that fit. What a refusal advises is enough, at the latest. */
-static void expect_bounded(const tc_context_options *usual, const tc_grid_options *g, const tc_interval_options *how,
-                           const tc_interval_data *expected, const char *name) {
-    tc_context_options options = *usual;
-    uint64_t budget = 40000;
-    for (int attempt = 0; attempt < 20; attempt++) {
-        engine e = {0};
-        options.max_memory_bytes = budget;
-        e.context = context_open(&options);
-        tc_status status = tc_grid_create(e.context, g, &e.grid);
-        if (!status) status = tc_extract_interval(e.grid, how, &e.interval);
-        if (!status) {
-            e.data.struct_size = sizeof e.data;
-            tc_interval_get(e.interval, &e.data);
-            expect_same(expected, &e.data, name, "bounded");
-            expect_within(e.context, budget, name);
-            tally.slabs += e.data.slab_count > 1, tally.bounded++;
-        } else {
-            EXPECT(status == TC_ERROR_MEMORY, "%s, %" PRIu64 " bytes: %s", name, budget, tc_message());
-            const uint64_t advised = bytes_advised(name);
-            EXPECT(advised > budget, "%s: %" PRIu64 " bytes are too few, and %" PRIu64 " are advised", name, budget,
-                   advised);
-            budget += budget / 3 < advised - budget ? budget / 3 : advised - budget;
-        }
-        tc_interval_destroy(e.interval);
-        tc_grid_destroy(e.grid);
-        tc_context_destroy(e.context);
-        if (!status) return;
-    }
-    EXPECT(false, "%s: no budget is enough", name);
+static tc_status grid_make(tc_context *context, const void *options, tc_grid **grid) {
+    return tc_grid_create(context, options, grid);
 }
 
 static void run(uint64_t seed, const tc_context_options *copying) {
@@ -205,19 +109,15 @@ static void run(uint64_t seed, const tc_context_options *copying) {
     grid_choose(&g);
     snprintf(name, sizeof name, "%s", tc_type_name(g.type));
     if (!test_chosen(name)) return;
-    grids_open(&g, name);
+    grids_open(grid_make, &g, name);
     for (int n = 0; n < RANGES; n++) {
         range_choose(&how);
         snprintf(name, sizeof name, "seed %" PRIu64 ": %lldx%lldx%lld %s, %g to %g", seed, (long long)g.dims[0],
                  (long long)g.dims[1], (long long)g.dims[2], tc_type_name(g.type), how.low, how.high);
         const tc_interval_data *expected = &engines[REFERENCE].data;
         if (!interval_make(&engines[REFERENCE], &how, name)) continue;
-        if (random_below(2)) expect_count(&engines[DEVICE], &how, expected, name);
-        for (int m = DEVICE; m < CONTEXTS; m++)
-            if (interval_make(&engines[m], &how, name))
-                expect_same(expected, &engines[m].data, name, m == COPYING ? "copied" : "in place");
-        tally.volumes++;
-        if (n == 0 && seed % 4 == 0) expect_bounded(copying, &g, &how, expected, name);
+        expect_engines(&how, random_below(2), name);
+        if (n == 0 && seed % 4 == 0) expect_bounded(copying, grid_make, &g, &how, expected, name);
     }
     grids_close();
 }
@@ -239,9 +139,9 @@ static void test_slabs(const tc_context_options *copying) {
         for (int64_t n = 0; n < SAMPLES_MAX && !kind; n++) /* bricks that have nothing, between others */
             if (n / 64 % 40 >= 20 && n / 64 % 40 < 35) ((uint8_t *)memory)[n] = 20;
         if (kind) g.points = points, ((float *)memory)[64 * 40 * 300 + 1000] = NAN;
-        grids_open(&g, name);
+        grids_open(grid_make, &g, name);
         if (interval_make(&engines[REFERENCE], &how, name))
-            expect_bounded(copying, &g, &how, &engines[REFERENCE].data, name);
+            expect_bounded(copying, grid_make, &g, &how, &engines[REFERENCE].data, name);
         grids_close();
     }
 }
@@ -253,24 +153,14 @@ int main(int argc, char **argv) {
     tc_context_options options;
     tc_expert_options expert;
     if (!device_exists()) return SKIPPED;
-    options_init(&options, &expert);
-    engines[REFERENCE].context = reference_open();
-    expert.work_items = groups ? 64 : 1;
-    expert.tile_bricks = 3;
-    engines[DEVICE].context = context_open(&options);
-    expert.spin_limit = 1;
-    expert.always_copy = 1;
-    engines[COPYING].context = context_open(&options);
+    engines_open(groups, &options, &expert);
     for (uint64_t n = 0; n < count; n++) run(first + n, &options);
     if (argc < 3 && test_chosen("slabs")) test_slabs(&options);
-    for (int n = 0; n < CONTEXTS; n++) {
-        tc_interval_destroy(engines[n].interval);
-        tc_context_destroy(engines[n].context);
-    }
+    engines_close();
     printf("%" PRIu64 " volumes, %" PRIu64 " grids with parts missing, %" PRIu64 " bounded, %" PRIu64
            " of them in slabs\n",
-           tally.volumes, tally.missing, tally.bounded, tally.slabs);
+           engine_tally.volumes, missing_count, engine_tally.bounded, engine_tally.slabs);
     if (argc < 3 && !getenv("TEST_ONLY"))
-        EXPECT(tally.missing && tally.slabs, "no grid with parts missing, or none in slabs");
+        EXPECT(missing_count && engine_tally.slabs, "no grid with parts missing, or none in slabs");
     return EXPECT_DONE();
 }

@@ -136,14 +136,12 @@ class Isovolume(GridCase):
         self.assertRegex(empty.stderr, "no part of the grid lies within")
         self.assertEqual(len(read_vtu(out)["Points"]), 0)
 
-    def test_unstructured_wants_the_reference(self):
-        if not tool_case.HAS_DEVICE:
-            self.skipTest("needs a device")
+    def test_unstructured(self):
         grid = self.write("h.vtu", vtu_text(lattice((3, 3, 3)), hexahedra((3, 3, 3)), [HEXAHEDRON] * 8,
                                             [("x", "f32", [float(p[0]) for p in lattice((3, 3, 3))])]))
-        self.refuses(1, "isovolume", grid, "--range", "0.5,1", says="reference engine")
-        result = self.expect(0, "isovolume", grid, "--range", "0.5,1", "--engine", "auto", says="takes over")
+        result = self.expect(0, "isovolume", grid, "--range", "0.5,1", "--carry", "x", "--check", "--verify", *self.engine)
         self.assertIn("volume      2\n", result.stdout)
+        self.assertRegex(result.stdout, r"carried +x: mean 0\.75, ")
 
 
 if __name__ == "__main__":

@@ -80,7 +80,15 @@ void complex_release(tc_grid *grid) {
     complex_grid *c = grid->complex;
     if (!c) return;
     free(c->own_points);
+    free(c->used_points);
     free(c);
+}
+
+bool complex_has_gaps(const tc_grid *grid) {
+    uint32_t gaps = 0;
+    for (uint32_t n = 0; n < grid->complex->point_count && type_is_real(grid->type); n++)
+        gaps |= complex_point_missing(grid, n);
+    return gaps;
 }
 
 tc_status complex_point_fail(const complex_grid *c) {
@@ -95,4 +103,8 @@ tc_status complex_point_fail(const complex_grid *c) {
 kernel_kind complex_kind(const tc_grid *grid, const tc_extract_options *options, bool emits) {
     return (kernel_kind){
         .grid = KIND_COMPLEX, .type = grid->type, .method = options->method, .emits = emits, .closed = options->closed};
+}
+
+kernel_kind complex_interval_kind(const tc_grid *grid) {
+    return (kernel_kind){.grid = KIND_COMPLEX, .type = grid->type, .emits = true, .interval = true};
 }

@@ -9,6 +9,7 @@
 #include "grid/carry.h"
 #include "grid/grid.h"
 #include "grid/inside.h"
+#include "grid/interval.h"
 #include "grid/mesh.h"
 
 /* What the device has of a complex: all of it, or a slab. */
@@ -42,8 +43,10 @@ typedef struct complex_grid {
 
     /* Under an OpenCL engine: */
     complex_part part;
-    struct complex_slabs *slabs; /* how it is cut; NULL: the device has it whole */
-    double classified_isovalue;  /* where context->classified_grid is this grid */
+    struct complex_slabs *slabs;          /* how it is cut; NULL: the device has it whole */
+    struct complex_slabs *interval_slabs; /* the same for interval volumes */
+    uint64_t *used_points;      /* a bit for each point that a present tetrahedron has; NULL: not asked for yet */
+    double classified_isovalue; /* where context->classified_grid is this grid */
     tc_method classified_method;
     bool classified_closed;
     surface_size size;              /* of the surface there */
@@ -54,6 +57,9 @@ typedef struct complex_grid {
 
 /* The kind of its kernels: one program for each method, tried with emission or without. */
 kernel_kind complex_kind(const tc_grid *grid, const tc_extract_options *options, bool emits);
+
+/* The same of interval volumes. */
+kernel_kind complex_interval_kind(const tc_grid *grid);
 
 /* Whether there are kernels for the method; hybrid needs the cells. */
 bool complex_has_kernels(const tc_grid *grid, const tc_extract_options *options);
@@ -84,6 +90,13 @@ tc_status complex_cell_get(const complex_grid *c, uint32_t tetrahedron, whole_ce
 /* TC_ERROR_ARGUMENT for cells that cannot be those of the tetrahedra. */
 tc_status complex_cells_take(const tc_tetrahedra_grid_options *options, complex_grid *c);
 
+/* Whether the sample at a point is missing; whether any is. */
+static inline bool complex_point_missing(const tc_grid *grid, uint32_t point) {
+    if (grid->type == TC_F32) return !isfinite(((const float *)grid->samples)[point]);
+    return grid->type == TC_F64 && !isfinite(((const double *)grid->samples)[point]);
+}
+bool complex_has_gaps(const tc_grid *grid);
+
 /* Records the error for a tetrahedron with an invalid point number. */
 tc_status complex_point_fail(const complex_grid *c);
 
@@ -103,7 +116,15 @@ bool complex_is_classified(const tc_grid *grid, const tc_extract_options *option
 tc_status complex_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                                uint64_t *vertex_count);
 
-/* The same by the scalar reference (reference_complex.c). */
+/* Interval volumes on the device path (complex_interval.c): as tc_count_interval and tc_extract_interval, with
+ * arguments checked and kernels vetted. A field carried to the vertices at points alone, as many as there is room for;
+ * *count: how many there are. */
+tc_status complex_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+                                 double *classify_ms);
+tc_status complex_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval);
+tc_status complex_interval_carry(tc_grid *grid, const tc_interval_options *options, const carry *c, uint64_t *count);
+
+/* Surfaces by the scalar reference (reference_complex.c). */
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);
 tc_status reference_complex_extract(const tc_grid *grid, const tc_extract_options *options, tc_mesh *mesh);
 tc_status reference_complex_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,

@@ -4,8 +4,20 @@
 #include "failure.h"
 #include "host_memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+bool interval_bounds_find(tc_type type, const tc_interval_options *options, inside_range inside[BOUND_COUNT],
+                          bool exists[BOUND_COUNT]) {
+    const bool has_low = !isinf(options->low), has_high = !isinf(options->high);
+    if (has_low) inside[BOUND_LOW] = inside_range_of(type, options->low);
+    if (has_high) inside[BOUND_HIGH] = inside_range_of(type, options->high);
+    exists[BOUND_LOW] = has_low && !inside[BOUND_LOW].uniform;
+    exists[BOUND_HIGH] = has_high && !inside[BOUND_HIGH].uniform;
+    return !(has_low && inside[BOUND_LOW].uniform && !inside[BOUND_LOW].inside) &&
+           !(has_high && inside[BOUND_HIGH].uniform && inside[BOUND_HIGH].inside);
+}
 
 uint64_t interval_first(const interval_size *size, int block) {
     uint64_t first = 0;

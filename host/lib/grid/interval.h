@@ -5,9 +5,12 @@
 #define INTERVAL_H
 
 #include "base/host_block.h"
+#include "grid/inside.h"
 #include "tetracubes.h"
 
 enum { TETRAHEDRON_BYTES = 16 };
+
+enum { BOUND_LOW, BOUND_HIGH, BOUND_COUNT };
 
 /* Vertices lie in blocks: samples within, crossings of the low bound, crossings of the high bound. */
 enum { BLOCK_SAMPLES, BLOCK_LOW, BLOCK_HIGH, BLOCK_COUNT };
@@ -24,6 +27,10 @@ struct tc_interval {
     uint32_t slab_count;
     tc_timings timings;
 };
+
+/* Whether samples of the type can be within; and which bounds separate any, with their tests. */
+bool interval_bounds_find(tc_type type, const tc_interval_options *options, inside_range inside[BOUND_COUNT],
+                          bool exists[BOUND_COUNT]);
 
 /* The number of a block's first vertex; of BLOCK_COUNT: of all vertices. */
 uint64_t interval_first(const interval_size *size, int block);

@@ -56,6 +56,12 @@ typedef struct complex_buffers {
     device_buffer cap_numbers, cap_firsts, cap_tiles; /* closed surfaces */
 } complex_buffers;
 
+/* What an interval volume of a complex takes beside its two surfaces: what kernel 1 finds, the volume. */
+typedef struct volume_buffers {
+    device_buffer clusters, points, used, state, cases;
+    device_buffer positions, tetrahedra;
+} volume_buffers;
+
 /* Of label maps: samples of a slab, results of kernel 1, and the mesh. */
 typedef struct label_buffers {
     device_buffer samples, words, offsets, bases, rows, active, state;
@@ -80,6 +86,8 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
+    complex_buffers complex_high; /* the surface of an interval volume's high bound */
+    volume_buffers volume;
     label_buffers labels;
     interval_buffers interval;
     device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */

@@ -17,7 +17,7 @@ typedef struct kernel_kind {
     channel_set made;    /* by kernel 2 */
     bool missing, emits; /* emits: kernel 2 too */
     bool closed;         /* surfaces are closed */
-    bool interval;       /* of structured grids: an interval volume is made, by TC_METHOD_TETRA */
+    bool interval;       /* an interval volume is made, by TC_METHOD_TETRA */
 } kernel_kind;
 
 enum {

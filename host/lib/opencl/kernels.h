@@ -25,7 +25,7 @@ typedef struct kernels {
 tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out);
 
 /* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID. */
-tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[CLOSED_KERNELS]);
+tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[ALL_COMPLEX_KERNELS]);
 
 /* Of label maps: kernel 1 and kernel 2. */
 enum { LABEL_CLASSIFY, LABEL_EMIT, LABEL_KERNELS };

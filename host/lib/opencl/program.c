@@ -44,16 +44,19 @@ static void emit_options_write(const tc_context *context, kernel_kind kind, unsi
              grid, context->info.has_fp64 ? " -DFP64=1" : "");
 }
 
-/* Complexes are always built for missing samples: an item that has one is never active. CAPS is looked at by no file.
- */
+/* Complexes are always built for missing samples: an item that has one is never active. CAPS and INTERVAL are looked at
+ * by no file. */
 static void complex_options_write(const tc_context *context, program_name name, kernel_kind kind, char *out,
                                   size_t bytes) {
-    const bool caps = name == PROGRAM_COMPLEX_CAPS;
+    const bool caps = name == PROGRAM_COMPLEX_CAPS, interval = name == PROGRAM_COMPLEX_INTERVAL;
     const bool whole = name == PROGRAM_WHOLE || (caps && kind.method == TC_METHOD_HYBRID);
     const kernel_kind built = {.type = kind.type, .missing = true};
     char common[PROGRAM_OPTIONS_BYTES - 48];
     emit_options_write(context, built, 0, common, sizeof common);
-    snprintf(out, bytes, "%s -DCOMPLEX=1%s%s", common, whole ? " -DWHOLE=1" : "", caps ? " -DCAPS=1" : "");
+    snprintf(out, bytes, "%s -DCOMPLEX=1%s%s", common, whole ? " -DWHOLE=1" : "",
+             caps       ? " -DCAPS=1"
+             : interval ? " -DINTERVAL=1"
+                        : "");
 }
 
 /* A definition that no file looks at tells the program from the one of kernel 2. Closed surfaces need no other one. */
@@ -132,6 +135,9 @@ static const program_sources programs[PROGRAM_COUNT] = {
     [PROGRAM_COMPLEX_CAPS] =
         {{"caps_count", "caps_emit"},
          {[VARIANT_ALONE] = kernel_complex_caps_alone, [VARIANT_GROUPS] = kernel_complex_caps_groups}},
+    [PROGRAM_COMPLEX_INTERVAL] =
+        {{"complex_interval_count", "complex_interval_crossings", "complex_interval_emit"},
+         {[VARIANT_ALONE] = kernel_complex_interval_alone, [VARIANT_GROUPS] = kernel_complex_interval_groups}},
     [PROGRAM_LABELS] = {{"label_classify", "label_emit"},
                         {[VARIANT_ALONE] = kernel_labels_alone, [VARIANT_GROUPS] = kernel_labels_groups}},
     [PROGRAM_INTERVAL] = {{"interval_count", "interval_emit"},

@@ -13,7 +13,8 @@ typedef enum program_name {
     PROGRAM_SNAP,
     PROGRAM_COMPLEX,
     PROGRAM_WHOLE,
-    PROGRAM_COMPLEX_CAPS, /* what closes surfaces of these two */
+    PROGRAM_COMPLEX_CAPS,     /* what closes surfaces of these two */
+    PROGRAM_COMPLEX_INTERVAL, /* between two surfaces of the first */
     PROGRAM_LABELS,
     PROGRAM_INTERVAL,
     PROGRAM_COUNT

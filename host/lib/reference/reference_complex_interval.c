@@ -11,8 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { BOUND_LOW, BOUND_HIGH, BOUND_COUNT };
-
 typedef struct interval_run {
     const tc_grid *grid;
     reference bounds[BOUND_COUNT];
@@ -64,6 +62,7 @@ static tc_status part_emit(interval_run *v, const uint32_t points[4], const uint
         const unsigned vertex = part[is_odd && m > 1 ? 5 - m : m];
         if (vertex < INTERVAL_LOW) {
             out[m] = v->point_numbers[sorted[vertex]];
+            if (out[m] == NO_NUMBER) return reference_complex_change_fail();
             continue;
         }
         const int bound = vertex < INTERVAL_HIGH ? BOUND_LOW : BOUND_HIGH;

@@ -13,8 +13,6 @@
 
 #include <stdlib.h>
 
-enum { BOUND_LOW, BOUND_HIGH, BOUND_COUNT };
-
 typedef struct interval_run {
     reference bounds[BOUND_COUNT]; /* the surfaces; their signs tell where a sample is */
     tc_mesh surfaces[BOUND_COUNT]; /* their vertices' place in the interval volume */

@@ -370,6 +370,7 @@ static tc_status mapping_close(tc_context *context, mapping *m, tc_status status
         tc_status ended = buffer_unmap(context, m->buffers[n], m->memory[n]);
         if (ended) status = ended;
     }
+    cl->Finish(context->queue);
     return status;
 }
 

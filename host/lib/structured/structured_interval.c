@@ -255,18 +255,6 @@ tc_status interval_classify(interval_run *r, uint32_t n) {
 /* ------------------------------------------------------------------------------------------------------------ calls
  */
 
-/* Whether samples of the type can be within; and which bounds separate any. */
-static bool bounds_find(const tc_grid *grid, const tc_interval_options *options, inside_range inside[BOUND_COUNT],
-                        bool exists[BOUND_COUNT]) {
-    const bool has_low = !isinf(options->low), has_high = !isinf(options->high);
-    if (has_low) inside[BOUND_LOW] = inside_range_of(grid->type, options->low);
-    if (has_high) inside[BOUND_HIGH] = inside_range_of(grid->type, options->high);
-    exists[BOUND_LOW] = has_low && !inside[BOUND_LOW].uniform;
-    exists[BOUND_HIGH] = has_high && !inside[BOUND_HIGH].uniform;
-    return !(has_low && inside[BOUND_LOW].uniform && !inside[BOUND_LOW].inside) &&
-           !(has_high && inside[BOUND_HIGH].uniform && inside[BOUND_HIGH].inside);
-}
-
 static tc_status host_reserve(interval_run *r) {
     const size_t bricks = interval_slab_window(&r->plan, 0) * (size_t)plan_bricks_per_layer(&r->plan.tiles);
     bool is_there = (r->bricks = malloc(bricks * sizeof *r->bricks)) != NULL;
@@ -341,7 +329,7 @@ static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_int
                         .share = share,
                         .start_ms = clock_ms()};
     *size = (interval_size){{0}, 0};
-    if (!bounds_find(grid, options, inside, r->exists)) return TC_OK;
+    if (!interval_bounds_find(grid->type, options, inside, r->exists)) return TC_OK;
     if (!r->exists[BOUND_LOW] && !r->exists[BOUND_HIGH] && type_is_real(grid->type)) grid->device->missing = true;
     tc_status status = interval_begin(r, grid, options, inside);
     if (!status) status = interval_slabs_count(r, size);

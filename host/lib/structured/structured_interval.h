@@ -13,8 +13,6 @@
 #include "interval_job.h"
 #include "structured/structured_run.h"
 
-enum { BOUND_LOW, BOUND_HIGH, BOUND_COUNT };
-
 typedef struct interval_plan {
     slab_plan tiles; /* of kernel 1; its slabs are windows */
     uint32_t slab_layers, slab_count;

@@ -49,11 +49,6 @@ static tc_status memory_fail(void) { return (tc_status)fail(TC_ERROR_MEMORY, "no
 
 /* -------------------------------------------------------------------------------------------------------- presence */
 
-static bool is_missing(const tc_grid *grid, uint32_t point) {
-    if (grid->type == TC_F32) return !isfinite(((const float *)grid->samples)[point]);
-    return grid->type == TC_F64 && !isfinite(((const double *)grid->samples)[point]);
-}
-
 /* The end of a tetrahedron's cell; by method tetra it is one by itself. */
 static uint64_t run_end(const search *s, uint64_t n) {
     const uint32_t cell = s->keeps_cells ? s->c->cells[n] : 0;
@@ -73,14 +68,8 @@ static bool run_is_present(const search *s, uint64_t first, uint64_t end) {
     const uint32_t *points = s->c->tetrahedra;
     bool missing = false;
     for (uint64_t n = 4 * first; n < 4 * end; n++)
-        missing = missing || (points[n] < s->c->point_count && is_missing(s->grid, points[n]));
+        missing = missing || (points[n] < s->c->point_count && complex_point_missing(s->grid, points[n]));
     return !missing;
-}
-
-static bool gaps_exist(const tc_grid *grid) {
-    uint32_t gaps = 0;
-    for (uint32_t n = 0; n < grid->complex->point_count && type_is_real(grid->type); n++) gaps |= is_missing(grid, n);
-    return gaps;
 }
 
 typedef bool run_visit(search *s, uint64_t share, uint64_t first, uint64_t end);
@@ -343,7 +332,7 @@ static tc_status points_list(search *s) {
 }
 
 static tc_status search_run(search *s) {
-    s->has_gaps = gaps_exist(s->grid);
+    s->has_gaps = complex_has_gaps(s->grid);
     s->hashes = calloc((size_t)s->c->point_count, sizeof *s->hashes);
     s->shares = calloc((size_t)s->share_count + 1, sizeof *s->shares);
     if (!s->hashes || !s->shares) return memory_fail();

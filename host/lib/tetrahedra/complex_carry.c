@@ -126,6 +126,7 @@ static tc_status workspace_carry(carry_job *j, bool whole) {
     tc_status ended = buffer_unmap(context, &w->active, active);
     if (!status) status = ended;
     ended = buffer_unmap(context, &w->tiles, tiles);
+    cl->Finish(context->queue);
     return status ? status : ended;
 }
 

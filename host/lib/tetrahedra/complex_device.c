@@ -37,9 +37,9 @@ void complex_device_destroy(tc_grid *grid) {
     whole_cells_release(grid);
     for (int n = 0; n < 2; n++) border_list_release(grid->context, grid->complex->borders[n]);
     if (grid->context->classified_grid == grid) grid->context->classified_grid = NULL;
-    if (slabs) free(slabs->ranges);
     if (slabs) edge_numbers_release(&slabs->edges);
-    free(slabs);
+    complex_slabs_release(slabs);
+    complex_slabs_release(grid->complex->interval_slabs);
 }
 
 /* Cuts a complex into slabs that the device has held whole so far, as its surface does not fit. */

@@ -3,15 +3,17 @@
  *
  * Beside the caller's arrays: about two bytes per tetrahedron before the surface is known; then up to 190 bytes per
  * active tetrahedron, mesh included, for four crossed edges, each with a vertex of its own, and two triangles. For
- * slabs every tetrahedron counts as active.
+ * slabs every tetrahedron counts as active; for those of interval volumes by both bounds, with six tetrahedra of the
+ * volume.
  */
+#include "complex_interval_job.h"
 #include "tetrahedra/complex_run.h"
 
 #include "failure.h"
 
 #include <stdlib.h>
 
-/* Sums of the scan, four slots per tetrahedron among them, take 30 bits. */
+/* Sums of the scan, four slots per tetrahedron or six tetrahedra of an interval volume among them, take 30 bits. */
 static const uint64_t slab_tetrahedra_most = UINT64_C(1) << 27, whole_tetrahedra_most = UINT64_C(1) << 28;
 
 typedef struct device_need {
@@ -54,16 +56,35 @@ static device_need part_need(const tc_grid *grid, uint64_t points, uint64_t tetr
     return need;
 }
 
-/* The largest surface, with its mesh. */
-static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+/* The largest surface, without its mesh. */
+static void edges_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
     uint64_t entries = 64;
     while (entries < 8 * tetrahedra) entries *= 2;
     need_add(need, sizeof(active_tetrahedron) * tetrahedra);
     need_add(need, 16 * tetrahedra); /* entries of its edges */
     need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
     need_add(need, 4 * entries);
+}
+
+static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+    edges_add(grid, tetrahedra, need);
     need_add(need, 4 * CHANNEL_BYTES * tetrahedra);
     need_add(need, 2 * TRIANGLE_BYTES * tetrahedra);
+}
+
+/* The largest interval volume of a slab. */
+static void interval_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+    const uint64_t clusters = complex_cluster_count(tetrahedra), tiles = clusters / complex_tile_clusters(grid) + 1;
+    edges_add(grid, tetrahedra, need);
+    edges_add(grid, tetrahedra, need);
+    need_add(need, (sizeof(cluster_state) + 4) * clusters); /* of the second bound */
+    need_add(need, 4 * (HEAD_WORDS + TILE_WORDS * tiles));
+    need_add(need, 16 * CASE_BYTES);
+    need_add(need, sizeof(volume_cluster) * clusters);
+    need_add(need, 4 * (VOLUME_HEAD_WORDS + TILE_WORDS * tiles));
+    need_add(need, VOLUME_TABLE_BYTES);
+    need_add(need, 2 * 4 * CHANNEL_BYTES * tetrahedra);
+    need_add(need, 6 * TETRAHEDRON_BYTES * tetrahedra);
 }
 
 static bool need_fits(const tc_context *context, device_need need) {
@@ -76,23 +97,28 @@ bool complex_fits(const tc_grid *grid) {
            need_fits(grid->context, part_need(grid, c->point_count, c->tetrahedron_count));
 }
 
-static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points_whole) {
+bool complex_interval_sums_fit(const tc_grid *grid) { return grid->complex->tetrahedron_count <= slab_tetrahedra_most; }
+
+static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points_whole, bool interval) {
     const complex_grid *c = grid->complex;
     uint64_t tetrahedra = CLUSTER_TETRAHEDRA * clusters, points = c->point_count;
     if (tetrahedra > c->tetrahedron_count) tetrahedra = c->tetrahedron_count;
     if (!points_whole && 4 * tetrahedra < points) points = 4 * tetrahedra;
     device_need need = part_need(grid, points, tetrahedra);
-    surface_add(grid, tetrahedra, &need);
+    if (interval)
+        interval_add(grid, tetrahedra, &need);
+    else
+        surface_add(grid, tetrahedra, &need);
     return need;
 }
 
 /* Most clusters per slab that fit, by bisection; 0 where not even one does. */
-static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
+static uint32_t clusters_fit(const tc_grid *grid, bool points_whole, bool interval) {
     uint32_t low = 0, high = complex_cluster_count(grid->complex->tetrahedron_count);
     if (high > slab_tetrahedra_most / CLUSTER_TETRAHEDRA) high = (uint32_t)(slab_tetrahedra_most / CLUSTER_TETRAHEDRA);
     while (low < high) {
         const uint32_t middle = high - (high - low) / 2;
-        if (need_fits(grid->context, slab_need(grid, middle, points_whole)))
+        if (need_fits(grid->context, slab_need(grid, middle, points_whole, interval)))
             low = middle;
         else
             high = middle - 1;
@@ -100,8 +126,8 @@ static uint32_t clusters_fit(const tc_grid *grid, bool points_whole) {
     return low;
 }
 
-static tc_status cut_refuse(const tc_grid *grid) {
-    const device_need need = slab_need(grid, 1, false);
+static tc_status cut_refuse(const tc_grid *grid, bool interval) {
+    const device_need need = slab_need(grid, 1, false, interval);
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "the smallest slab of these tetrahedra needs %llu bytes of device memory, and the budget is "
                            "%llu: allow %llu or, to be faster, much more",
@@ -109,20 +135,31 @@ static tc_status cut_refuse(const tc_grid *grid) {
                            (unsigned long long)need.bytes);
 }
 
-tc_status complex_cut(tc_grid *grid) {
-    complex_grid *c = grid->complex;
-    const uint32_t clusters = complex_cluster_count(c->tetrahedron_count);
-    const uint32_t local = clusters_fit(grid, false), whole = clusters_fit(grid, true);
-    if (!local) return cut_refuse(grid);
+static tc_status slabs_make(const tc_grid *grid, bool interval, struct complex_slabs **out) {
+    const uint32_t clusters = complex_cluster_count(grid->complex->tetrahedron_count);
+    const uint32_t local = clusters_fit(grid, false, interval), whole = clusters_fit(grid, true, interval);
+    if (!local) return cut_refuse(grid, interval);
     struct complex_slabs *slabs = calloc(1, sizeof *slabs);
     if (slabs) slabs->ranges = malloc(sizeof *slabs->ranges * (size_t)clusters);
     if (!slabs || !slabs->ranges) {
         free(slabs);
         return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the ranges of clusters");
     }
-    slabs->points_whole = whole > 0 && whole >= local / 4; /* points of their own cost more than smaller slabs do */
+    /* Points of their own cost more than smaller slabs do. Of interval volumes, points share their numbers with
+     * vertices. */
+    slabs->points_whole =
+        whole > 0 && whole >= local / 4 && (!interval || grid->complex->point_count <= UINT32_MAX / 2);
     slabs->slab_clusters = slabs->points_whole ? whole : local;
     slabs->slab_count = (clusters + slabs->slab_clusters - 1) / slabs->slab_clusters;
-    c->slabs = slabs;
+    *out = slabs;
     return TC_OK;
 }
+
+void complex_slabs_release(struct complex_slabs *slabs) {
+    if (slabs) free(slabs->ranges);
+    free(slabs);
+}
+
+tc_status complex_cut(tc_grid *grid) { return slabs_make(grid, false, &grid->complex->slabs); }
+
+tc_status complex_interval_cut(tc_grid *grid) { return slabs_make(grid, true, &grid->complex->interval_slabs); }

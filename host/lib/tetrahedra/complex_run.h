@@ -39,9 +39,14 @@ bool complex_fits(const tc_grid *grid);
 /* Brings the arrays of a complex that is not cut to the device, where they are not there. */
 tc_status complex_arrays_provide(tc_grid *grid);
 
-/* Cuts the complex, which is not cut yet. TC_ERROR_MEMORY, with what would be needed, where the least slab is too
- * large: nothing has changed then. */
+/* Cuts the complex, which is not cut yet; for interval volumes, whose slabs are others. TC_ERROR_MEMORY, with what
+ * would be needed, where the least slab is too large: nothing has changed then. */
 tc_status complex_cut(tc_grid *grid);
+tc_status complex_interval_cut(tc_grid *grid);
+void complex_slabs_release(struct complex_slabs *slabs); /* NULL: nothing */
+
+/* Whether the sums of an interval volume of the complex in one piece fit the scan. */
+bool complex_interval_sums_fit(const tc_grid *grid);
 
 /* ---------------------------------------------------------------------------- arrays of a part (complex_part.c) */
 
@@ -79,11 +84,12 @@ typedef struct complex_run {
     tc_context *context;
     complex_buffers *work;
     border_list *border; /* where the surface is closed */
-    sized_kernel kernels[CLOSED_KERNELS];
+    sized_kernel kernels[ALL_COMPLEX_KERNELS];
     isovalue_test test;
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool keeps_cells;
+    bool interval;   /* a bound of an interval volume */
     bool is_cut;     /* into slabs, which fit */
     bool too_large;  /* the surface of a complex that is not cut does not fit */
     double start_ms; /* kernels are built by then */
@@ -114,6 +120,9 @@ complex_job complex_job_of(const complex_run *r, uint32_t cluster_count);
 /* Kernels, and the workspace for this grid. */
 tc_status complex_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
+/* The same of a run that says where it works, whether the complex is cut, and whether it is for an interval volume. */
+tc_status complex_run_open(complex_run *r, const tc_extract_options *options);
+
 /* Finds the active tetrahedra of the part; then numbers its vertices. head has the counts. */
 tc_status surface_classify(complex_run *r);
 tc_status surface_number(complex_run *r);
@@ -124,7 +133,7 @@ tc_status surface_emit(complex_run *r, const device_buffer *positions, const dev
 /* Notes that the workspace, or the slabs, know this surface. */
 void complex_classified_note(tc_grid *grid, const tc_extract_options *options, surface_size size);
 
-/* What both methods begin a run with: kernels, and the workspace. */
+/* What both methods begin a run with: kernels, and the workspace for this grid. */
 tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
 /* Parts of a run: fills a buffer from byte `first` on; reads the head back; the table of edges, whose entries are a
@@ -140,8 +149,41 @@ tc_status surface_clusters_reserve(complex_run *r);
 tc_status surface_reserve(complex_run *r, device_buffer *buffer, uint64_t bytes, const char *name);
 bool surface_fits(complex_run *r, uint64_t bytes);
 
+/* Reserves a buffer likewise, and copies a table to it. */
+tc_status surface_table_provide(complex_run *r, device_buffer *buffer, const void *table, uint64_t bytes);
+
 /* Bytes of the table that drives the kernels, from the 16 cases. */
 void complex_cases(uint8_t cases[16][CASE_BYTES]);
+
+/* ------------------------------------------------------------------------------------ one slab (complex_slab.c) */
+
+uint32_t slab_first_cluster(const struct complex_slabs *slabs, uint32_t slab_index);
+uint32_t slab_cluster_count(const complex_grid *c, const struct complex_slabs *slabs, uint32_t slab_index);
+
+/* Begin and end a call that goes slab by slab; the second one in any case. */
+tc_status complex_slabs_open(const tc_grid *grid, const struct complex_slabs *slabs, local_points *local);
+void complex_slabs_close(tc_grid *grid, const struct complex_slabs *slabs, local_points *local);
+
+/* Brings a slab to the device, with its ranges where they are known; keeps the ranges that kernel 1 has found. */
+tc_status complex_slab_load(tc_grid *grid, struct complex_slabs *slabs, local_points *local, uint32_t slab_index,
+                            bool ranges_known);
+tc_status complex_slab_ranges_keep(tc_grid *grid, struct complex_slabs *slabs, uint32_t slab_index);
+
+/* The crossed edges of all slabs so far, and the numbers that the vertices of each slab have in the mesh. */
+typedef struct joined_edges {
+    active_tetrahedron *active; /* of one slab */
+    edge_numbers edges;
+    uint32_t *numbers; /* of the vertices of each slab, one slab after the other */
+    uint64_t number_count, number_room, active_room;
+} joined_edges;
+
+/* Adds those of a slab whose vertices are numbered. names: the grid's numbers of the slab's points; NULL: the same. */
+tc_status complex_slab_edges_join(const complex_run *r, const uint32_t *names, joined_edges *j);
+void joined_edges_release(joined_edges *j);
+
+/* Copies the positions of a slab's vertices that are new, of which `done` have been copied before; how many it is then.
+ */
+uint64_t positions_append(const uint32_t *numbers, uint32_t count, const float *from, float *to, uint64_t done);
 
 /* ------------------------------------------------------------------------------- slab by slab (complex_slabs.c) */
 

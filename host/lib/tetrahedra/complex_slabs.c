@@ -23,88 +23,31 @@ typedef struct slabs_run {
     struct complex_slabs *slabs;
     slab_totals *totals;
     local_points local; /* where slabs have points of their own */
-    uint8_t cases[16][CASE_BYTES];
-    active_tetrahedron *active; /* of one slab */
-    edge_numbers edges;
-    uint32_t *numbers; /* in the mesh, of the vertices of each slab, one slab after the other */
-    uint64_t number_count, number_room, active_room;
+    joined_edges joined;
     uint64_t triangle_count, active_count;
     cap_sizes caps; /* of the border */
 } slabs_run;
 
-static uint32_t slab_first_cluster(const slabs_run *t, uint32_t slab_index) {
-    return slab_index * t->slabs->slab_clusters;
-}
-
-static uint32_t slab_cluster_count(const slabs_run *t, uint32_t slab_index) {
-    const uint32_t rest = complex_cluster_count(t->r.complex->tetrahedron_count) - slab_first_cluster(t, slab_index);
-    return rest < t->slabs->slab_clusters ? rest : t->slabs->slab_clusters;
-}
-
-static uint32_t slab_tetrahedron_count(const slabs_run *t, uint32_t slab_index) {
-    const uint64_t first = (uint64_t)CLUSTER_TETRAHEDRA * slab_first_cluster(t, slab_index);
-    const uint64_t rest = t->r.complex->tetrahedron_count - first;
-    const uint64_t most = (uint64_t)CLUSTER_TETRAHEDRA * t->slabs->slab_clusters;
-    return (uint32_t)(rest < most ? rest : most);
-}
-
 static tc_status slabs_begin(slabs_run *t, tc_grid *grid, const tc_extract_options *options) {
     struct complex_slabs *slabs = grid->complex->slabs;
     *t = (slabs_run){.slabs = slabs};
-    complex_cases(t->cases);
     tc_status status = complex_run_begin(&t->r, grid, options);
     t->totals = calloc(slabs->slab_count, sizeof *t->totals);
     if (!status && !t->totals) status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the totals of slabs");
-    if (!status && !slabs->points_whole) status = local_points_allocate(grid, slab_tetrahedron_count(t, 0), &t->local);
-    return status;
+    return status ? status : complex_slabs_open(grid, slabs, &t->local);
 }
 
 static void slabs_end(slabs_run *t) {
     cl->Finish(t->r.context->queue);
-    part_tetrahedra_release(t->r.grid);
-    if (!t->slabs->points_whole) part_points_release(t->r.grid);
-    local_points_release(&t->local);
-    edge_numbers_release(&t->edges);
+    complex_slabs_close(t->r.grid, t->slabs, &t->local);
+    joined_edges_release(&t->joined);
     free(t->totals);
-    free(t->active);
-    free(t->numbers);
-}
-
-/* ---------------------------------------------------------------------------------------------------------- arrays */
-
-static tc_status points_load(slabs_run *t, uint32_t slab_index, const uint32_t **tetrahedra) {
-    tc_grid *grid = t->r.grid;
-    const complex_grid *c = grid->complex;
-    uint32_t point_count;
-    if (t->slabs->points_whole)
-        return c->part.points.memory ? TC_OK : part_points_provide(grid, c->points, grid->samples, c->point_count);
-    part_points_release(grid); /* a buffer in place uses the memory in which the next slab is gathered */
-    tc_status status =
-        local_points_gather(grid, *tetrahedra, slab_tetrahedron_count(t, slab_index), &t->local, &point_count);
-    *tetrahedra = t->local.tetrahedra;
-    return status ? status : part_points_provide(grid, t->local.points, t->local.samples, point_count);
-}
-
-/* Copies the slab's ranges from the host, or to it. */
-static tc_status ranges_move(slabs_run *t, uint32_t slab_index, bool save) {
-    cl_command_queue queue = t->r.context->queue;
-    cl_mem memory = t->r.part->ranges.memory;
-    brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
-    const size_t bytes = sizeof *ranges * slab_cluster_count(t, slab_index);
-    cl_int error = save ? cl->EnqueueReadBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL)
-                        : cl->EnqueueWriteBuffer(queue, memory, CL_TRUE, 0, bytes, ranges, 0, NULL, NULL);
-    return error ? context_fail(t->r.context, "copying ranges of clusters", error) : TC_OK;
 }
 
 static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known) {
-    const uint64_t first = (uint64_t)CLUSTER_TETRAHEDRA * slab_first_cluster(t, slab_index);
-    const uint32_t *tetrahedra = t->r.complex->tetrahedra + 4 * first;
-    tc_status status = points_load(t, slab_index, &tetrahedra);
-    if (!status) status = part_tetrahedra_provide(t->r.grid, tetrahedra, slab_tetrahedron_count(t, slab_index));
-    if (!status && ranges_known) status = ranges_move(t, slab_index, false);
-    t->r.part->ranges_known = ranges_known;
+    tc_status status = complex_slab_load(t->r.grid, t->slabs, &t->local, slab_index, ranges_known);
     if (!status) status = surface_classify(&t->r);
-    if (!status && !ranges_known) status = ranges_move(t, slab_index, true);
+    if (!status && !ranges_known) status = complex_slab_ranges_keep(t->r.grid, t->slabs, slab_index);
     return !status && t->r.job.active_count ? surface_number(&t->r) : status;
 }
 
@@ -113,55 +56,10 @@ static tc_status slab_count(slabs_run *t, uint32_t slab_index, bool ranges_known
 /* Whether the slab may have a surface, by the ranges of its clusters. */
 static bool slab_possible(const slabs_run *t, uint32_t slab_index) {
     const isovalue_test *test = &t->r.test;
-    const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t, slab_index);
-    for (uint32_t n = 0; n < slab_cluster_count(t, slab_index); n++)
+    const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t->slabs, slab_index);
+    for (uint32_t n = 0; n < slab_cluster_count(t->r.complex, t->slabs, slab_index); n++)
         if (ranges[n].low < test->key_inside && ranges[n].high >= test->key_outside) return true;
     return !t->slabs->ranges_known;
-}
-
-static void *room_enlarge(void *memory, uint64_t *room, uint64_t count, size_t item_bytes) {
-    uint64_t larger = 2 * *room > count ? 2 * *room : count;
-    void *grown = realloc(memory, (size_t)larger * item_bytes);
-    if (grown) *room = larger;
-    return grown;
-}
-
-/* Makes room for the active tetrahedra and vertex numbers of a slab. */
-static tc_status lists_reserve(slabs_run *t) {
-    const uint64_t active = t->r.job.active_count, numbers = t->number_count + t->r.head[HEAD_VERTICES];
-    void *grown = t->active;
-    if (active > t->active_room) grown = room_enlarge(t->active, &t->active_room, active, sizeof *t->active);
-    if (grown) t->active = grown;
-    if (grown && numbers > t->number_room) {
-        grown = room_enlarge(t->numbers, &t->number_room, numbers, sizeof *t->numbers);
-        if (grown) t->numbers = grown;
-    }
-    return grown ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory for the vertices of all slabs");
-}
-
-/* Numbers the vertices that an active tetrahedron owns. */
-static tc_status vertices_join(slabs_run *t, const active_tetrahedron *a) {
-    const uint32_t *names = t->local.numbers;
-    for (uint32_t rest = a->owned; rest; rest &= rest - 1) {
-        const uint8_t *ends = t->cases[a->pattern] + CASE_ENDS + 2 * __builtin_ctz(rest);
-        const uint32_t p = names ? names[a->points[ends[0]]] : a->points[ends[0]];
-        const uint32_t q = names ? names[a->points[ends[1]]] : a->points[ends[1]];
-        tc_status status = edge_numbers_find(&t->edges, p < q ? p : q, p < q ? q : p, &t->numbers[t->number_count]);
-        if (status) return status;
-        t->number_count++;
-    }
-    return TC_OK;
-}
-
-static tc_status slab_join(slabs_run *t) {
-    const uint32_t count = t->r.job.active_count;
-    tc_status status = lists_reserve(t);
-    if (status) return status;
-    cl_int error = cl->EnqueueReadBuffer(t->r.context->queue, t->r.work->active.memory, CL_TRUE, 0,
-                                         count * sizeof *t->active, t->active, 0, NULL, NULL);
-    if (error) return context_fail(t->r.context, "reading the active tetrahedra back", error);
-    for (uint32_t n = 0; n < count && !status; n++) status = vertices_join(t, &t->active[n]);
-    return status;
 }
 
 static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
@@ -171,7 +69,7 @@ static tc_status slab_classify(slabs_run *t, uint32_t slab_index) {
     t->totals[slab_index] = (slab_totals){t->r.head[HEAD_VERTICES], t->r.head[HEAD_TRIANGLES]};
     t->triangle_count += t->r.head[HEAD_TRIANGLES];
     t->active_count += t->r.job.active_count;
-    return slab_join(t);
+    return complex_slab_edges_join(&t->r, t->local.numbers, &t->joined);
 }
 
 /* before, after: where this stage begins and ends in the whole call, for progress. */
@@ -183,18 +81,18 @@ static tc_status slabs_classify(slabs_run *t, const tc_extract_options *options,
         if (!status) status = context_progress(t->r.context, "classify", before + (after - before) * (n + 1) / count);
     }
     if (!status) t->slabs->ranges_known = true;
-    return status ? status : caps_host_count(t->r.grid, options, &t->edges, &t->caps);
+    return status ? status : caps_host_count(t->r.grid, options, &t->joined.edges, &t->caps);
 }
 
-static uint64_t vertex_count_of(const slabs_run *t) { return t->edges.count + t->caps.vertices; }
+static uint64_t vertex_count_of(const slabs_run *t) { return t->joined.edges.count + t->caps.vertices; }
 
 /* Keeps the joined edges, from which fields are carried. */
 static void edges_keep(slabs_run *t, const tc_extract_options *options, uint64_t vertex_count) {
     complex_classified_note(t->r.grid, options,
                             (surface_size){.vertex_count = vertex_count, .cap_vertices = t->caps.vertices});
     if (!t->r.complex->carries) return;
-    t->slabs->edges = t->edges;
-    t->edges = (edge_numbers){0};
+    t->slabs->edges = t->joined.edges;
+    t->joined.edges = (edge_numbers){0};
 }
 
 tc_status complex_slabs_count(tc_grid *grid, const tc_extract_options *options, double before, double share,
@@ -247,9 +145,7 @@ static tc_status slab_read(const slabs_run *t, slab_totals totals, joined_mesh *
 static void slab_append(slab_totals totals, joined_mesh *e) {
     uint32_t *triangles = (uint32_t *)e->mesh->triangles.memory + 3 * e->triangle_count;
     float *positions = e->mesh->channels[CHANNEL_POSITIONS].memory;
-    for (uint32_t n = 0; n < totals.vertices; n++)
-        if (e->numbers[n] == e->vertex_count)
-            memcpy(positions + 3 * e->vertex_count++, e->positions + 3 * (size_t)n, CHANNEL_BYTES);
+    e->vertex_count = positions_append(e->numbers, totals.vertices, e->positions, positions, e->vertex_count);
     for (uint64_t n = 0; n < 3ull * totals.triangles; n++) triangles[n] = e->numbers[triangles[n]];
     e->numbers += totals.vertices;
     e->triangle_count += totals.triangles;
@@ -276,10 +172,10 @@ static tc_status slab_emit(slabs_run *t, uint32_t slab_index, joined_mesh *e) {
 
 static tc_status slabs_emit_all(slabs_run *t, const tc_extract_options *options, tc_mesh *mesh, double before) {
     const uint32_t count = t->slabs->slab_count;
-    joined_mesh e = {.mesh = mesh, .numbers = t->numbers};
+    joined_mesh e = {.mesh = mesh, .numbers = t->joined.numbers};
     tc_status status = mesh_allocate(mesh, vertex_count_of(t), t->triangle_count + t->caps.triangles, POSITIONS_ALONE);
-    if (!status) status = caps_host_emit(t->r.grid, options, &t->edges, t->caps, mesh);
-    if (!t->r.complex->carries) edge_numbers_release(&t->edges);
+    if (!status) status = caps_host_emit(t->r.grid, options, &t->joined.edges, t->caps, mesh);
+    if (!t->r.complex->carries) edge_numbers_release(&t->joined.edges);
     if (!status) status = positions_allocate(t, &e);
     for (uint32_t n = 0; n < count && !status; n++) {
         status = slab_emit(t, n, &e);

@@ -48,12 +48,17 @@ void complex_cases(uint8_t cases[16][CASE_BYTES]) {
     }
 }
 
+tc_status surface_table_provide(complex_run *r, device_buffer *buffer, const void *table, uint64_t bytes) {
+    tc_status status = surface_reserve(r, buffer, bytes, "the case table");
+    return status ? status : buffer_upload(r->context, buffer, table, bytes, "the case table");
+}
+
 /* Uploaded once per context. */
-static tc_status cases_provide(tc_context *context, device_buffer *buffer) {
+static tc_status cases_provide(complex_run *r) {
     uint8_t cases[16][CASE_BYTES];
-    if (buffer->memory) return TC_OK;
+    if (r->work->cases.memory) return TC_OK;
     complex_cases(cases);
-    return buffer_upload(context, buffer, cases, sizeof cases, "the case table");
+    return surface_table_provide(r, &r->work->cases, cases, sizeof cases);
 }
 
 /* --------------------------------------------------------------------------------------------------------- commands */
@@ -92,11 +97,11 @@ complex_job complex_job_of(const complex_run *r, uint32_t cluster_count) {
 
 tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     tc_context *context = grid->context;
-    r->work = &context->work.complex;
+    kernel_kind kind = r->interval ? complex_interval_kind(grid) : complex_kind(grid, options, false);
     r->keeps_cells = options->method == TC_METHOD_HYBRID;
     r->test = isovalue_test_of(inside_range_of(grid->type, options->isovalue), options->isovalue);
     context->counted_grid = context->classified_grid = NULL;
-    tc_status status = complex_kernels_get(context, complex_kind(grid, options, false), r->kernels);
+    tc_status status = complex_kernels_get(context, kind, r->kernels);
     r->start_ms = clock_ms();
     if (status) return status;
     if (context->workspace_grid != grid && (context->options.max_memory_bytes || r->is_cut)) {
@@ -107,14 +112,24 @@ tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extrac
     return TC_OK;
 }
 
+tc_status complex_run_open(complex_run *r, const tc_extract_options *options) {
+    complex_grid *c = r->complex;
+    if (c->slabs) edge_numbers_release(&c->slabs->edges);
+    whole_part_release(r->grid);
+    tc_status status = complex_workspace_begin(r, r->grid, options);
+    if (!status && !r->is_cut) status = complex_arrays_provide(r->grid);
+    return status ? status : cases_provide(r);
+}
+
 tc_status complex_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     complex_grid *c = grid->complex;
-    *r = (complex_run){.grid = grid, .complex = c, .part = &c->part, .context = grid->context, .is_cut = c->slabs};
-    if (c->slabs) edge_numbers_release(&c->slabs->edges);
-    whole_part_release(grid);
-    tc_status status = complex_workspace_begin(r, grid, options);
-    if (!status && !c->slabs) status = complex_arrays_provide(grid);
-    return status ? status : cases_provide(grid->context, &r->work->cases);
+    *r = (complex_run){.grid = grid,
+                       .complex = c,
+                       .part = &c->part,
+                       .context = grid->context,
+                       .work = &grid->context->work.complex,
+                       .is_cut = c->slabs != NULL};
+    return complex_run_open(r, options);
 }
 
 void complex_classified_note(tc_grid *grid, const tc_extract_options *options, surface_size size) {

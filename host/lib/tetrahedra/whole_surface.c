@@ -20,7 +20,11 @@ static const char *const kernel_names[WHOLE_KERNELS] = {
 
 tc_status whole_run_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options) {
     complex_grid *c = grid->complex;
-    *r = (complex_run){.grid = grid, .complex = c, .context = grid->context, .is_cut = c->whole && c->whole->is_cut};
+    *r = (complex_run){.grid = grid,
+                       .complex = c,
+                       .context = grid->context,
+                       .work = &grid->context->work.complex,
+                       .is_cut = c->whole && c->whole->is_cut};
     if (c->whole) edge_numbers_release(&c->whole->edges);
     part_tetrahedra_release(grid);
     part_points_release(grid);

@@ -7,6 +7,7 @@
 #include "failure.h"
 #include "surface/grids.h"
 #include "opencl/kernels.h"
+#include "grid/complex.h"
 #include "grid/mesh.h"
 #include "surface/surface.h"
 #include "reference/reference_interval.h"
@@ -129,7 +130,7 @@ static tc_status device_try(tc_context *context, const trial_volume *v, const tc
 
 /* Builds the kernels apart from running them, so that the report can tell which of the two failed. */
 static tc_status kernels_build(tc_context *context, kernel_kind kind) {
-    sized_kernel of_complexes[CLOSED_KERNELS];
+    sized_kernel of_complexes[ALL_COMPLEX_KERNELS];
     kernels k;
     tc_status status =
         kind.grid == KIND_COMPLEX ? complex_kernels_get(context, kind, of_complexes) : kernels_get(context, kind, &k);
@@ -142,10 +143,13 @@ static tc_status interval_compare(tc_context *context, const trial_volume *v, tc
     interval_size size;
     double ms;
     tc_interval found = {.slab_count = 1};
-    tc_status status = structured_interval_count(grid, how, &size, &ms);
+    tc_status status = grid->complex ? complex_interval_count(grid, how, &size, &ms)
+                                     : structured_interval_count(grid, how, &size, &ms);
     if (!status && memcmp(&size, &expected->size, sizeof size))
         status = wrong(context, v, "the number of tetrahedra,", size.tetrahedra);
-    if (!status) status = structured_interval_extract(grid, how, &found);
+    if (!status)
+        status = grid->complex ? complex_interval_extract(grid, how, &found)
+                               : structured_interval_extract(grid, how, &found);
     const uint64_t vertices = interval_first(&size, BLOCK_COUNT), indices = 4 * size.tetrahedra;
     uint64_t n = status ? 0 : difference(found.positions.memory, expected->positions.memory, vertices);
     if (!status && n < vertices) status = wrong(context, v, "vertex of an interval volume,", n);
@@ -164,7 +168,9 @@ static tc_status interval_try(tc_context *context, trial_volume *v) {
     tc_status status = trial_volume_make(v);
     const tc_interval_options how = {sizeof how, v->isovalue, v->isovalue + (type_is_real(v->type) ? 0.3 : 3.3)};
     if (!status) status = trial_grid_create(v, &host, host.launch.scan, &grid);
-    if (!status) status = reference_interval_extract(grid, &how, &expected);
+    if (!status)
+        status = v->unstructured ? reference_complex_interval_extract(grid, &how, &expected)
+                                 : reference_interval_extract(grid, &how, &expected);
     grid_destroy(grid);
     grid = NULL;
     if (!status) status = trial_grid_create(v, context, context->launch.scan, &grid);

@@ -166,7 +166,7 @@ class GridBase:
                   carry: Mapping[str, Any] | None = None) -> Tetrahedra:
         """The part with low <= samples < high, as Tetrahedra; None: there is no such bound.
 
-        carry: as of ``extract``. Unstructured grids need ``engine="reference"``.
+        carry: as of ``extract``.
         """
         fields = {name: self._field(name, array) for name, array in (carry or {}).items()}
         how = options(tc_interval_options)
