@@ -66,6 +66,19 @@ const bytes_case cases[] = {
     {CASE_UNIFORM, TC_U16, TC_METHOD_HYBRID, CASE_CLOSED | CASE_MISSING, 1, false},
     {CASE_RECTILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_NORMALS, 0, false},
     {CASE_CURVILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_MISSING | CASE_NORMALS, 1, true},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_LABELS, 3, true},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_TETRA, CASE_LABELS | CASE_CLOSED, 0, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_TETRA, CASE_LABELS | CASE_MISSING, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_LABELS | CASE_DEEP, 2, false},
+    {CASE_RECTILINEAR, TC_U32, TC_METHOD_TETRA, CASE_LABELS, 0, false},
+    {CASE_CURVILINEAR, TC_I32, TC_METHOD_TETRA, CASE_LABELS | CASE_BLANKED, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL, 3, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_MISSING, 1, true},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL | CASE_DEEP, 2, false},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_EXTREMES, 0, false},
+    {CASE_RECTILINEAR, TC_I16, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_BLANKED, 1, false},
     {CASE_COMPLEX, TC_U8, TC_METHOD_TETRA, 0, 3, true},
     {CASE_COMPLEX, TC_I8, TC_METHOD_TETRA, 0, 0, false},
     {CASE_COMPLEX, TC_U16, TC_METHOD_TETRA, 0, 0, false},
@@ -94,7 +107,8 @@ const char *case_name(const bytes_case *c) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear", "complex"};
     static char name[120];
     const bool named = c->method != TC_METHOD_TETRA;
-    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+             c->flags & CASE_LABELS ? " labels" : "", c->flags & CASE_INTERVAL ? " interval" : "",
              c->flags & CASE_DEEP ? ", deep" : "", c->flags & CASE_MISSING ? ", missing" : "",
              c->flags & CASE_BLANKED ? ", blanked" : "", c->flags & CASE_EXTREMES ? ", extremes" : "",
              c->flags & CASE_NORMALS ? ", normals" : "", c->flags & CASE_CLOSED ? ", closed" : "", named ? ", " : "",
@@ -111,7 +125,16 @@ static void *memory_get(size_t bytes) {
 
 /* --------------------------------------------------------------------------------------------------------- samples */
 
-enum { ISOVALUE = 63, NODATA = 77 };
+enum { ISOVALUE = 63, NODATA = 77, LABELS_MOST = 6 };
+
+/* Some broad regions, specks of other labels in them; in some layers one label alone. */
+static double label_value(const bytes_case *c, double x, double y, double z) {
+    if (c->flags & CASE_MISSING && random_below(90) == 0) return NODATA;
+    if (c->flags & CASE_DEEP && x > 30) return 2;
+    if (z > 15 && z < 24) return 1;
+    if (random_below(40) == 0) return (double)random_below(LABELS_MOST);
+    return floor(fmax(0, 2.5 + 2 * sin(0.31 * x) * cos(0.57 * y) + 1.5 * sin(0.45 * z)));
+}
 
 static double extreme(tc_type type) {
     for (;;) {
@@ -128,6 +151,7 @@ static double extreme(tc_type type) {
  * are skipped. Floating types have fractions as well. */
 static double sample_value(const bytes_case *c, double x, double y, double z) {
     double wave = sin(0.31 * x) * cos(0.57 * y) + sin(0.45 * z + 0.1 * x), value;
+    if (c->flags & CASE_LABELS) return label_value(c, x, y, z);
     if (c->flags & CASE_EXTREMES) return extreme(c->type);
     if (c->flags & CASE_MISSING && type_is_floating(c->type) && random_below(90) == 0) return (double)NAN;
     if (c->flags & CASE_DEEP) wave = 0.2 * (x - 30) + 0.5 * wave;
@@ -136,12 +160,19 @@ static double sample_value(const bytes_case *c, double x, double y, double z) {
     return type_is_floating(c->type) && random_below(4) ? value + 0.01 * random_between(-1, 1) : value;
 }
 
-static void how_fill(const bytes_case *c, tc_extract_options *how) {
+static void how_fill(const bytes_case *c, case_data *data) {
+    tc_extract_options *how = &data->how;
     tc_extract_options_init(how);
     how->isovalue = c->flags & CASE_EXTREMES ? 1e-3 : ISOVALUE;
     how->normals = c->flags & CASE_NORMALS ? 1 : 0;
     how->method = c->method;
     how->closed = c->flags & CASE_CLOSED ? 1 : 0;
+    tc_labels_options_init(&data->labels);
+    data->labels.closed = how->closed;
+    if (c->kind != CASE_UNIFORM) data->labels.smoothing = 0;
+    tc_interval_options_init(&data->interval);
+    data->interval.low = how->isovalue;
+    data->interval.high = how->isovalue + 7.5;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- grids */
@@ -227,7 +258,7 @@ static void complex_fill(const bytes_case *c, bool small, case_data *data) {
 void case_fill(const bytes_case *c, bool small, case_data *data) {
     *data = (case_data){0};
     random_state = 1996 + 16 * (uint64_t)c->type + (uint64_t)c->kind;
-    how_fill(c, &data->how);
+    how_fill(c, data);
     if (c->kind == CASE_COMPLEX)
         complex_fill(c, small, data);
     else

@@ -12,7 +12,7 @@
 
 enum { NX = 50, NY = 20, NZ = 50, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
 
-typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY } flow;
+typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY, FLOW_LABELS, FLOW_INTERVAL } flow;
 typedef enum coordinates { UNIFORM, RECTILINEAR, CURVILINEAR } coordinates;
 
 struct scenario {
@@ -62,18 +62,30 @@ static const scenario scenarios[] = {
      .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, complex", .flow = FLOW_COMPLEX, .engine = TC_ENGINE_REFERENCE},
     {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
+    {.name = "labels", .flow = FLOW_LABELS},
+    {.name = "labels, copied buffers", .flow = FLOW_LABELS, .always_copy = true},
+    {.name = "labels, slabs", .flow = FLOW_LABELS, .slabs = true},
+    {.name = "interval volume", .flow = FLOW_INTERVAL},
+    {.name = "interval volume, copied buffers, missing samples",
+     .flow = FLOW_INTERVAL,
+     .type = TC_F32,
+     .always_copy = true},
+    {.name = "interval volume, slabs", .flow = FLOW_INTERVAL, .slabs = true},
+    {.name = "reference, labels", .flow = FLOW_LABELS, .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, interval volume", .flow = FLOW_INTERVAL, .engine = TC_ENGINE_REFERENCE},
 };
 enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
 static const double isovalues[2] = {127.5, 90};
 
 static char problem[1500];
-static uint8_t bytes[SAMPLES];
+static uint8_t bytes[SAMPLES], labels[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
 static tc_tetrahedra complex, of_cells;
 static tc_cells cells; /* of method hybrid */
 static tc_mesh *expected[SCENARIOS][2];
+static tc_interval *expected_volumes[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
 static cl_command_queue their_queue;
 static cl_mem their_samples, their_positions, their_triangles;
@@ -91,6 +103,7 @@ static void input_make(void) {
         const int x = n % NX, y = n / NX % NY, z = n / NX / NY;
         const double value = 127.5 + 60 * sin(0.33 * x) * cos(0.41 * y) + 60 * sin(0.37 * z + 0.2 * y);
         bytes[n] = (uint8_t)value;
+        labels[n] = bytes[n] / 64;
         values[n] = x == 20 && y == 10 ? NAN : (float)value;
         points[3 * n] = (float)(x + 0.1 * sin(0.5 * y));
         points[3 * n + 1] = (float)(y + 0.1 * sin(0.5 * z));
@@ -131,7 +144,7 @@ static void grid_describe(const scenario *s, tc_grid_options *o) {
     o->dims[1] = NY;
     o->dims[2] = NZ;
     o->type = s->type;
-    o->samples = s->type == TC_F32 ? (const void *)values : bytes;
+    o->samples = s->type == TC_F32 ? (const void *)values : s->flow == FLOW_LABELS ? labels : bytes;
     if (s->coordinates == CURVILINEAR) o->points = points;
     for (int axis = 0; axis < 3 && s->coordinates == RECTILINEAR; axis++) o->axes[axis] = axes[axis];
 }
@@ -156,6 +169,23 @@ static tc_extract_options surface_describe(const scenario *s, int index) {
     o.isovalue = isovalues[index];
     o.method = s->method;
     o.normals = s->normals;
+    return o;
+}
+
+/* Of label maps: all labels, and one of them. */
+static tc_labels_options labels_describe(int index) {
+    static const uint32_t one = 2;
+    tc_labels_options o;
+    tc_labels_options_init(&o);
+    if (index) o.labels = &one, o.label_count = 1;
+    return o;
+}
+
+static tc_interval_options interval_describe(int index) {
+    tc_interval_options o;
+    tc_interval_options_init(&o);
+    o.low = isovalues[index];
+    o.high = isovalues[index] + 30;
     return o;
 }
 
@@ -189,6 +219,50 @@ static bool counts_are_right(int index, int surface, const tc_counts *found) {
     return false;
 }
 
+static bool volume_is_right(int index, int number, const tc_interval *volume) {
+    tc_interval_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
+    if (tc_interval_get(volume, &found) || tc_interval_get(expected_volumes[index][number], &wanted)) return false;
+    const char *difference = NULL;
+    if (found.sample_count != wanted.sample_count || found.vertex_count != wanted.vertex_count ||
+        found.tetrahedron_count != wanted.tetrahedron_count)
+        difference = "counts of an interval volume are wrong";
+    else if (memcmp(found.positions, wanted.positions, 12 * (size_t)wanted.vertex_count))
+        difference = "vertices of an interval volume differ";
+    else if (memcmp(found.tetrahedra, wanted.tetrahedra, 16 * (size_t)wanted.tetrahedron_count))
+        difference = "tetrahedra differ";
+    else if (scenarios[index].slabs && found.slab_count < 2)
+        difference = "the grid was not cut into slabs";
+    if (difference) snprintf(problem, sizeof problem, "from %g on: %s", isovalues[number], difference);
+    return !difference;
+}
+
+/* Counts and extracts both volumes, the second into the memory of the first; then the first again. */
+static tc_status volumes_run(int index, trial *t, tc_grid *grid) {
+    tc_interval *volume = NULL;
+    tc_status status = TC_OK;
+    bool fine = true;
+    for (int n = 0; n < 3 && fine; n++) {
+        const tc_interval_options how = interval_describe(n % 2);
+        tc_interval_counts counts = {.struct_size = sizeof counts};
+        if (n < 2) fine = TRIED(t, tc_count_interval(grid, &how, &counts));
+        fine = fine && TRIED(t, tc_extract_interval(grid, &how, &volume)) && volume_is_right(index, n % 2, volume);
+    }
+    tc_interval_destroy(volume);
+    return status;
+}
+
+static tc_status label_surfaces_run(int index, trial *t, tc_grid *grid) {
+    tc_mesh *mesh = NULL;
+    tc_status status = TC_OK;
+    bool fine = true;
+    for (int n = 0; n < 3 && fine; n++) {
+        const tc_labels_options how = labels_describe(n % 2);
+        fine = TRIED(t, tc_extract_labels(grid, &how, &mesh)) && mesh_is_right(index, n % 2, mesh);
+    }
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
 /* Counts and extracts both surfaces, the second into the mesh of the first; then the first again. */
 static tc_status surfaces_run(int index, trial *t, tc_grid *grid) {
     tc_mesh *mesh = NULL;
@@ -219,8 +293,12 @@ static tc_status grid_run(int index, trial *t, tc_context *context) {
     tc_grid_options options;
     tc_grid *grid = NULL;
     tc_status status;
+    const flow kind = scenarios[index].flow;
     grid_describe(&scenarios[index], &options);
-    if (TRIED(t, tc_grid_create(context, &options, &grid))) status = surfaces_run(index, t, grid);
+    if (TRIED(t, tc_grid_create(context, &options, &grid)))
+        status = kind == FLOW_LABELS     ? label_surfaces_run(index, t, grid)
+                 : kind == FLOW_INTERVAL ? volumes_run(index, t, grid)
+                                         : surfaces_run(index, t, grid);
     tc_grid_destroy(grid);
     return status;
 }
@@ -392,6 +470,16 @@ static bool budget_find(int index) {
     return false;
 }
 
+static tc_status reference_make(int index, int n, tc_grid *grid) {
+    const scenario *s = &scenarios[index];
+    const tc_extract_options surface = surface_describe(s, n);
+    const tc_labels_options all = labels_describe(n);
+    const tc_interval_options interval = interval_describe(n);
+    if (s->flow == FLOW_LABELS) return tc_extract_labels(grid, &all, &expected[index][n]);
+    if (s->flow == FLOW_INTERVAL) return tc_extract_interval(grid, &interval, &expected_volumes[index][n]);
+    return tc_extract(grid, &surface, &expected[index][n]);
+}
+
 static tc_status reference_extract_all(tc_context *reference) {
     tc_status status = TC_OK;
     for (int index = 0; index < SCENARIOS && !status; index++) {
@@ -403,10 +491,7 @@ static tc_status reference_extract_all(tc_context *reference) {
         grid_describe(s, &options);
         status = s->flow == FLOW_COMPLEX ? tc_tetrahedra_grid_create(reference, &complex_options, &grid)
                                          : tc_grid_create(reference, &options, &grid);
-        for (int n = 0; n < 2 && !status; n++) {
-            const tc_extract_options how = surface_describe(s, n);
-            status = tc_extract(grid, &how, &expected[index][n]);
-        }
+        for (int n = 0; n < 2 && !status; n++) status = reference_make(index, n, grid);
         tc_grid_destroy(grid);
     }
     return status;
@@ -454,7 +539,10 @@ bool scenarios_prepare(void) {
 void scenarios_release(void) {
     cl_mem buffers[] = {their_samples, their_positions, their_triangles};
     for (int index = 0; index < SCENARIOS; index++)
-        for (int n = 0; n < 2; n++) tc_mesh_destroy(expected[index][n]);
+        for (int n = 0; n < 2; n++) {
+            tc_mesh_destroy(expected[index][n]);
+            tc_interval_destroy(expected_volumes[index][n]);
+        }
     tc_tetrahedra_release(&complex);
     tc_tetrahedra_release(&of_cells);
     folder_remove();
