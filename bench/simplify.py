@@ -210,7 +210,7 @@ def vtk_side(name, **switches):
 def zmesh_side(points, faces, share):
     import zmesh
     mesh = zmesh.Mesh(points.astype(np.float32), faces.astype(np.uint32), None)
-    made = zmesh.simplify_fqmr(mesh, triangle_count=int(share * len(faces)))
+    made = zmesh.simplify_fqmr(mesh, target_count=int(share * len(faces)), preserve_border=True)
     return made.vertices, made.faces
 
 
@@ -235,8 +235,7 @@ def sides_of(arguments):
     sides = {}
     for path in arguments.library:
         name = os.path.basename(os.path.realpath(path)).removeprefix("lib").replace(".so.", " ")
-        sides[name] = meshoptimizer(path, False)
-        sides[name + ", border locked"] = meshoptimizer(path, True)
+        sides[name] = meshoptimizer(path, True)
     return {**sides, **(PEERS if arguments.peers else {})}
 
 

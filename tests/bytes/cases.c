@@ -72,13 +72,12 @@ const bytes_case cases[] = {
     {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_LABELS | CASE_DEEP, 2, false},
     {CASE_RECTILINEAR, TC_U32, TC_METHOD_TETRA, CASE_LABELS, 0, false},
     {CASE_CURVILINEAR, TC_I32, TC_METHOD_TETRA, CASE_LABELS | CASE_BLANKED, 0, false},
-    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL, 3, true},
-    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_MISSING, 1, true},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL, 1, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_MISSING, 0, false},
     {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
-    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL | CASE_DEEP, 2, false},
-    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_EXTREMES, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL | CASE_DEEP, 0, false},
     {CASE_RECTILINEAR, TC_I16, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
-    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_BLANKED, 1, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_BLANKED, 0, false},
     {CASE_COMPLEX, TC_U8, TC_METHOD_TETRA, 0, 3, true},
     {CASE_COMPLEX, TC_I8, TC_METHOD_TETRA, 0, 0, false},
     {CASE_COMPLEX, TC_U16, TC_METHOD_TETRA, 0, 0, false},
@@ -193,13 +192,14 @@ static void point_fill(float *point, double x, double y, double z) {
     point[2] = (float)(0.7 * z + 0.02 * x * y - 20);
 }
 
-static void blanks_fill(case_data *data, int64_t count, int64_t cell_count) {
+/* Label maps have samples that are blanked, not cells. */
+static void blanks_fill(case_data *data, int64_t count, int64_t cell_count, bool has_cells) {
     data->blanked_samples = memory_get((size_t)count);
     data->blanked_cells = memory_get((size_t)cell_count);
     for (int64_t n = 0; n < count; n++) data->blanked_samples[n] = random_below(50) == 0;
     for (int64_t n = 0; n < cell_count; n++) data->blanked_cells[n] = random_below(50) == 0;
     data->grid.blanked_samples = data->blanked_samples;
-    data->grid.blanked_cells = data->blanked_cells;
+    if (has_cells) data->grid.blanked_cells = data->blanked_cells;
 }
 
 static void grid_fill(const bytes_case *c, bool small, case_data *data) {
@@ -225,7 +225,8 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
         sample_set(data->samples, c->type, n, sample_value(c, x, y, z));
         if (data->points) point_fill(data->points + 3 * n, x, y, z);
     }
-    if (c->flags & CASE_BLANKED) blanks_fill(data, count, (d[0] - 1) * (d[1] - 1) * (d[2] - 1));
+    if (c->flags & CASE_BLANKED)
+        blanks_fill(data, count, (d[0] - 1) * (d[1] - 1) * (d[2] - 1), !(c->flags & CASE_LABELS));
 }
 
 /* ------------------------------------------------------------------------------------------------------- complexes */
