@@ -20,12 +20,13 @@ and the paper's blunt fin, with the fin and the plate that it stands on:
 
 and label maps and interval volumes, of the tool's page:
 
-    tetracubes labels $TETRACUBES_DATA/uniform/frogtissue.mhd -o frog.vtp --labels 2,3,4,5,6,7,8,9,10,11,12,13,14,15
-    tetracubes generate gyroid --dims 28,28,28 --type f32 -o gyroid.nrrd
-    tetracubes isovolume gyroid.nrrd --range 100,150 -o gyroid.vtu
-    xvfb-run -a /usr/bin/python3 bench/picture.py frog.vtp gyroid.vtu -o bench/pictures/labels-volume.png
+    tetracubes labels $TETRACUBES_DATA/uniform/frogtissue.mhd -o frog.vtp --labels 2,3,4,5,6,7,8,9,10,11,12,13,14
+    tetracubes generate tangle --dims 20,20,20 --type f32 -o tangle.nrrd
+    tetracubes isovolume tangle.nrrd --range 100,124 -o tangle.vtu
+    xvfb-run -a /usr/bin/python3 bench/picture.py frog.vtp tangle.vtu --zoom 1.3 --height 320 -o bench/pictures/labels-volume.png
 
-Needs VTK (Debian: python3-vtk9) and, without a display, Xvfb (Debian: xvfb, xauth, libgl1-mesa-dri).
+Needs VTK (Debian: python3-vtk9, with Xvfb where there is no display: xvfb, xauth, libgl1-mesa-dri; or a wheel, which
+draws without one: bench/peers-setup).
 """
 import argparse
 import os
@@ -146,7 +147,8 @@ def colour_labels(actor, mesh):
     """A colour for the first label of each triangle, which it winds about."""
     table, colours = vtk.vtkLookupTable(), vtk.vtkColorSeries()
     colours.SetColorScheme(vtk.vtkColorSeries.BREWER_QUALITATIVE_SET3)
-    colours.BuildLookupTable(table, vtk.vtkColorSeries.CATEGORICAL)
+    colours.BuildLookupTable(table, vtk.vtkColorSeries.ORDINAL)
+    table.SetTableRange(0, colours.GetNumberOfColors() - 1)
     labels = mesh.GetCellData().GetArray("BoundaryLabels")
     first, known = vtk.vtkIntArray(), {}
     for n in range(labels.GetNumberOfTuples()):

@@ -70,7 +70,6 @@ static const scenario scenarios[] = {
      .flow = FLOW_INTERVAL,
      .type = TC_F32,
      .always_copy = true},
-    {.name = "interval volume, slabs", .flow = FLOW_INTERVAL, .slabs = true},
     {.name = "reference, labels", .flow = FLOW_LABELS, .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, interval volume", .flow = FLOW_INTERVAL, .engine = TC_ENGINE_REFERENCE},
 };
