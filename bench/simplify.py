@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """simplify.py - surfaces with fewer triangles: what meshoptimizer alone makes of ours, what --simplify does, and others
 
-    simplify.py TOOL [--library libmeshoptimizer.so]... [--peers] [--markdown] [--json FILE]
+    simplify.py run TOOL [--library libmeshoptimizer.so]... [--peers] [--only WORD] [--methods M...] [--json FILE]
+    simplify.py table RESULTS.json...      the table in bench/README.md
 
 Surfaces are those of sphere, gyroid, a bolt, a volume of neurons, an embryo and noise, by each method, closed where that
 is said; of each the shares 0.5, 0.2, 0.1 and 0.05 of its triangles. Of every result is counted, by code of its own here:
@@ -41,7 +42,7 @@ def fields(tool, folder):
     """Name, input, isovalue and more options of each."""
     data = os.environ.get("TETRACUBES_DATA", "")
     for name, kind, size, more in (("sphere", "f32", 96, []), ("gyroid", "u8", 64, []), ("gyroid", "f32", 64, ["--closed"]),
-                                   ("noise", "f32", 32, ["--closed"])):
+                                   ("noise", "f32", 24, ["--closed"])):
         path = os.path.join(folder, f"{name}.nrrd")
         subprocess.run([tool, "generate", name, "--dims", f"{size},{size},{size}", "--type", kind, "-o", path, "--quiet"],
                        check=True)
@@ -276,15 +277,36 @@ def run_case(arguments, case, inputs, iso, more, folder):
     return rows
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("tool")
-    parser.add_argument("--library", action="append", default=[], help="meshoptimizer, to be called as it is")
-    parser.add_argument("--peers", action="store_true")
-    parser.add_argument("--methods", nargs="+", default=METHODS, choices=METHODS)
-    parser.add_argument("--only", default="", help="cases whose name has this in it")
-    parser.add_argument("--json", help="file for the rows")
-    arguments = parser.parse_args()
+# -------------------------------------------------------------------------------------------------------------- table
+
+TABLE_SHARES = (0.2, 0.05)
+
+
+def cell(row):
+    """The share that is left, where it is another one, and what is wrong."""
+    if row is None:
+        return ""
+    left = row["triangles"] / row["before"]
+    reached = "" if left <= 1.05 * row["share"] + 8 / row["before"] else f"{left:.2g}: "
+    return reached + (", ".join(f"{abs(number):,} {name}" for name, number in row["faults"].items() if number) or "–")
+
+
+def table(rows):
+    sides = list(dict.fromkeys(row["side"] for row in rows if row["side"] != "tetracubes"))
+    found = {(row["case"], row["method"], row["share"], row["side"]): row for row in rows}
+    lines = ["| surface | triangles | share | --simplify | distances | " + " | ".join(sides) + " |",
+             "| --- | --: | --: | --- | --- |" + " --- |" * len(sides)]
+    for case, method, share, side in found:
+        if side != "tetracubes" or share not in TABLE_SHARES:
+            continue
+        ours = found[case, method, share, side]
+        distances = f"{ours['distance_to']:.2g}, {ours['distance_from']:.2g}"
+        others = " | ".join(cell(found.get((case, method, share, other))) for other in sides)
+        lines.append(f"| {case}, {method} | {ours['before']:,} | {share} | {cell(ours)} | {distances} | {others} |")
+    return "\n".join(lines)
+
+
+def run(arguments):
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for case, inputs, iso, more in fields(arguments.tool, folder):
@@ -292,7 +314,25 @@ def main():
                 rows += run_case(arguments, case, inputs, iso, more, folder)
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
-            json.dump(rows, file, indent=1)
+            file.write("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(required=True)
+    parts = commands.add_parser("run")
+    parts.set_defaults(command=run)
+    parts.add_argument("tool")
+    parts.add_argument("--library", action="append", default=[], help="meshoptimizer, to be called as it is")
+    parts.add_argument("--peers", action="store_true")
+    parts.add_argument("--methods", nargs="+", default=METHODS, choices=METHODS)
+    parts.add_argument("--only", default="", help="cases whose name has this in it")
+    parts.add_argument("--json", help="file for the rows")
+    parts = commands.add_parser("table")
+    parts.set_defaults(command=lambda given: print(table([row for path in given.results for row in json.load(open(path))])))
+    parts.add_argument("results", nargs="+")
+    arguments = parser.parse_args()
+    arguments.command(arguments)
 
 
 if __name__ == "__main__":

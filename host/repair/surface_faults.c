@@ -140,12 +140,6 @@ static void normal_of(const float *positions, uint32_t a, uint32_t b, uint32_t c
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static int has_no_area(const float *positions, uint32_t v, const corner *c) {
-    double normal[3];
-    normal_of(positions, v, c->next, c->previous, normal);
-    return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
-}
-
 /* Of the triangle of a corner at v and the one across its edge to `previous`; looked at from the edge's lower vertex.
  * The checker of results (mesh_edges.h) counts from the cosine on: here a little less is a fold already, so that
  * rounding never makes a fold there alone. */
@@ -203,7 +197,6 @@ static void lock_own_faults(const surface_shape *s, const fan *f, uint32_t v, do
     if (f->crowded != NO_VERTEX) locked[f->crowded] |= 1;
     for (uint64_t n = 0; n < f->count; n++) {
         const corner *c = &f->corners[n];
-        if (has_no_area(s->positions, v, c)) locked[v] |= 1, locked[c->next] |= 1, locked[c->previous] |= 1;
         if (is_folded(f, s->positions, v, c, fold_cosine)) locked[v] |= 1, locked[c->previous] |= 1;
     }
 }
@@ -259,7 +252,6 @@ static void compare_vertex(const comparison *c, uint32_t v) {
         if (f.crowded != NO_VERTEX) mark(c, f.crowded);
     }
     for (uint64_t n = 0; n < f.count; n++) {
-        if (has_no_area(s->positions, v, &f.corners[n])) mark(c, v);
         if (!is_folded(&f, s->positions, v, &f.corners[n], c->fold_cosine)) continue;
         mark(c, v);
         mark(c, f.corners[n].previous);

@@ -4,7 +4,7 @@
  * Both have the same vertices, of which the second uses a part. A fault is, at a vertex that is not locked,
  *   - triangles that form no single fan, or two triangles with the same three vertices
  *   - a border edge that was not there, or that is gone
- *   - an edge whose two triangles are folded onto each other, or a triangle without area
+ *   - an edge whose two triangles are folded onto each other
  * or, of a component, that it fell apart, vanished, or changed its Euler characteristic. A surface without faults is
  * homeomorphic to the one before: a component is known by its border, its orientation and its Euler characteristic.
  */

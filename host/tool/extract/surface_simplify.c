@@ -37,7 +37,6 @@ typedef struct block_surface {
 typedef struct shape {
     mesh_topology topology;
     mesh_edges edges;
-    mesh_summary summary;
 } shape;
 
 /* --------------------------------------------------------------------------------------------------------- distances
@@ -76,7 +75,6 @@ static int judge(void *user, const simplified_mesh *m, int *is_good) {
 static int shape_find(const mesh_view *m, shape *out) {
     const int status = mesh_check(m->positions, m->vertex_count, m->triangles, m->triangle_count, &out->topology);
     if (status) return status;
-    mesh_summarize(m->positions, m->vertex_count, m->triangles, m->triangle_count, &out->summary);
     return mesh_edges_find(m->positions, m->vertex_count, m->triangles, m->triangle_count, fold_cosine, &out->edges);
 }
 
@@ -91,8 +89,6 @@ static const char *broken_promise(const shape *before, const shape *after) {
         return "has another border";
     if (b->components != a->components) return "has another number of components";
     if (b->euler_characteristic != a->euler_characteristic) return "has another Euler characteristic";
-    if (after->summary.degenerate_triangles > before->summary.degenerate_triangles)
-        return "has more triangles without area";
     if (after->edges.folded > before->edges.folded) return "has more triangles folded onto each other";
     return NULL;
 }
