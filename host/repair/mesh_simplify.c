@@ -7,6 +7,9 @@
  * A fault shows at a vertex only while all of it is there: a handle can be pinched off, and the bubble that it became
  * contracted to nothing, in one stage. Then the Euler characteristic of its component tells, but not where: small
  * components are locked whole, of others a smaller step is tried, which leaves the evidence.
+ *
+ * What is locked keeps more triangles than its share. Only a part of these is taken from the rest, which else would
+ * lose its shape where much is locked: the goal is then not reached.
  */
 #include "mesh_simplify.h"
 
@@ -22,6 +25,8 @@
 /* What is left of the triangles by a stage, and from which on a smaller step is no use. A component of so few triangles
  * is locked whole. Trials of a stage in which locks grow by faults alone; behind them by their neighbours too. */
 static const double stage_step = 0.5, smallest_step = 0.95, least_gain = 0.99;
+/* Of the triangles that a stage leaves of what is free, at least that part is left where others are locked. */
+static const double least_part = 0.85;
 enum { SMALL_COMPONENT = 256, PLAIN_TRIALS = 6, TRIALS_MOST = 40 };
 
 /* A surface while it is simplified: the vertices that are left, with their positions side by side. */
@@ -155,10 +160,19 @@ typedef struct stage {
     trial trial;
     double step;
     int is_refused; /* a result was too far: steps stay small */
-    uint64_t goal;  /* triangles, of all stages */
+    double share;   /* that the stages so far leave of what is never locked */
 } stage;
 
-static int try_contraction(stage *s, uint64_t goal) {
+/* What this stage leaves of what it takes. */
+static double ratio_of(const stage *s) { return fmax(s->step, s->how->share / s->share); }
+
+/* Of the free triangles those that are to be left. */
+static uint64_t free_goal_of(const stage *s, uint64_t free_count) {
+    const double left = ceil(ratio_of(s) * (double)s->mesh->triangle_count) - (double)s->trial.kept;
+    return (uint64_t)fmax(left, least_part * ratio_of(s) * (double)free_count);
+}
+
+static int try_contraction(stage *s) {
     const stage_mesh *m = s->mesh;
     trial *r = &s->trial;
     uint64_t free_count = 0, left = 0;
@@ -167,7 +181,7 @@ static int try_contraction(stage *s, uint64_t goal) {
         uint32_t *to = is_fixed(m, t) ? r->triangles + 3 * r->kept++ : r->free_triangles + 3 * free_count++;
         memcpy(to, m->triangles + 3 * t, 3 * sizeof *to);
     }
-    const uint64_t free_goal = goal > r->kept ? goal - r->kept : 0;
+    const uint64_t free_goal = free_goal_of(s, free_count);
     r->triangle_count = r->kept + free_count;
     if (free_count <= free_goal || !free_count) {
         memcpy(r->triangles + 3 * r->kept, r->free_triangles, (size_t)(3 * free_count) * sizeof *r->triangles);
@@ -196,17 +210,12 @@ static void lock_faults(stage *s, const surface_faults *faults, int number) {
     }
 }
 
-static uint64_t goal_of(const stage *s) {
-    const uint64_t half = (uint64_t)((double)s->mesh->triangle_count * s->step);
-    return half > s->goal ? half : s->goal;
-}
-
 /* Tries until there is no fault. *is_done 0: nothing came of it. */
 static int run_trials(stage *s, int *is_done) {
     surface_faults faults;
     *is_done = 0;
     for (int number = 0; number < TRIALS_MOST; number++) {
-        int status = try_contraction(s, goal_of(s));
+        int status = try_contraction(s);
         memset(s->trial.marks, 0, (size_t)s->mesh->vertex_count);
         if (!status)
             status = surface_faults_find(&s->shape, s->trial.triangles, s->trial.triangle_count, s->how->fold_cosine,
@@ -244,8 +253,9 @@ static int finish_stage(stage *s, int *goes_on) {
     }
     stage_mesh_release(s->mesh);
     *s->mesh = made;
+    s->share *= ratio_of(s);
     if (!s->is_refused) s->step = stage_step;
-    *goes_on = made.triangle_count > s->goal && (double)made.triangle_count < least_gain * (double)before;
+    *goes_on = s->share > (1 + 1e-9) * s->how->share && (double)made.triangle_count < least_gain * (double)before;
     return 0;
 }
 
@@ -286,15 +296,14 @@ int mesh_simplify(const float *positions, uint64_t vertex_count, const uint32_t 
                   const simplify_options *how, simplified_mesh *result) {
     enum { TRIANGLES_MOST = UINT32_MAX / 3 }; /* the library counts corners in 32 bits */
     stage_mesh mesh;
-    stage s = {
-        .how = how, .mesh = &mesh, .step = stage_step, .goal = (uint64_t)ceil(how->share * (double)triangle_count)};
+    stage s = {.how = how, .mesh = &mesh, .step = stage_step, .share = 1};
     *result = (simplified_mesh){0};
     if (triangle_count > TRIANGLES_MOST)
         return fail(STATUS_FAILED, "%llu triangles are more than can be simplified, %u",
                     (unsigned long long)triangle_count, (unsigned)TRIANGLES_MOST);
     int status = stage_mesh_begin(positions, vertex_count, triangles, triangle_count, &mesh);
     if (!status) status = lock_coincident(&mesh);
-    for (int goes_on = triangle_count > s.goal; goes_on && !status;) status = run_stage(&s, &goes_on);
+    for (int goes_on = triangle_count > 0; goes_on && !status;) status = run_stage(&s, &goes_on);
     if (!status) {
         *result = (simplified_mesh){mesh.vertex_count, mesh.triangle_count, mesh.triangles, mesh.sources};
         mesh.triangles = mesh.sources = NULL;
