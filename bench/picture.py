@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-r"""Renders PLY meshes side by side into a PNG: the README's picture.
+r"""Renders meshes side by side into a PNG: the README's pictures.
+
+PLY files are surfaces; VTP files those of label maps, a colour for each label; VTU files interval volumes, of which the
+part behind a plane through the middle is shown, so that the tetrahedra are seen.
 
     for field in tangle gyroid marschner-lobb; do
         tetracubes generate $field --dims 256,256,256 --type f32 -o $field.nrrd
@@ -15,9 +18,18 @@ and the paper's blunt fin, with the fin and the plate that it stands on:
     xvfb-run -a /usr/bin/python3 bench/picture.py fin.ply --walls ${fin}xyz.bin --view=-1.4,1.8,0.9 --zoom 1.1 \
         --aspect 1.4 --height 420 -o bench/pictures/bluntfin.png
 
-Needs VTK (Debian: python3-vtk9) and, without a display, Xvfb (Debian: xvfb, xauth, libgl1-mesa-dri).
+and label maps and interval volumes, of the tool's page:
+
+    tetracubes labels $TETRACUBES_DATA/uniform/frogtissue.mhd -o frog.vtp --labels 2,3,4,5,6,7,8,9,10,11,12,13,14
+    tetracubes generate tangle --dims 20,20,20 --type f32 -o tangle.nrrd
+    tetracubes isovolume tangle.nrrd --range 100,124 -o tangle.vtu
+    xvfb-run -a /usr/bin/python3 bench/picture.py frog.vtp tangle.vtu --zoom 1.3 --height 320 -o bench/pictures/labels-volume.png
+
+Needs VTK (Debian: python3-vtk9, with Xvfb where there is no display: xvfb, xauth, libgl1-mesa-dri; or a wheel, which
+draws without one: bench/peers-setup).
 """
 import argparse
+import os
 
 import vtk
 
@@ -25,16 +37,42 @@ COLOURS = [(0.93, 0.55, 0.24), (0.25, 0.56, 0.78), (0.42, 0.66, 0.40)]  # outsid
 INSIDE = (0.93, 0.90, 0.84)
 WALL, WALL_LINES = (0.80, 0.82, 0.85), (0.66, 0.69, 0.74)
 WALL_REACH = 0.45  # around a mesh, of the size of its box
+EDGES = (0.35, 0.30, 0.26)  # of tetrahedra
+CUT = (0, -1, 0)  # away from what is left of a volume
 MARGIN = 0.64  # around a mesh of unit size: the diagonal of its box has to fit
 
 
-def read_surface(path):
-    reader = vtk.vtkPLYReader()
+READERS = {".ply": vtk.vtkPLYReader, ".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader}
+
+
+def kind_of(path):
+    return os.path.splitext(path)[1]
+
+
+def read(path):
+    """The triangles of a file, or the faces of the tetrahedra that are shown of one."""
+    if kind_of(path) not in READERS:
+        raise SystemExit(f"{path}: give PLY, VTP or VTU files that the tool wrote")
+    reader = READERS[kind_of(path)]()
     reader.SetFileName(path)
     reader.Update()
-    if reader.GetOutput().GetNumberOfPolys() == 0:
-        raise SystemExit(f"{path}: no triangles; give a PLY file that the tool wrote")
-    return reader.GetOutput()
+    mesh = cut_open(reader.GetOutput()) if kind_of(path) == ".vtu" else reader.GetOutput()
+    if mesh.GetNumberOfPolys() == 0:
+        raise SystemExit(f"{path}: no triangles; give a file that the tool wrote")
+    return mesh
+
+
+def cut_open(volume):
+    """The faces of the tetrahedra behind a plane through the middle that is turned to the camera."""
+    plane, behind, faces = vtk.vtkPlane(), vtk.vtkExtractGeometry(), vtk.vtkGeometryFilter()
+    plane.SetOrigin(*volume.GetCenter())
+    plane.SetNormal(*CUT)
+    behind.SetInputData(volume)
+    behind.SetImplicitFunction(plane)
+    behind.ExtractInsideOn()
+    faces.SetInputConnection(behind.GetOutputPort())
+    faces.Update()
+    return faces.GetOutput()
 
 
 def read_walls(path):
@@ -105,6 +143,34 @@ def actor_of(mesh, colour, transform):
     return actor
 
 
+def colour_labels(actor, mesh):
+    """A colour for the first label of each triangle, which it winds about."""
+    table, colours = vtk.vtkLookupTable(), vtk.vtkColorSeries()
+    colours.SetColorScheme(vtk.vtkColorSeries.BREWER_QUALITATIVE_SET3)
+    colours.BuildLookupTable(table, vtk.vtkColorSeries.ORDINAL)
+    table.SetTableRange(0, colours.GetNumberOfColors() - 1)
+    labels = mesh.GetCellData().GetArray("BoundaryLabels")
+    first, known = vtk.vtkIntArray(), {}
+    for n in range(labels.GetNumberOfTuples()):
+        first.InsertNextValue(known.setdefault(labels.GetComponent(n, 0), len(known) % colours.GetNumberOfColors()))
+    first.SetName("colour")
+    mesh.GetCellData().SetScalars(first)
+    mapper = actor.GetMapper()
+    mapper.SetScalarModeToUseCellData()
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+    mapper.ScalarVisibilityOn()
+
+
+def show_edges(actor):
+    """Of tetrahedra, whose faces are flat."""
+    for side in (actor.GetProperty(), actor.GetBackfaceProperty()):
+        side.EdgeVisibilityOn()
+        side.SetEdgeColor(*EDGES)
+        side.SetLineWidth(0.7)
+        side.SetInterpolationToFlat()
+
+
 def walls_of(mesh, transform):
     """Faint, lined by the grid."""
     actor = actor_of(mesh, WALL, transform)
@@ -120,12 +186,17 @@ def walls_of(mesh, transform):
 def panel(arguments, index):
     """Renderer of one mesh, in its part of the window."""
     count = len(arguments.mesh)
-    mesh = read_surface(arguments.mesh[index])
+    mesh = read(arguments.mesh[index])
     transform = frame(mesh)
     renderer = vtk.vtkRenderer()
     renderer.SetViewport(index / count, 0, (index + 1) / count, 1)
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor_of(mesh, COLOURS[index % len(COLOURS)], transform))
+    actor = actor_of(mesh, COLOURS[index % len(COLOURS)], transform)
+    if kind_of(arguments.mesh[index]) == ".vtp":
+        colour_labels(actor, mesh)
+    if kind_of(arguments.mesh[index]) == ".vtu":
+        show_edges(actor)
+    renderer.AddActor(actor)
     if arguments.walls:
         renderer.AddActor(walls_of(clipped(read_walls(arguments.walls), mesh), transform))
     renderer.SetUseFXAA(True)
@@ -150,7 +221,7 @@ def direction(text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("mesh", nargs="+", help="PLY files")
+    parser.add_argument("mesh", nargs="+", help="PLY, VTP or VTU files")
     parser.add_argument("-o", "--output", required=True, help="PNG to write")
     parser.add_argument("--height", type=int, default=360, help="of the picture, in pixels")
     parser.add_argument("--aspect", type=float, default=1.0, help="width of a mesh's part to its height")

@@ -68,8 +68,8 @@ static command extract_command(void) {
     c.text = "Extracts a surface as 'tetracubes extract' does, by the ranks of an MPI job together: each reads and\n"
              "contours planes of its own, and all write one file, to the byte that of one process. One\n"
              "structured grid; PLY, VTP, STL and VTKHDF. Options are those of the tool, but for what needs the\n"
-             "whole mesh at once (--check, --verify, --soup, --drop-degenerate, --preview) and --part. In\n"
-             "--device, %r stands for the number of the rank on its machine, from 0.\n"
+             "whole mesh at once (--check, --verify, --soup, --drop-degenerate, --simplify, --preview) and\n"
+             "--part. In --device, %r stands for the number of the rank on its machine, from 0.\n"
              "\n"
              "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply\n"
              "  mpirun -np 4 tetracubes-mpi extract ct.nrrd --iso 300 -o ct.ply --device gpu:%r";

@@ -1,6 +1,7 @@
 #include "command_run.h"
 
 #include "command_line/option_effects.h"
+#include "edge_contraction.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "mesh_write.h"
@@ -54,6 +55,11 @@ void version_print(const char *program, FILE *out) {
     fprintf(out, "writes: %.*s; %s (tetrahedra)\n", (int)(strlen(labels) - left_out), labels,
             &COMPLEX_FORMATS(COMPLEX_LABEL)[2]);
     fprintf(out, "pictures: %s\n", HAVE_PNG ? "PNG" : "none, as it was built without libpng");
+#if HAVE_MESHOPTIMIZER
+    fprintf(out, "simplifies: meshoptimizer %s\n", edge_contraction_version());
+#else
+    fprintf(out, "simplifies: no, as it was built without meshoptimizer\n");
+#endif
 }
 
 int command_run(const command *c, int argc, char **argv, int (*parsed)(options *o, int status)) {

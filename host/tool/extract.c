@@ -1,6 +1,6 @@
 /*
  * extract.c - the main job: read, choose the field, cut what has to be cut, upload, then for every isovalue extract,
- * verify, check, carry, write; report
+ * verify, simplify, check, carry, write; report
  *
  * The device is started on a second thread while the input is read: neither needs the other, and a compressed volume
  * takes as long as a driver.
@@ -24,6 +24,7 @@
 #include "extract/surface_notices.h"
 #include "extract/streamed.h"
 #include "extract/surface_preview.h"
+#include "extract/surface_simplify.h"
 #include "failure.h"
 #include "input/input.h"
 #include "library_status.h"
@@ -56,6 +57,7 @@ static int check_usage(job *j) {
         return fail(STATUS_USAGE,
                     "extract needs --iso V, the value on the surface; 'tetracubes info INPUT' suggests some");
     int status = input_request(o, &j->request);
+    if (!status) status = surface_simplify_check_usage(o);
     if (!status) status = surface_files_check(o, NULL);
     return status ? status : surface_preview_check(o, NULL);
 }
@@ -182,6 +184,7 @@ static int judge_surface(surface_job *w) {
         s->coarse_in_mesh.lost > s->coarse_in_file.lost ? s->coarse_in_mesh.lost : s->coarse_in_file.lost;
     if (!s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
     result_mesh_tell_dropped(s);
+    surface_simplify_tell(j->o, s);
     return !status && j->o->check ? surface_judge(&j->blocks, s, &w->is_good) : status;
 }
 
@@ -210,7 +213,8 @@ static int finish_mesh(surface_job *w, block_range blocks, const tc_mesh_data *m
     surface_report *s = w->s;
     const surface_source source = {&j->main, &j->blocks, blocks, &w->how, made};
     int status = j->o->verify ? surface_verify(&j->reference, blocks, &w->how, made, s) : 0;
-    if (!status && j->o->drop_degenerate) status = result_mesh_drop_degenerate(mesh, s);
+    if (!status && (j->o->drop_degenerate || j->o->simplify > 0)) status = result_mesh_drop_degenerate(mesh, s);
+    if (!status && j->o->simplify > 0) status = surface_simplify(j->o, mesh, s, &w->is_good);
     if (status) return status;
     surface_totals_add(j->o, &source, mesh, s);
     status = precision_count_mesh(&source, j->o->check, &s->coarse_in_mesh);

@@ -66,6 +66,18 @@ const bytes_case cases[] = {
     {CASE_UNIFORM, TC_U16, TC_METHOD_HYBRID, CASE_CLOSED | CASE_MISSING, 1, false},
     {CASE_RECTILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_NORMALS, 0, false},
     {CASE_CURVILINEAR, TC_F32, TC_METHOD_SNAP, CASE_CLOSED | CASE_MISSING | CASE_NORMALS, 1, true},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_LABELS, 3, true},
+    {CASE_UNIFORM, TC_U16, TC_METHOD_TETRA, CASE_LABELS | CASE_CLOSED, 0, false},
+    {CASE_UNIFORM, TC_I16, TC_METHOD_TETRA, CASE_LABELS | CASE_MISSING, 1, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_LABELS | CASE_DEEP, 2, false},
+    {CASE_RECTILINEAR, TC_U32, TC_METHOD_TETRA, CASE_LABELS, 0, false},
+    {CASE_CURVILINEAR, TC_I32, TC_METHOD_TETRA, CASE_LABELS | CASE_BLANKED, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL, 1, true},
+    {CASE_UNIFORM, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_MISSING, 0, false},
+    {CASE_UNIFORM, TC_F64, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
+    {CASE_UNIFORM, TC_U8, TC_METHOD_TETRA, CASE_INTERVAL | CASE_DEEP, 0, false},
+    {CASE_RECTILINEAR, TC_I16, TC_METHOD_TETRA, CASE_INTERVAL, 0, false},
+    {CASE_CURVILINEAR, TC_F32, TC_METHOD_TETRA, CASE_INTERVAL | CASE_BLANKED, 0, false},
     {CASE_COMPLEX, TC_U8, TC_METHOD_TETRA, 0, 3, true},
     {CASE_COMPLEX, TC_I8, TC_METHOD_TETRA, 0, 0, false},
     {CASE_COMPLEX, TC_U16, TC_METHOD_TETRA, 0, 0, false},
@@ -94,7 +106,8 @@ const char *case_name(const bytes_case *c) {
     static const char *const kinds[] = {"uniform", "rectilinear", "curvilinear", "complex"};
     static char name[120];
     const bool named = c->method != TC_METHOD_TETRA;
-    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+    snprintf(name, sizeof name, "%s %s%s%s%s%s%s%s%s%s%s%s", tc_type_name(c->type), kinds[c->kind],
+             c->flags & CASE_LABELS ? " labels" : "", c->flags & CASE_INTERVAL ? " interval" : "",
              c->flags & CASE_DEEP ? ", deep" : "", c->flags & CASE_MISSING ? ", missing" : "",
              c->flags & CASE_BLANKED ? ", blanked" : "", c->flags & CASE_EXTREMES ? ", extremes" : "",
              c->flags & CASE_NORMALS ? ", normals" : "", c->flags & CASE_CLOSED ? ", closed" : "", named ? ", " : "",
@@ -111,7 +124,16 @@ static void *memory_get(size_t bytes) {
 
 /* --------------------------------------------------------------------------------------------------------- samples */
 
-enum { ISOVALUE = 63, NODATA = 77 };
+enum { ISOVALUE = 63, NODATA = 77, LABELS_MOST = 6 };
+
+/* Some broad regions, specks of other labels in them; in some layers one label alone. */
+static double label_value(const bytes_case *c, double x, double y, double z) {
+    if (c->flags & CASE_MISSING && random_below(90) == 0) return NODATA;
+    if (c->flags & CASE_DEEP && x > 30) return 2;
+    if (z > 15 && z < 24) return 1;
+    if (random_below(40) == 0) return (double)random_below(LABELS_MOST);
+    return floor(fmax(0, 2.5 + 2 * sin(0.31 * x) * cos(0.57 * y) + 1.5 * sin(0.45 * z)));
+}
 
 static double extreme(tc_type type) {
     for (;;) {
@@ -128,6 +150,7 @@ static double extreme(tc_type type) {
  * are skipped. Floating types have fractions as well. */
 static double sample_value(const bytes_case *c, double x, double y, double z) {
     double wave = sin(0.31 * x) * cos(0.57 * y) + sin(0.45 * z + 0.1 * x), value;
+    if (c->flags & CASE_LABELS) return label_value(c, x, y, z);
     if (c->flags & CASE_EXTREMES) return extreme(c->type);
     if (c->flags & CASE_MISSING && type_is_floating(c->type) && random_below(90) == 0) return (double)NAN;
     if (c->flags & CASE_DEEP) wave = 0.2 * (x - 30) + 0.5 * wave;
@@ -136,12 +159,19 @@ static double sample_value(const bytes_case *c, double x, double y, double z) {
     return type_is_floating(c->type) && random_below(4) ? value + 0.01 * random_between(-1, 1) : value;
 }
 
-static void how_fill(const bytes_case *c, tc_extract_options *how) {
+static void how_fill(const bytes_case *c, case_data *data) {
+    tc_extract_options *how = &data->how;
     tc_extract_options_init(how);
     how->isovalue = c->flags & CASE_EXTREMES ? 1e-3 : ISOVALUE;
     how->normals = c->flags & CASE_NORMALS ? 1 : 0;
     how->method = c->method;
     how->closed = c->flags & CASE_CLOSED ? 1 : 0;
+    tc_labels_options_init(&data->labels);
+    data->labels.closed = how->closed;
+    if (c->kind != CASE_UNIFORM) data->labels.smoothing = 0;
+    tc_interval_options_init(&data->interval);
+    data->interval.low = how->isovalue;
+    data->interval.high = how->isovalue + 7.5;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- grids */
@@ -162,13 +192,14 @@ static void point_fill(float *point, double x, double y, double z) {
     point[2] = (float)(0.7 * z + 0.02 * x * y - 20);
 }
 
-static void blanks_fill(case_data *data, int64_t count, int64_t cell_count) {
+/* Label maps have samples that are blanked, not cells. */
+static void blanks_fill(case_data *data, int64_t count, int64_t cell_count, bool has_cells) {
     data->blanked_samples = memory_get((size_t)count);
     data->blanked_cells = memory_get((size_t)cell_count);
     for (int64_t n = 0; n < count; n++) data->blanked_samples[n] = random_below(50) == 0;
     for (int64_t n = 0; n < cell_count; n++) data->blanked_cells[n] = random_below(50) == 0;
     data->grid.blanked_samples = data->blanked_samples;
-    data->grid.blanked_cells = data->blanked_cells;
+    if (has_cells) data->grid.blanked_cells = data->blanked_cells;
 }
 
 static void grid_fill(const bytes_case *c, bool small, case_data *data) {
@@ -194,7 +225,8 @@ static void grid_fill(const bytes_case *c, bool small, case_data *data) {
         sample_set(data->samples, c->type, n, sample_value(c, x, y, z));
         if (data->points) point_fill(data->points + 3 * n, x, y, z);
     }
-    if (c->flags & CASE_BLANKED) blanks_fill(data, count, (d[0] - 1) * (d[1] - 1) * (d[2] - 1));
+    if (c->flags & CASE_BLANKED)
+        blanks_fill(data, count, (d[0] - 1) * (d[1] - 1) * (d[2] - 1), !(c->flags & CASE_LABELS));
 }
 
 /* ------------------------------------------------------------------------------------------------------- complexes */
@@ -227,7 +259,7 @@ static void complex_fill(const bytes_case *c, bool small, case_data *data) {
 void case_fill(const bytes_case *c, bool small, case_data *data) {
     *data = (case_data){0};
     random_state = 1996 + 16 * (uint64_t)c->type + (uint64_t)c->kind;
-    how_fill(c, &data->how);
+    how_fill(c, data);
     if (c->kind == CASE_COMPLEX)
         complex_fill(c, small, data);
     else

@@ -17,7 +17,9 @@ enum {
     CASE_BLANKED = 4,  /* samples and cells */
     CASE_EXTREMES = 8, /* floats of all exponents */
     CASE_DEEP = 16,    /* many layers of bricks, for slabs */
-    CASE_CLOSED = 32
+    CASE_CLOSED = 32,
+    CASE_LABELS = 64,    /* samples are labels, with three and four of them in a cube */
+    CASE_INTERVAL = 128, /* an interval volume, from the isovalue on */
 };
 
 typedef enum case_kind { CASE_UNIFORM, CASE_RECTILINEAR, CASE_CURVILINEAR, CASE_COMPLEX } case_kind;
@@ -41,7 +43,9 @@ const char *case_name(const bytes_case *c);
 typedef struct case_data {
     tc_grid_options grid;
     tc_tetrahedra_grid_options complex;
-    tc_extract_options how;
+    tc_extract_options how; /* of surfaces */
+    tc_labels_options labels;
+    tc_interval_options interval;
     tc_tetrahedra split; /* what complex borrows from, as from the next two */
     cell_list list;
     tc_cells cells;

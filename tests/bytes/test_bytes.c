@@ -3,8 +3,9 @@
  *
  * Every case (cases.h) is extracted by the scalar reference, then by the device in every variant: work-items, groups,
  * tiles, the scan's fallback, ways to divide, slabs, buffers of its own, and a second visit that knows the ranges of
- * bricks. Hashes are of positions, normals and triangles. What else must not matter, number of threads and OpenCL
- * implementation, is the environment's: bytes.py runs this under several and compares what is printed.
+ * bricks. Hashes are of positions, normals and triangles, with the labels of these; of interval volumes of positions
+ * and tetrahedra. What else must not matter, number of threads and OpenCL implementation, is the environment's:
+ * bytes.py runs this under several and compares what is printed.
  *
  * Usage: test_bytes [whole|sample|small|groups [TEXT]]: sample: some of the cases; small: all, of small grids, in the
  * variants that take other ways through the kernels, for devices that simulate; groups: likewise, of structured grids,
@@ -72,25 +73,70 @@ static struct {
     bool used[VARIANTS];
 } done;
 
-/* Positions, normals and triangles; 0 where a memory bound does not suffice. */
-static uint64_t hash_of(tc_context *context, const case_data *data, bool again, uint32_t *slabs, const char *what) {
-    tc_grid *grid = NULL;
-    tc_mesh *mesh = NULL;
+/* What a grid gives, whichever it is. */
+typedef struct product {
+    tc_mesh *mesh;
+    tc_interval *interval;
+    uint32_t slabs;
+    uint64_t hash; /* of all its arrays; 0 where there is nothing */
+} product;
+
+static tc_status surface_make(tc_grid *grid, const case_data *data, bool again, product *p) {
     tc_mesh_data made = {.struct_size = sizeof made};
-    tc_extract_options how = data->how;
+    tc_extract_options other = data->how;
+    other.isovalue += 2.5;
+    tc_status status = again ? tc_extract(grid, &other, &p->mesh) : TC_OK;
+    if (!status) status = tc_extract(grid, &data->how, &p->mesh);
+    if (!status) status = tc_mesh_get(p->mesh, &made);
+    p->slabs = made.slab_count;
+    p->hash = made.triangle_count ? mesh_bytes_hash(&made) : 0;
+    return status;
+}
+
+static tc_status labels_make(tc_grid *grid, const case_data *data, bool again, product *p) {
+    static const uint32_t one = 1;
+    tc_mesh_data made = {.struct_size = sizeof made};
+    tc_labels_options other = data->labels;
+    other.labels = &one;
+    other.label_count = 1;
+    tc_status status = again ? tc_extract_labels(grid, &other, &p->mesh) : TC_OK;
+    if (!status) status = tc_extract_labels(grid, &data->labels, &p->mesh);
+    if (!status) status = tc_mesh_get(p->mesh, &made);
+    p->slabs = made.slab_count;
+    p->hash = made.triangle_count ? mesh_bytes_hash(&made) : 0;
+    return status;
+}
+
+static tc_status interval_make(tc_grid *grid, const case_data *data, bool again, product *p) {
+    tc_interval_data made = {.struct_size = sizeof made};
+    tc_interval_options other = data->interval;
+    other.low += 2.5;
+    tc_status status = again ? tc_extract_interval(grid, &other, &p->interval) : TC_OK;
+    if (!status) status = tc_extract_interval(grid, &data->interval, &p->interval);
+    if (!status) status = tc_interval_get(p->interval, &made);
+    p->slabs = made.slab_count;
+    p->hash = made.tetrahedron_count ? interval_bytes_hash(&made) : 0;
+    return status;
+}
+
+/* The hash of all that comes out; 0 where a memory bound does not suffice. */
+static uint64_t hash_of(tc_context *context, const bytes_case *c, const case_data *data, bool again, uint32_t *slabs,
+                        const char *what) {
+    tc_grid *grid = NULL;
+    product p = {0};
     tc_status status = data->complex.points ? tc_tetrahedra_grid_create(context, &data->complex, &grid)
                                             : tc_grid_create(context, &data->grid, &grid);
-    how.isovalue += 2.5;
-    if (!status && again) status = tc_extract(grid, &how, &mesh);
-    if (!status) status = tc_extract(grid, &data->how, &mesh);
-    if (!status) status = tc_mesh_get(mesh, &made);
+    if (!status)
+        status = c->flags & CASE_LABELS     ? labels_make(grid, data, again, &p)
+                 : c->flags & CASE_INTERVAL ? interval_make(grid, data, again, &p)
+                                            : surface_make(grid, data, again, &p);
     EXPECT(!status || (status == TC_ERROR_MEMORY && slabs), "%s: %s", what, tc_message());
-    uint64_t hash = status ? 0 : mesh_bytes_hash(&made);
-    if (slabs) *slabs = made.slab_count;
-    EXPECT(status || made.triangle_count, "%s: nothing comes out", what);
-    tc_mesh_destroy(mesh);
+    if (slabs) *slabs = p.slabs;
+    EXPECT(status || p.hash, "%s: nothing comes out", what);
+    tc_mesh_destroy(p.mesh);
+    tc_interval_destroy(p.interval);
     tc_grid_destroy(grid);
-    return hash;
+    return status ? 0 : p.hash;
 }
 
 static tc_context *variant_open(const variant *v, uint64_t memory) {
@@ -133,12 +179,13 @@ static void tie_add(case_data *data, int step) {
 }
 
 /* The hash in a variant. A bound on memory that does not suffice is raised until it does. */
-static uint64_t variant_run(const variant *v, const case_data *data, uint64_t *memory, const char *what) {
+static uint64_t variant_run(const bytes_case *c, const variant *v, const case_data *data, uint64_t *memory,
+                            const char *what) {
     uint64_t hash = 0;
     for (unsigned percent = v->memory; !hash && percent < 100; percent += 4) {
         uint32_t slabs = 0;
         tc_context *device = variant_open(v, *memory * percent / 100);
-        hash = hash_of(device, data, v->again, percent ? &slabs : NULL, what);
+        hash = hash_of(device, c, data, v->again, percent ? &slabs : NULL, what);
         if (!*memory) tc_context_device_bytes(device, memory);
         tc_context_destroy(device);
         done.slab_meshes += slabs > 1;
@@ -153,7 +200,7 @@ static void variant_compare(const bytes_case *c, const variant *v, case_data *da
     char what[240];
     snprintf(what, sizeof what, "%s, %s", case_name(c), v->name);
     if (t == PLANTED && v->spin_limit) tie_add(data, -1);
-    uint64_t hash = variant_run(v, data, memory, what);
+    uint64_t hash = variant_run(c, v, data, memory, what);
     if (t == PLANTED && v->spin_limit) tie_add(data, 1);
     EXPECT(hash == wanted, "%s: hash %016" PRIx64 ", the reference's is %016" PRIx64, what, hash, wanted);
 }
@@ -164,9 +211,10 @@ static bool case_has_variants(const bytes_case *c, tier t, bool groups) {
     return false;
 }
 
-/* A device without fp64 refuses tetrahedra whose vertices are made in double. */
+/* A device without fp64 refuses tetrahedra and interval volumes whose vertices are made in double. */
 static bool case_refused(const bytes_case *c) {
-    return !has_fp64 && c->kind == CASE_COMPLEX && (c->type == TC_U32 || c->type == TC_I32 || c->type == TC_F64);
+    return !has_fp64 && (c->kind == CASE_COMPLEX || c->flags & CASE_INTERVAL) &&
+           (c->type == TC_U32 || c->type == TC_I32 || c->type == TC_F64);
 }
 
 /* In the variants of one work-item per group, or in those of many. */
@@ -177,7 +225,7 @@ static void case_run(const bytes_case *c, tc_context *reference, tier t, bool gr
     if (groups && !case_has_variants(c, t, groups)) return; /* the reference would be made for nothing */
     snprintf(name, sizeof name, "%s", case_name(c));
     case_fill(c, t >= SMALL, &data);
-    uint64_t wanted = hash_of(reference, &data, false, NULL, name);
+    uint64_t wanted = hash_of(reference, c, &data, false, NULL, name);
     if (t == DRIVER && !groups && case_refused(c)) printf("refused %s: no fp64\n", name);
     if (t == DRIVER && !groups && !case_refused(c)) variant_compare(c, &for_driver, &data, wanted, &memory, t);
     for (int n = 0; n < VARIANTS && t != DRIVER; n++) {

@@ -93,6 +93,9 @@ static inline const char *mesh_difference(const tc_mesh_data *a, const tc_mesh_d
     if (vertices && memcmp(a->positions, b->positions, vertices)) return "positions differ";
     if (vertices && a->normals && memcmp(a->normals, b->normals, vertices)) return "normals differ";
     if (triangles && memcmp(a->triangles, b->triangles, triangles)) return "triangles differ";
+    if (!a->boundary_labels != !b->boundary_labels) return "one mesh has labels, the other has none";
+    if (triangles && a->boundary_labels && memcmp(a->boundary_labels, b->boundary_labels, triangles / 3 * 2))
+        return "labels of triangles differ";
     return NULL;
 }
 

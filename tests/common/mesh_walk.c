@@ -374,5 +374,11 @@ static uint64_t words_hash(uint64_t hash, const void *words, uint64_t count) {
 uint64_t mesh_bytes_hash(const tc_mesh_data *mesh) {
     uint64_t hash = words_hash(0xcbf29ce484222325u, mesh->positions, 3 * mesh->vertex_count);
     if (mesh->normals) hash = words_hash(hash, mesh->normals, 3 * mesh->vertex_count);
-    return words_hash(hash, mesh->triangles, 3 * mesh->triangle_count);
+    hash = words_hash(hash, mesh->triangles, 3 * mesh->triangle_count);
+    return mesh->boundary_labels ? words_hash(hash, mesh->boundary_labels, 2 * mesh->triangle_count) : hash;
+}
+
+uint64_t interval_bytes_hash(const tc_interval_data *interval) {
+    const uint64_t hash = words_hash(0xcbf29ce484222325u, interval->positions, 3 * interval->vertex_count);
+    return words_hash(hash, interval->tetrahedra, 4 * interval->tetrahedron_count);
 }

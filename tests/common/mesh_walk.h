@@ -27,7 +27,9 @@ bool vertex_is_right(const struct signs *s, double isovalue, const tc_mesh_data 
                      const int64_t b[3]);
 bool grid_is_mirrored(const struct signs *s, const tc_mesh_data *mesh);
 
-/* FNV-1a, by words of 32 bits, over positions, normals where there are any, and triangles. */
+/* FNV-1a, by words of 32 bits, over positions, normals where there are any, triangles, and their labels where they have
+ * some; over positions and tetrahedra. */
 uint64_t mesh_bytes_hash(const tc_mesh_data *mesh);
+uint64_t interval_bytes_hash(const tc_interval_data *interval);
 
 #endif

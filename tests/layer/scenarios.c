@@ -12,7 +12,7 @@
 
 enum { NX = 50, NY = 20, NZ = 50, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
 
-typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY } flow;
+typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY, FLOW_LABELS } flow;
 typedef enum coordinates { UNIFORM, RECTILINEAR, CURVILINEAR } coordinates;
 
 struct scenario {
@@ -68,13 +68,23 @@ static const scenario scenarios[] = {
     {.name = "reference, complex", .flow = FLOW_COMPLEX, .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, complex interval", .flow = FLOW_COMPLEX, .interval = true, .engine = TC_ENGINE_REFERENCE},
     {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
+    {.name = "labels", .flow = FLOW_LABELS},
+    {.name = "labels, copied buffers", .flow = FLOW_LABELS, .always_copy = true},
+    {.name = "labels, slabs", .flow = FLOW_LABELS, .slabs = true},
+    {.name = "interval, copied buffers, missing samples",
+     .flow = FLOW_EXTRACT,
+     .interval = true,
+     .type = TC_F32,
+     .always_copy = true},
+    {.name = "reference, labels", .flow = FLOW_LABELS, .engine = TC_ENGINE_REFERENCE},
+    {.name = "reference, interval", .flow = FLOW_EXTRACT, .interval = true, .engine = TC_ENGINE_REFERENCE},
 };
 enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
 static const double isovalues[2] = {127.5, 90};
 
 static char problem[1500];
-static uint8_t bytes[SAMPLES];
+static uint8_t bytes[SAMPLES], labels[SAMPLES];
 static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
 static tc_tetrahedra complex, of_cells;
@@ -98,6 +108,7 @@ static void input_make(void) {
         const int x = n % NX, y = n / NX % NY, z = n / NX / NY;
         const double value = 127.5 + 60 * sin(0.33 * x) * cos(0.41 * y) + 60 * sin(0.37 * z + 0.2 * y);
         bytes[n] = (uint8_t)value;
+        labels[n] = bytes[n] / 64;
         values[n] = x == 20 && y == 10 ? NAN : (float)value;
         points[3 * n] = (float)(x + 0.1 * sin(0.5 * y));
         points[3 * n + 1] = (float)(y + 0.1 * sin(0.5 * z));
@@ -138,7 +149,7 @@ static void grid_describe(const scenario *s, tc_grid_options *o) {
     o->dims[1] = NY;
     o->dims[2] = NZ;
     o->type = s->type;
-    o->samples = s->type == TC_F32 ? (const void *)values : bytes;
+    o->samples = s->type == TC_F32 ? (const void *)values : s->flow == FLOW_LABELS ? labels : bytes;
     if (s->coordinates == CURVILINEAR) o->points = points;
     for (int axis = 0; axis < 3 && s->coordinates == RECTILINEAR; axis++) o->axes[axis] = axes[axis];
 }
@@ -163,6 +174,15 @@ static tc_extract_options surface_describe(const scenario *s, int index) {
     o.isovalue = isovalues[index];
     o.method = s->method;
     o.normals = s->normals;
+    return o;
+}
+
+/* Of label maps: all labels, and one of them. */
+static tc_labels_options labels_describe(int index) {
+    static const uint32_t one = 2;
+    tc_labels_options o;
+    tc_labels_options_init(&o);
+    if (index) o.labels = &one, o.label_count = 1;
     return o;
 }
 
@@ -258,7 +278,20 @@ static tc_status intervals_run(int index, trial *t, tc_grid *grid) {
     return status;
 }
 
+static tc_status label_surfaces_run(int index, trial *t, tc_grid *grid) {
+    tc_mesh *mesh = NULL;
+    tc_status status = TC_OK;
+    bool fine = true;
+    for (int n = 0; n < 3 && fine; n++) {
+        const tc_labels_options how = labels_describe(n % 2);
+        fine = TRIED(t, tc_extract_labels(grid, &how, &mesh)) && mesh_is_right(index, n % 2, mesh);
+    }
+    tc_mesh_destroy(mesh);
+    return status;
+}
+
 static tc_status results_run(int index, trial *t, tc_grid *grid) {
+    if (scenarios[index].flow == FLOW_LABELS) return label_surfaces_run(index, t, grid);
     return scenarios[index].interval ? intervals_run(index, t, grid) : surfaces_run(index, t, grid);
 }
 
@@ -450,6 +483,16 @@ static bool budget_find(int index) {
     return false;
 }
 
+static tc_status reference_make(int index, int n, tc_grid *grid) {
+    const scenario *s = &scenarios[index];
+    const tc_extract_options surface = surface_describe(s, n);
+    const tc_labels_options all = labels_describe(n);
+    const tc_interval_options interval = interval_describe(n);
+    if (s->flow == FLOW_LABELS) return tc_extract_labels(grid, &all, &expected[index][n]);
+    if (s->interval) return tc_extract_interval(grid, &interval, &expected_intervals[index][n]);
+    return tc_extract(grid, &surface, &expected[index][n]);
+}
+
 static tc_status reference_extract_all(tc_context *reference) {
     tc_status status = TC_OK;
     for (int index = 0; index < SCENARIOS && !status; index++) {
@@ -461,12 +504,7 @@ static tc_status reference_extract_all(tc_context *reference) {
         grid_describe(s, &options);
         status = s->flow == FLOW_COMPLEX ? tc_tetrahedra_grid_create(reference, &complex_options, &grid)
                                          : tc_grid_create(reference, &options, &grid);
-        for (int n = 0; n < 2 && !status; n++) {
-            const tc_extract_options how = surface_describe(s, n);
-            const tc_interval_options between = interval_describe(n);
-            status = s->interval ? tc_extract_interval(grid, &between, &expected_intervals[index][n])
-                                 : tc_extract(grid, &how, &expected[index][n]);
-        }
+        for (int n = 0; n < 2 && !status; n++) status = reference_make(index, n, grid);
         tc_grid_destroy(grid);
     }
     return status;

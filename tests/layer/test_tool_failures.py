@@ -242,6 +242,9 @@ class Memory(Failures):
                            "-o", "s.ply")
         self.fail_requests("extract", "@grid.vts", "--iso", "91", "--engine", "reference", "--drop-degenerate", "--carry",
                            "bump", "-o", "s.vtp")
+        if "simplifies: meshoptimizer" in subprocess.check_output([TOOL, "--version"], text=True):
+            self.fail_requests("extract", "@a.nrrd", "--iso", "80", "--engine", "reference", "--simplify", "0.3",
+                               "--simplify-error", "0.2", "--normals", "-o", "s.ply")
         self.fail_requests("devices", "--json")
         self.fail_requests("generate", "sphere", "--dims", "9,9,9", "--type", "u8", "-o", "s.nrrd")
         self.fail_requests("extract", "@grid.vts", "--iso", "80", "--engine", "reference", "--carry", "bump", "-o",

@@ -26,7 +26,8 @@ VALUES = {"--output": ["a.ply"], "--format": ["ply"], "--blocks": ["joined"], "-
           "--device": ["cpu"], "--max-memory": ["1G"], "--type": ["u8"], "--endian": ["big"], "--skip": ["0"],
           "--method": ["snap"], "--nodata": ["3"], "--component": ["0"], "--seed": ["3"], "--timeout": ["0"],
           "--roi": [":,:,:"], "--roi-world": [":,:,:"], "--step": ["1"], "--mask": ["u8.nrrd"],
-          "--snap": ["0.3"], "--part": ["0/2"], "--preview": ["a.png"], "--view": ["top"], "--preview-size": ["40,30"], "--iso": ["100"]}
+          "--snap": ["0.3"], "--part": ["0/2"], "--preview": ["a.png"], "--view": ["top"], "--preview-size": ["40,30"], "--iso": ["100"],
+          "--simplify": ["0.5"], "--simplify-error": ["1"]}
 REFERENCE = ["--engine", "reference"]
 
 # Per case of the source: command, operand, more arguments. That of the option itself is added.
@@ -43,6 +44,7 @@ CASES = {
     "has_no_device": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "has_no_device_nor_stream": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "is_not_snap": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
+    "is_not_simplified": ("extract", "u8.nrrd", ["--iso", "100", *REFERENCE]),
     "is_not_raw": ("info", "u8.nrrd", []),
     "has_bytes": ("info", "u8.raw", RAW),
     "is_not_noise": ("generate", "sphere", [*RAW, "-o", "new.nrrd"]),

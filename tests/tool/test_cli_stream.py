@@ -204,6 +204,7 @@ class Stream(GridCase):
         words = ["extract", volume, "--iso", "127.5", "--engine", "reference", "--stream"]
         for more, says in ((["--check"], "--check needs the whole mesh"),
                            (["--drop-degenerate"], "--drop-degenerate needs"),
+                           (["--simplify", "0.5"], "--simplify needs (the whole mesh|meshoptimizer)"),
                            (["--preview", self.path("a.png")], "--preview (draws the whole mesh|needs libpng)"),
                            (["--roi", ":,:,2:9"], "take a part"),
                            (["-o", self.path("a.obj")], "write ply, vtp(, stl or vtkhdf| or stl)"),

@@ -77,6 +77,8 @@ static int is_snap_of_cells(const situation *s) { return has_cells(s) && s->o->m
 
 static int is_not_snap(const situation *s) { return s->o->method != TC_METHOD_SNAP; }
 
+static int is_not_simplified(const situation *s) { return !options_given(s->o, "--simplify"); }
+
 static int has_no_field(const situation *s) { return s->is_open; }
 
 /* ----------------------------------------------------------------------------------------------------------- table */
@@ -115,6 +117,7 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--part", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--part, or --count"},
     {COMMAND_EXTRACT, "--drop-degenerate", BEFORE_READING, has_no_mesh, REFUSED,
      NO_MESH "--drop-degenerate, or --count"},
+    {COMMAND_EXTRACT, "--simplify", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--simplify, or --count"},
 
     {COMMAND_ISOVOLUME, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--output, or --count"},
     {COMMAND_ISOVOLUME, "--verify", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--verify, or --count"},
@@ -156,6 +159,9 @@ static const effect table[] = {
 
     {COMMAND_EXTRACT, "--snap", BEFORE_READING, is_not_snap, REFUSED,
      "--snap is the threshold of --method snap: give that too, or leave it out"},
+
+    {COMMAND_EXTRACT, "--simplify-error", BEFORE_READING, is_not_simplified, REFUSED,
+     "--simplify-error bounds what --simplify does: give that too, or leave it out"},
 
     {READS, "--type", BEFORE_READING, is_not_raw, REFUSED, "--type" NOT_RAW},
     {READS, "--endian", BEFORE_READING, is_not_raw, REFUSED, "--endian" NOT_RAW},

@@ -116,6 +116,14 @@ const option option_table[] = {
     {"--drop-degenerate", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(drop_degenerate), NULL,
      "leave out triangles of zero area, as samples that equal the isovalue make:\n"
      "their edges without length are contracted, what was closed stays closed"},
+    {"--simplify", NULL, "RATIO", COMMAND_EXTRACT, VALUE_SHARE, IN(simplify), NULL,
+     "leave this share of the triangles, 0 to 1, as far as topology allows: edges\n"
+     "are contracted, after triangles of zero area were dropped. What is written\n"
+     "has the border and the topology of the surface, which is checked; how far\n"
+     "the two are apart is measured, and reported"},
+    {"--simplify-error", NULL, "D", COMMAND_EXTRACT, VALUE_DISTANCE, IN(simplify_error), NULL,
+     "of --simplify: the surfaces may be this far apart, in units of the\n"
+     "coordinates, as far as samples tell; more triangles remain where needed"},
     {"--count", NULL, NULL, COMMAND_ISOVOLUME, VALUE_NONE, IN(count), NULL,
      "classify only: count vertices, tetrahedra and bytes, make no volume"},
     {"--count", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(count), NULL,
@@ -146,7 +154,8 @@ const option option_table[] = {
     {"--stream", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(stream), NULL,
      "read and write window by window, also where all would fit into memory: else\n"
      "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
-     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --preview)"},
+     "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --simplify,\n"
+     "--preview)"},
     {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(piece), NULL,
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
      "join' makes the mesh of all N, which other processes may have made; of what\n"

@@ -27,6 +27,8 @@ typedef enum value_kind {
     VALUE_RANGES,    /* world_ranges */
     VALUE_STEP,      /* int64_t[3], from 1; one number goes for all */
     VALUE_THRESHOLD, /* double, 0 to 0.5 */
+    VALUE_SHARE,     /* double, above 0 and below 1 */
+    VALUE_DISTANCE,  /* double, above 0 */
     VALUE_PIECE,     /* int64_t[2]: I/N */
     VALUE_CUT,       /* cut_request */
     VALUE_VIEW,      /* view_angles: one of the choices, or two numbers */

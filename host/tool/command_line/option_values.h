@@ -71,9 +71,11 @@ typedef struct options {
     view_angles view;        /* of the surface in it */
     int64_t preview_size[2]; /* pixels */
     const char *device;
-    int engine;  /* a tc_engine, or ENGINE_AUTO */
-    int method;  /* a tc_method */
-    double snap; /* -1 where not given */
+    int engine;            /* a tc_engine, or ENGINE_AUTO */
+    int method;            /* a tc_method */
+    double snap;           /* -1 where not given */
+    double simplify;       /* share of the triangles that is to remain; 0 where not given, as the next */
+    double simplify_error; /* distance of surfaces at most */
     const char *field;
     const char *carry;   /* names with commas between */
     int separate_blocks; /* a file for each */

@@ -351,6 +351,13 @@ int parse_value(const option *spec, const char *text, options *o) {
     case VALUE_THRESHOLD:
         if (take_real(&text, place) && !*text && *(double *)place >= 0 && *(double *)place <= 0.5) return 0;
         return fail(STATUS_USAGE, "%s: give one number from 0 to 0.5", spec->name);
+    case VALUE_SHARE:
+        if (take_real(&text, place) && !*text && *(double *)place > 0 && *(double *)place < 1) return 0;
+        return fail(STATUS_USAGE, "%s: give one number above 0 and below 1: the share of the triangles that remains",
+                    spec->name);
+    case VALUE_DISTANCE:
+        if (take_real(&text, place) && !*text && *(double *)place > 0) return 0;
+        return fail(STATUS_USAGE, "%s: give one number above 0: a distance in units of the coordinates", spec->name);
     case VALUE_INDEX:
         status = parse_number(spec, text, INT_MAX, &number);
         *(int *)place = (int)number;

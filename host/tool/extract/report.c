@@ -61,7 +61,16 @@ static void add_mesh(json_t *object, const surface_report *s) {
     if (s->is_streamed) json_object_set_new(object, "pieces", count_json(s->piece_count));
 }
 
-static json_t *surface_json(const surface_report *s) {
+static void add_simplified(json_t *object, const surface_report *s, const options *o) {
+    const simplified_report *r = &s->simplified;
+    json_object_set_new(object, "simplified",
+                        json_pack("{s:o, s:o, s:o, s:o, s:o}", "share", real_json(o->simplify), "vertices_before",
+                                  count_json(r->vertices_before), "triangles_before", count_json(r->triangles_before),
+                                  "distance_to", real_json(r->distance_to), "distance_from",
+                                  real_json(r->distance_from)));
+}
+
+static json_t *surface_json(const surface_report *s, const options *o) {
     json_t *object = json_object(), *timings = json_object();
     json_object_set_new(object, "iso", real_json(s->iso->value));
     json_object_set_new(object, "vertices", count_json(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count));
@@ -70,11 +79,13 @@ static json_t *surface_json(const surface_report *s) {
     json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
     if (s->has_mesh) add_mesh(object, s);
     if (s->has_dropped) json_object_set_new(object, "dropped_triangles", count_json(s->dropped_count));
+    if (s->has_simplified) add_simplified(object, s, o);
     json_object_set_new(timings, "classify", ms_json(s->classify_ms));
     if (s->has_mesh) {
         json_object_set_new(timings, "emit", ms_json(s->emit_ms));
         json_object_set_new(timings, "readback", ms_json(s->readback_ms));
     }
+    if (s->has_simplified) json_object_set_new(timings, "simplify", ms_json(s->simplified.ms));
     json_object_set_new(object, "timings_ms", timings);
     if (s->has_topology) add_topology(object, s);
     if (s->has_topology) add_shapes(object, s);
@@ -111,7 +122,7 @@ static json_t *cut_json(const extract_report *r) {
 
 int extract_report_json(const extract_report *r) {
     json_t *surfaces = json_array(), *object = json_object();
-    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n]));
+    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n], r->o));
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
@@ -162,6 +173,16 @@ static void bounds_text(const surface_report *s) {
     printf(has_bounds(s) ? "\n" : " none\n");
 }
 
+static void simplified_text(const surface_report *s) {
+    const simplified_report *r = &s->simplified;
+    printf("  simplified  from %" PRIu64 " vertices, %" PRIu64
+           " triangles, in %.2f ms; topology and border are the same\n",
+           r->vertices_before, r->triangles_before, r->ms);
+    printf(
+        "              distances, in units of coordinates, by samples: %.4g of the surface before, %.4g of this one\n",
+        r->distance_to, r->distance_from);
+}
+
 static void surface_text(const surface_report *s, const char *cells) {
     const mesh_summary *m = &s->summary;
     printf("isovalue %s\n", s->iso->text);
@@ -174,6 +195,7 @@ static void surface_text(const surface_report *s, const char *cells) {
                " shared ones\n",
                s->vertex_count);
     if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
+    if (s->has_simplified) simplified_text(s);
     if (s->has_mesh) {
         bounds_text(s);
         if (!s->has_origin) printf("  origin      of each block its own\n");

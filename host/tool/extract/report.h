@@ -20,6 +20,14 @@ typedef struct coarse_count {
     double fewest;     /* steps, where coarse is not 0 */
 } coarse_count;
 
+/* What --simplify has made of a surface: sums over its meshes, and of distances the greatest. */
+typedef struct simplified_report {
+    uint64_t vertices_before, triangles_before; /* behind triangles of zero area that were dropped */
+    double distance_to, distance_from; /* Hausdorff distance by samples: of the surface before from what is left of it,
+                                          and of that from the surface before */
+    double ms;
+} simplified_report;
+
 /* One isovalue's results: those of its mesh, or sums over its meshes. */
 typedef struct surface_report {
     const typed_isovalue *iso;
@@ -38,6 +46,8 @@ typedef struct surface_report {
     int has_dropped;
     uint64_t dropped_count;     /* triangles of zero area: the other figures are of what is left */
     uint64_t nonmanifold_edges; /* that dropping has left: of more than two triangles */
+    int has_simplified;
+    simplified_report simplified;
     int has_topology;
     mesh_topology topology;
     mesh_shapes shapes;

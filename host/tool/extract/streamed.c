@@ -58,6 +58,7 @@ static const char *obstacle(const stream_input *in) {
     if (o->check) return "--check needs the whole mesh";
     if (o->verify) return "--verify compares whole meshes";
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
+    if (o->simplify > 0) return "--simplify needs the whole mesh";
     if (o->separate_blocks && in->team) return "--blocks separate names files of blocks";
     if (o->soup && (o->piece[1] || in->team)) return "--soup needs the whole mesh";
     if (o->preview) return "--preview draws the whole mesh";

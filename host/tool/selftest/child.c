@@ -38,55 +38,112 @@ typedef struct group_run {
 
 /* ---------------------------------------------------------------------------------------------------------- trials */
 
-static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, tc_grid **grid,
-                               tc_mesh **mesh, tc_mesh_data *data) {
+/* What an engine makes of a trial's volume. */
+typedef struct trial_result {
+    tc_grid *grid;
+    tc_mesh *mesh;
+    tc_interval *interval;
+    tc_mesh_data surface;
+    tc_interval_data volume; /* of interval volumes, instead */
+} trial_result;
+
+static tc_status extract_surface(const trial *t, trial_result *r) {
     tc_extract_options how;
     tc_extract_options_init(&how);
     how.isovalue = t->change == CHANGE_SUBNORMAL ? ldexp(t->isovalue, selftest_exponent(t)) : t->isovalue;
     how.normals = t->normals;
     how.closed = t->closed;
     how.method = t->method;
-    data->struct_size = sizeof *data;
-    tc_status status = selftest_grid_create(v, context, grid);
-    if (!status) status = tc_extract(*grid, &how, mesh);
-    return status ? status : tc_mesh_get(*mesh, data);
+    return tc_extract(r->grid, &how, &r->mesh);
 }
 
-static void compare_trial(const trial *t, const tc_mesh_data *device, const tc_mesh_data *reference, char *text,
+static tc_status extract_labels(const trial *t, trial_result *r) {
+    tc_labels_options how;
+    tc_labels_options_init(&how);
+    how.closed = t->closed;
+    return tc_extract_labels(r->grid, &how, &r->mesh);
+}
+
+static tc_status extract_interval(const trial *t, trial_result *r) {
+    const tc_interval_options how = {sizeof how, t->isovalue, t->high};
+    const tc_status status = tc_extract_interval(r->grid, &how, &r->interval);
+    return status ? status : tc_interval_get(r->interval, &r->volume);
+}
+
+static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, trial_result *r) {
+    r->surface.struct_size = sizeof r->surface;
+    r->volume.struct_size = sizeof r->volume;
+    tc_status status = selftest_grid_create(v, context, &r->grid);
+    if (status) return status;
+    if (t->product == PRODUCT_INTERVAL) return extract_interval(t, r);
+    status = t->product == PRODUCT_LABELS ? extract_labels(t, r) : extract_surface(t, r);
+    return status ? status : tc_mesh_get(r->mesh, &r->surface);
+}
+
+static void release_trial(trial_result *r) {
+    tc_mesh_destroy(r->mesh);
+    tc_interval_destroy(r->interval);
+    tc_grid_destroy(r->grid);
+}
+
+static int volumes_are_same(const tc_interval_data *device, const tc_interval_data *reference, char *text,
+                            size_t bytes) {
+    const int counts = device->sample_count == reference->sample_count && device->low_count == reference->low_count &&
+                       device->high_count == reference->high_count &&
+                       device->tetrahedron_count == reference->tetrahedron_count;
+    if (!counts)
+        snprintf(text, bytes,
+                 "%" PRIu64 " vertices and %" PRIu64 " tetrahedra, the reference's are %" PRIu64 " and %" PRIu64,
+                 device->vertex_count, device->tetrahedron_count, reference->vertex_count,
+                 reference->tetrahedron_count);
+    else if (device->vertex_count && memcmp(device->positions, reference->positions, (size_t)device->vertex_count * 12))
+        snprintf(text, bytes, "vertices of the interval volume lie elsewhere than the reference's");
+    else if (device->tetrahedron_count &&
+             memcmp(device->tetrahedra, reference->tetrahedra, (size_t)device->tetrahedron_count * 16))
+        snprintf(text, bytes, "tetrahedra have other corners than the reference's");
+    return !*text;
+}
+
+static void compare_trial(const trial *t, const trial_result *device, const trial_result *reference, char *text,
                           size_t bytes) {
-    if (!meshes_are_same(device, reference, text, bytes)) return;
-    if (t->is_known && (device->vertex_count != t->vertices || device->triangle_count != t->triangles))
-        snprintf(text, bytes, "%" PRIu64 " vertices and %" PRIu64 " triangles, should be %" PRIu64 " and %" PRIu64,
-                 device->vertex_count, device->triangle_count, t->vertices, t->triangles);
+    const int is_volume = t->product == PRODUCT_INTERVAL;
+    const uint64_t vertices = is_volume ? device->volume.vertex_count : device->surface.vertex_count;
+    const uint64_t parts = is_volume ? device->volume.tetrahedron_count : device->surface.triangle_count;
+    if (is_volume ? !volumes_are_same(&device->volume, &reference->volume, text, bytes)
+                  : !meshes_are_same(&device->surface, &reference->surface, text, bytes))
+        return;
+    if (t->is_known && (vertices != t->vertices || parts != t->triangles))
+        snprintf(text, bytes, "%" PRIu64 " vertices and %" PRIu64 " %s, should be %" PRIu64 " and %" PRIu64, vertices,
+                 parts, is_volume ? "tetrahedra" : "triangles", t->vertices, t->triangles);
 }
 
 /* Returns 0, or an exit status where it could not be run; text: what is wrong, or "". */
 static int run_trial(group_run *r, const trial *t, tc_context *device, char *text, size_t bytes) {
-    tc_grid *grids[2] = {NULL, NULL};
-    tc_mesh *meshes[2] = {NULL, NULL};
-    tc_mesh_data data[2] = {{0}, {0}};
+    trial_result results[2] = {{0}, {0}};
     selftest_volume volume;
     int status = selftest_volume_make(t, &volume);
-    if (!status) status = library_status(extract_trial(t, r->reference, &volume, &grids[0], &meshes[0], &data[0]));
+    if (!status) status = library_status(extract_trial(t, r->reference, &volume, &results[0]));
     if (!status) {
-        if (extract_trial(t, device, &volume, &grids[1], &meshes[1], &data[1]))
+        if (extract_trial(t, device, &volume, &results[1]))
             snprintf(text, bytes, "%s", tc_message());
         else
-            compare_trial(t, &data[1], &data[0], text, bytes);
-        if (data[1].slab_count > r->most_slabs) r->most_slabs = data[1].slab_count;
+            compare_trial(t, &results[1], &results[0], text, bytes);
+        if (results[1].surface.slab_count > r->most_slabs) r->most_slabs = results[1].surface.slab_count;
     }
-    for (int e = 0; e < 2; e++) {
-        tc_mesh_destroy(meshes[e]);
-        tc_grid_destroy(grids[e]);
-    }
+    for (int e = 0; e < 2; e++) release_trial(&results[e]);
     selftest_volume_release(&volume);
     return status;
 }
 
 static void name_trial(const trial *t, const launch *l, char *name, size_t bytes) {
-    int length = snprintf(name, bytes, "%s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s",
-                          t->field ? t->field : "quotients", t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type),
-                          shortest_number(t->isovalue).text);
+    int length = snprintf(name, bytes, "%s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, ", t->field ? t->field : "quotients",
+                          t->dims[0], t->dims[1], t->dims[2], tc_type_name(t->type));
+    if (t->product == PRODUCT_LABELS)
+        length += snprintf(name + length, bytes - (size_t)length, "labels");
+    else
+        length += snprintf(name + length, bytes - (size_t)length, "isovalue %s", shortest_number(t->isovalue).text);
+    if (t->product == PRODUCT_INTERVAL)
+        length += snprintf(name + length, bytes - (size_t)length, " to %s", shortest_number(t->high).text);
     const struct {
         const char *what;
         uint64_t value;
@@ -146,10 +203,15 @@ static const char *launch_refusal(const group_run *r, const launch *l) {
 }
 
 /* Likewise for samples of a type. */
-static const char *samples_refusal(const tc_device_info *info, tc_type type, tc_method method, int is_complex) {
+static const char *samples_refusal(const tc_device_info *info, tc_type type, int is_made_in_double) {
     const int is_wide = type == TC_U32 || type == TC_I32 || type == TC_F64;
-    const int needs_fp64 = is_wide && (is_complex || method == TC_METHOD_SNAP);
+    const int needs_fp64 = is_wide && is_made_in_double;
     return needs_fp64 && !info->has_fp64 ? "the device has no fp64" : NULL;
+}
+
+/* Whether vertices of wide samples are made on the device, which the host does of other surfaces where it has to. */
+static int needs_double(const trial *t) {
+    return t->kind == KIND_COMPLEX || t->method == TC_METHOD_SNAP || t->product == PRODUCT_INTERVAL;
 }
 
 static int run_launch(group_run *r, const launch *l, int trial_count) {
@@ -161,7 +223,7 @@ static int run_launch(group_run *r, const launch *l, int trial_count) {
         const trial *of = &r->group->trials[t];
         const char *refusal = launch_refusal(r, l);
         if (number < r->job->first) continue;
-        if (!refusal) refusal = samples_refusal(&r->info, of->type, of->method, of->kind == KIND_COMPLEX);
+        if (!refusal) refusal = samples_refusal(&r->info, of->type, needs_double(of));
         name_trial(of, l, name, sizeof name);
         child_report("trial %d %s", number, name);
         if (!refusal && !device) status = open_device(r->job->device, l, &device);
@@ -221,7 +283,7 @@ static int run_vectors(const selftest_job *job) {
         child_report("trial %d %s %" PRId64 "x%" PRId64 "x%" PRId64 " %s, isovalue %s, %s, %s", number - 1, v->field,
                      v->dims[0], v->dims[1], v->dims[2], tc_type_name(v->type), shortest_number(v->isovalue).text,
                      tc_method_name(v->method), v->options);
-        const char *refusal = samples_refusal(&info, v->type, v->method, v->is_complex);
+        const char *refusal = samples_refusal(&info, v->type, v->is_complex || v->method == TC_METHOD_SNAP);
         if (!refusal) status = vector_try(v, device, text, sizeof text);
         if (refusal)
             child_report("skipped %s", refusal);

@@ -137,6 +137,22 @@ static const trial whole[] = {
     {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_F32, .isovalue = 127.5, .kind = KIND_COMPLEX, .method = TC_METHOD_HYBRID, .closed = 1},
 };
 
+static const trial labelled[] = {
+    {.product = PRODUCT_LABELS, .field = "noise", .dims = {67, 13, 11}, .type = TC_U8, .change = CHANGE_STEPS},
+    {.product = PRODUCT_LABELS, .field = "tangle", .dims = {130, 21, 18}, .type = TC_I16, .change = CHANGE_STEPS, .closed = 1},
+    {.product = PRODUCT_LABELS, .field = "gyroid", .dims = {66, 20, 13}, .type = TC_U32, .change = CHANGE_STEPS, .has_nodata = 1, .nodata = 64},
+    {.product = PRODUCT_LABELS, .field = "noise", .dims = {67, 13, 11}, .type = TC_I32, .change = CHANGE_STEPS, .first = {1, -7, 100}, .mirrored = 1},
+};
+
+static const trial intervals[] = {
+    {.product = PRODUCT_INTERVAL, .field = "full", .dims = {20, 20, 20}, .type = TC_U8, .isovalue = 127.5, .high = 300, .is_known = 1, .vertices = 8000, .triangles = 34295},
+    {.product = PRODUCT_INTERVAL, .field = "noise", .dims = {67, 13, 11}, .type = TC_F32, .isovalue = 100, .high = 150, .change = CHANGE_MISSING},
+    {.product = PRODUCT_INTERVAL, .field = "gyroid", .dims = {130, 21, 18}, .type = TC_U8, .isovalue = 127.5, .high = 160},
+    {.product = PRODUCT_INTERVAL, .field = "noise", .dims = {67, 13, 11}, .type = TC_U8, .isovalue = 64, .high = 128, .change = CHANGE_STEPS},
+    {.product = PRODUCT_INTERVAL, .field = "noise", .dims = {67, 13, 11}, .type = TC_F64, .isovalue = 100, .high = 150},
+    {.product = PRODUCT_INTERVAL, .field = "gyroid", .dims = {67, 20, 13}, .type = TC_F32, .isovalue = 127.5, .high = 160, .kind = KIND_CURVILINEAR},
+};
+
 static const trial scanned[] = {
     {.field = "gyroid", .dims = {130, 70, 66}, .type = TC_U8, .isovalue = 127.5, .is_known = 1, .vertices = 254936, .triangles = 502192},
     {.field = "gyroid", .dims = {30, 20, 13}, .type = TC_U8, .isovalue = 127.5, .kind = KIND_COMPLEX},
@@ -208,6 +224,8 @@ const trial_group trial_groups[] = {
     GROUP("coordinates", "rectilinear, curvilinear grids", coordinates, standard, 0, 2, 1),
     GROUP("complexes", "unstructured grids", complexes, standard, 0, 1, 1),
     GROUP("cells", "unstructured cells kept whole", whole, standard, 0, 1, 1),
+    GROUP("labels", "surfaces of label maps", labelled, standard, 0, 1, 1),
+    GROUP("intervals", "interval volumes", intervals, standard, 0, 2, 1),
     GROUP("scan", "the scan and its fallback", scanned, chained, 0, 1, 3),
     GROUP("launches", "work-group and tile sizes", launched, varied, 0, 1, 2),
     GROUP("divisions", "ways to divide", quotients, divided, 0, 1, 1),

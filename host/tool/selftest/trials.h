@@ -20,7 +20,15 @@ typedef enum trial_change {
 
 typedef enum trial_kind { KIND_UNIFORM, KIND_RECTILINEAR, KIND_CURVILINEAR, KIND_COMPLEX } trial_kind;
 
+typedef enum trial_product {
+    PRODUCT_SURFACE,
+    PRODUCT_LABELS,   /* the samples are labels */
+    PRODUCT_INTERVAL, /* the interval volume from the isovalue on to `high` */
+} trial_product;
+
 typedef struct trial {
+    trial_product product;
+    double high;
     const char *field; /* unless the change makes the samples */
     int64_t dims[3];
     tc_type type;
@@ -32,8 +40,8 @@ typedef struct trial {
     int has_nodata;
     double nodata;
     int64_t first[3];
-    int is_known; /* then the counts below are those from signs alone */
-    uint64_t vertices, triangles;
+    int is_known;                 /* then the counts below are those from signs alone */
+    uint64_t vertices, triangles; /* or tetrahedra */
 } trial;
 
 /* Fields of tc_expert_options, and the bound on memory; zeros: the defaults. Launches that the device does not offer
