@@ -121,8 +121,8 @@ inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
 
 #if WORK_ITEMS < 32
 
-/* For each place its word, the number of the first vertex, and of the first one in the next word, where the last cube of
- * the row needs that. */
+/* For each place its word, the number of the first vertex, and of the first one in the next word, where the last cube
+ * of the row needs that. */
 typedef struct row_places {
     ulong word[INTERVAL_PLACES];
     uint first[INTERVAL_PLACES], next[INTERVAL_PLACES];
@@ -150,8 +150,8 @@ inline_always void places_of_bound(const places_row *r, const bound *b, const sa
     }
 }
 
-/* reached: cubes that have any tetrahedra; partial: those of them that are not within whole, so that their vertices are on
- * edges too. */
+/* reached: cubes that have any tetrahedra; partial: those of them that are not within whole, so that their vertices are
+ * on edges too. */
 inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) {
     p->has_next = reached >> 63;
 #pragma unroll
