@@ -13,7 +13,7 @@ typedef struct label_numbers {
 } label_numbers;
 
 inline_always uint label_vertex(label_numbers v, uint vertex) {
-    const uint word = vertex & 31, at = v.x + (vertex >> 5);
+    const uint word = LABEL_VERTEX_WORD(vertex), at = v.x + LABEL_VERTEX_NEXT(vertex);
     if (at == 64) return v.row->next[word];
     return v.row->numbers[word] + (uint)popcount(v.row->words[word] & ((1ul << at) - 1));
 }
