@@ -96,9 +96,8 @@ inline_always void label_row_emit(const label_job *s, local const label_row *r, 
     for (uint m = 0; m < count; m++) {
         const uint x = list[m].x;
         const label_numbers v = {r, x};
-        n += list[m].entry
-                 ? label_two_emit(s, v, list[m], n, tables, out)
-                 : label_more_emit(s, v, (odd + x) & 1, label_corners(s, first + x), cells, n, tables, out);
+        n += list[m].entry ? label_two_emit(s, v, list[m], n, tables, out)
+                           : label_more_emit(s, v, (odd + x) & 1, label_corners(s, first + x), cells, n, tables, out);
     }
 }
 

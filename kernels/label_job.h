@@ -41,7 +41,7 @@ enum {
 
 /* A vertex of a cube: the row word that it is in, and whether it belongs to the next sample along x. */
 #define LABEL_VERTEX(word, next) ((word) | (next) << 6)
-#define LABEL_VERTEX_WORD(v)     ((v) & 63)
+#define LABEL_VERTEX_WORD(v)     ((v)&63)
 #define LABEL_VERTEX_NEXT(v)     ((v) >> 6)
 
 /* Indices in the slab's head, before the words of tiles (TILE_WORDS each). */

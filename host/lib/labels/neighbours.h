@@ -8,7 +8,7 @@
 
 #include "grid/mesh.h"
 
-enum { NEIGHBOUR_RANGES = 64 };
+enum { NEIGHBOUR_RANGES = 32 };
 
 /* Arrays are of the range's vertices. */
 typedef struct neighbour_range {

@@ -92,9 +92,9 @@ struct tc_context {
     tc_expert_options expert;   /* the caller's, or the defaults */
     launch_parameters launch;
     tc_device_info info;
-    pid_t process; /* that made it */
+    pid_t process;                          /* that made it */
     host_block smoothing[SMOOTHING_BLOCKS]; /* of label maps: kept between extractions */
-    bool in_place; /* the device works in the host's memory: nothing is copied */
+    bool in_place;                          /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
     cl_command_queue queue;
