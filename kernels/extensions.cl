@@ -70,16 +70,22 @@ inline_always samples64 signs64(samples64 bits) {
 }
 #endif
 
-/* Bit n: sample n is at most element n of `most`. Without mask registers, each byte keeps one bit, and the product sums
- * eight bytes into its highest one. */
-inline_always ulong at_most64(samples64 samples, samples64 most) {
-    bytes64 is = __builtin_convertvector(samples <= most, bytes64);
+/* Bit n: byte n of the mask is set. Without instructions for that, each byte keeps one bit, and the product sums eight
+ * bytes into its highest one. */
+inline_always ulong mask_word(bytes64 is) {
 #ifdef MASK_REGISTERS
     return __builtin_ia32_cvtb2mask512(is);
+#elif defined(__AVX2__)
+    return (uint)__builtin_ia32_pmovmskb256(is.lo) | (ulong)(uint)__builtin_ia32_pmovmskb256(is.hi) << 32;
 #else
     ulong8 mask = __builtin_astype(is, ulong8);
     return as_ulong(convert_uchar8(((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56));
 #endif
+}
+
+/* Bit n: sample n is at most element n of `most`. */
+inline_always ulong at_most64(samples64 samples, samples64 most) {
+    return mask_word(__builtin_convertvector(samples <= most, bytes64));
 }
 
 /* Elements 1 to 7 of x, then `last`. OpenCL C's own form, a vector literal, compiles to slower code. */

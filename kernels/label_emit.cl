@@ -28,10 +28,11 @@ kernel void label_emit(label_job s, global const BITS *samples, global ulong *wo
     while (number < count) {
         number = ticket_take(&state[LABEL_EMIT_TICKET], shared);
         const uint brick = number < count ? active[number] : 0;
+        const label_near near = label_near_of(&s, brick, tiles);
         for (uint first = 0; first < BRICK_WORDS; first += LABEL_TEAMS) {
             const uint row = first + team;
             const bool is_there = number < count && row < BRICK_WORDS && (rows[brick] >> row & 1);
-            if (is_there && lane == 0) label_row_make(&s, label_place_of(&s, brick, row), in, tiles, &made[team]);
+            if (is_there && lane == 0) label_row_make(&s, label_place_of(&s, brick, row), near, in, tiles, &made[team]);
             group_barrier();
             if (is_there) label_row_emit(&s, &made[team], lane, samples, tables, out);
             group_barrier();

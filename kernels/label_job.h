@@ -30,16 +30,19 @@ enum {
 #define LABEL_INTERFACE(vertices, inner, outer, triangles)                                                             \
     ((vertices) | (inner) << 16 | (outer) << 18 | (triangles) << 20)
 
-/* A vertex of a cube: the row word that it is in, and whether it belongs to the next sample along x. */
-#define LABEL_VERTEX(word, next) ((word) | (next) << 5) /* LABEL_ROW_WORDS is 32 */
-
-/* Row words: the own row's by type; then of the rows y + 1, z + 1 and both, what cubes use of them. */
+/* Row words: the own row's by type; then those of the rows y + 1 and z + 1, by shared type; of the row y + 1, z + 1 the
+ * edges along x. */
 enum {
-    LABEL_WORD_Y1 = LABEL_ROW_TYPES,    /* x, z, xz, and the two triangles of xz */
-    LABEL_WORD_Z1 = LABEL_WORD_Y1 + 5,  /* x, y, xy, and those of xy */
-    LABEL_WORD_YZ1 = LABEL_WORD_Z1 + 5, /* x */
+    LABEL_WORD_Y1 = LABEL_ROW_TYPES,
+    LABEL_WORD_Z1 = LABEL_WORD_Y1 + LABEL_SHARED_TYPES,
+    LABEL_WORD_YZ1 = LABEL_WORD_Z1 + LABEL_SHARED_TYPES,
     LABEL_ROW_WORDS
 };
+
+/* A vertex of a cube: the row word that it is in, and whether it belongs to the next sample along x. */
+#define LABEL_VERTEX(word, next) ((word) | (next) << 6)
+#define LABEL_VERTEX_WORD(v)     ((v)&63)
+#define LABEL_VERTEX_NEXT(v)     ((v) >> 6)
 
 /* Indices in the slab's head, before the words of tiles (TILE_WORDS each). */
 enum {

@@ -16,7 +16,7 @@ typedef struct label_row {
     ulong words[LABEL_ROW_WORDS];
     label_cells cells[5];
     uint numbers[LABEL_ROW_WORDS]; /* of the first vertex in the word */
-    uint next[LABEL_ROW_WORDS];    /* of the vertex at 64, in the next brick; of words that have such */
+    uint next[LABEL_WORD_YZ1];     /* of the vertex at 64, in the next brick */
     uint triangles;                /* index of the row's first */
     label_place place;
 } label_row;
@@ -40,24 +40,46 @@ inline_always ulong label_word_of(uint at, uint type, label_arrays in) {
     return at == NO_ROW ? 0 : in.words[(ulong)LABEL_WORDS * at + type];
 }
 
+/* A tile that rows are looked for in first: its own row's neighbours mostly lie there too. */
+typedef struct label_near {
+    uint first, end; /* bricks */
+    uint vertices, triangles;
+} label_near;
+
+inline_always label_near label_near_of(const label_job *s, uint brick, global const uint *tiles) {
+    const uint tile = label_tile_of(s, brick);
+    label_near near = {label_tile_first(s, tile), label_tile_end(s, tile),
+                       s->vertex_base + tile_before(tiles, tile, TILE_VERTICES),
+                       tile_before(tiles, tile, TILE_TRIANGLES)};
+    return near;
+}
+
 /* The number of a row's first vertex. */
-inline_always uint label_first_of(const label_job *s, uint at, label_arrays in, global const uint *tiles) {
+inline_always uint label_first_of(const label_job *s, uint at, label_near near, label_arrays in,
+                                  global const uint *tiles) {
     if (at == NO_ROW) return 0;
-    return s->vertex_base + tile_before(tiles, label_tile_of(s, at / BRICK_WORDS), TILE_VERTICES) +
-           in.bases[at].vertices;
+    const uint brick = at / BRICK_WORDS;
+    if (brick >= near.first && brick < near.end) return near.vertices + in.bases[at].vertices;
+    return label_near_of(s, brick, tiles).vertices + in.bases[at].vertices;
 }
 
-/* That of its first vertex of a type. */
-inline_always uint label_number_of(uint first, uint at, uint type, label_arrays in) {
-    return at == NO_ROW ? 0 : first + in.offsets[(ulong)LABEL_OFFSETS * at + type];
+/* Those of its first vertices of all shared types. */
+inline_always void label_numbers_load(const label_job *s, uint at, label_near near, label_arrays in,
+                                      global const uint *tiles, local uint *numbers) {
+    uint8 low = 0;
+    uint4 high = 0;
+    if (at != NO_ROW) {
+        const uint first = label_first_of(s, at, near, in, tiles);
+        global const ushort *offsets = in.offsets + (ulong)LABEL_OFFSETS * at;
+        low = convert_uint8(vload8(0, offsets)) + first, high = convert_uint4(vload4(2, offsets)) + first;
+    }
+    vstore8(low, 0, numbers);
+    vstore4(high, 2, numbers);
 }
 
-/* The types that cubes use of the rows y + 1 and z + 1. */
-#define LABEL_Y1_TYPE(n) ((n) == 0 ? 0u : (n) == 1 ? 2u : (n) + 2 + ((n) > 2 ? 3u : 0u)) /* x z xz, xz's triangles */
-#define LABEL_Z1_TYPE(n) ((n) == 0 ? 0u : (n) == 1 ? 1u : (n) + 1 + ((n) > 2 ? 2u : 0u)) /* x y xy, xy's triangles */
-
-inline_always void label_row_make(const label_job *s, label_place p, label_arrays in, global const uint *tiles,
-                                  local label_row *r) {
+/* near: the tile of the row's brick. */
+inline_always void label_row_make(const label_job *s, label_place p, label_near near, label_arrays in,
+                                  global const uint *tiles, local label_row *r) {
     const uint own = label_row_find(s, p.y, p.z, p.w, in.rows), y1 = label_row_find(s, p.y + 1, p.z, p.w, in.rows);
     const uint z1 = label_row_find(s, p.y, p.z + 1, p.w, in.rows),
                yz1 = label_row_find(s, p.y + 1, p.z + 1, p.w, in.rows);
@@ -79,37 +101,31 @@ inline_always void label_row_make(const label_job *s, label_place p, label_array
     label_types(even, e, t);
 #pragma unroll
     for (uint n = 0; n < LABEL_ROW_TYPES; n++) r->words[n] = t[n]; /* a variable index would need a stack */
-    uint number = label_first_of(s, own, in, tiles);
-    for (uint n = 0; n < LABEL_ROW_TYPES; n++) {
+    label_numbers_load(s, own, near, in, tiles, r->numbers);
+    uint number = r->numbers[LABEL_SHARED_TYPES - 1] + (uint)popcount(t[LABEL_SHARED_TYPES - 1]);
+#pragma unroll
+    for (uint n = LABEL_SHARED_TYPES; n < LABEL_ROW_TYPES; n++) {
         r->numbers[n] = number;
-        number += (uint)popcount(r->words[n]);
+        number += (uint)popcount(t[n]);
     }
-    const uint first_x1 = label_first_of(s, x1, in, tiles), first_xy1 = label_first_of(s, xy1, in, tiles);
-    const uint first_xz1 = label_first_of(s, xz1, in, tiles), first_y1 = label_first_of(s, y1, in, tiles);
-    const uint first_z1 = label_first_of(s, z1, in, tiles);
-    r->next[1] = label_number_of(first_x1, x1, 1, in), r->next[2] = label_number_of(first_x1, x1, 2, in);
-    for (uint n = 0; n < 3; n++) r->next[n ? 9 + n : 5] = label_number_of(first_x1, x1, n ? 9 + n : 5, in);
+    label_numbers_load(s, y1, near, in, tiles, r->numbers + LABEL_WORD_Y1);
+    label_numbers_load(s, z1, near, in, tiles, r->numbers + LABEL_WORD_Z1);
+    label_numbers_load(s, x1, near, in, tiles, r->next);
+    label_numbers_load(s, xy1, near, in, tiles, r->next + LABEL_WORD_Y1);
+    label_numbers_load(s, xz1, near, in, tiles, r->next + LABEL_WORD_Z1);
+    r->numbers[LABEL_WORD_YZ1] = label_first_of(s, yz1, near, in, tiles);
     local ulong *w = r->words + LABEL_WORD_Y1;
-    w[0] = e[EX_Y1], w[1] = e[EZ_Y1], w[2] = e[EXZ_Y1];
-    w[3] = label_first_half(~even, e[EXZ_Y1], e[EX_Y1], e[EZ_Y1], e[EZ_XY1]);
-    w[4] = label_second_half(~even, e[EXZ_Y1], e[EX_YZ1], e[EZ_Y1], e[EZ_XY1]);
-    w[5] = e[EX_Z1], w[6] = e[EY_Z1], w[7] = e[EXY_Z1];
-    w[8] = label_first_half(~even, e[EXY_Z1], e[EX_Z1], e[EY_Z1], e[EY_XZ1]);
-    w[9] = label_second_half(~even, e[EXY_Z1], e[EX_YZ1], e[EY_Z1], e[EY_XZ1]);
-    w[10] = e[EX_YZ1];
-    for (uint n = 0; n < 5; n++) {
-        r->numbers[LABEL_WORD_Y1 + n] = label_number_of(first_y1, y1, LABEL_Y1_TYPE(n), in);
-        r->next[LABEL_WORD_Y1 + n] = label_number_of(first_xy1, xy1, LABEL_Y1_TYPE(n), in);
-        r->numbers[LABEL_WORD_Z1 + n] = label_number_of(first_z1, z1, LABEL_Z1_TYPE(n), in);
-        r->next[LABEL_WORD_Z1 + n] = label_number_of(first_xz1, xz1, LABEL_Z1_TYPE(n), in);
-    }
+    w[0] = e[EX_Y1], w[2] = e[EZ_Y1], w[4] = e[EXZ_Y1];
+    w[8] = label_first_half(~even, e[EXZ_Y1], e[EX_Y1], e[EZ_Y1], e[EZ_XY1]);
+    w[9] = label_second_half(~even, e[EXZ_Y1], e[EX_YZ1], e[EZ_Y1], e[EZ_XY1]);
+    w = r->words + LABEL_WORD_Z1;
+    w[0] = e[EX_Z1], w[1] = e[EY_Z1], w[3] = e[EXY_Z1];
+    w[6] = label_first_half(~even, e[EXY_Z1], e[EX_Z1], e[EY_Z1], e[EY_XZ1]);
+    w[7] = label_second_half(~even, e[EXY_Z1], e[EX_YZ1], e[EY_Z1], e[EY_XZ1]);
+    r->words[LABEL_WORD_YZ1] = e[EX_YZ1];
 #pragma unroll
     for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
-    r->numbers[LABEL_WORD_YZ1] = label_first_of(s, yz1, in, tiles);
-    r->next[LABEL_WORD_YZ1] = 0;
-    r->triangles = own == NO_ROW ? 0
-                                 : tile_before(tiles, label_tile_of(s, own / BRICK_WORDS), TILE_TRIANGLES) +
-                                       in.bases[own].triangles;
+    r->triangles = own == NO_ROW ? 0 : near.triangles + in.bases[own].triangles;
     r->place = p;
 }
 

@@ -6,28 +6,17 @@
 
 #include "label_row.cl"
 
-/* The numbers of a cube's vertices. A work-item alone has made those of a row, LABEL_ROW_WORDS for each of its samples
- * and the next; where others make the row's words, they are counted. */
-#if WORK_ITEMS == 1
-
-typedef const uint *label_numbers; /* of the cube's first sample */
-
-inline_always uint label_vertex(label_numbers v, uint vertex) { return v[vertex]; }
-
-#else
-
+/* The numbers of a cube's vertices: made where a triangle names them, so no memory is needed for them. */
 typedef struct label_numbers {
     local const label_row *row;
-    uint x;
+    uint x; /* of the cube's first sample in the row */
 } label_numbers;
 
 inline_always uint label_vertex(label_numbers v, uint vertex) {
-    const uint word = vertex & 31, at = v.x + (vertex >> 5);
+    const uint word = LABEL_VERTEX_WORD(vertex), at = v.x + LABEL_VERTEX_NEXT(vertex);
     if (at == 64) return v.row->next[word];
     return v.row->numbers[word] + (uint)popcount(v.row->words[word] & ((1ul << at) - 1));
 }
-
-#endif
 
 inline_always uint label_pick(uint4 labels, uint n) {
     return n == 0 ? labels.x : n == 1 ? labels.y : n == 2 ? labels.z : labels.w;

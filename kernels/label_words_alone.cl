@@ -17,13 +17,7 @@ inline_always samples64 label_load(const label_job *s, ulong n, global const BIT
 
 /* Bit n: elements n differ. */
 inline_always ulong label_differ(samples64 a, samples64 b) {
-    bytes64 is = __builtin_convertvector(a != b, bytes64);
-#ifdef MASK_REGISTERS
-    return __builtin_ia32_cvtb2mask512(is);
-#else
-    ulong8 mask = __builtin_astype(is, ulong8);
-    return as_ulong(convert_uchar8(((mask & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56));
-#endif
+    return mask_word(__builtin_convertvector(a != b, bytes64));
 }
 
 inline_always void label_edges_make(const label_job *s, label_place p, global const BITS *samples,

@@ -405,8 +405,9 @@ TC_API void tc_labels_options_init(tc_labels_options *options);
  * Smoothing moves every vertex three quarters of the way to the mean of its neighbours, `smoothing` times, but no
  * farther from its place than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there
  * count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations",
- * 2022). It runs on threads of the host, whose number changes nothing. There are no normals, and tc_interpolate_field
- * does not know these vertices.
+ * 2022). It runs on threads of the host, whose number changes nothing. The context keeps the memory for that, about as
+ * much as the mesh takes, which the system may take back. There are no normals, and tc_interpolate_field does not know
+ * these vertices.
  *
  * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
  * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1

@@ -145,6 +145,7 @@ void tc_context_destroy(tc_context *context) {
         objects_release(context);
     }
     whole_cases_release(context->whole_cases);
+    for (int n = 0; n < SMOOTHING_BLOCKS; n++) host_block_release(&context->smoothing[n]);
     free(context);
 }
 

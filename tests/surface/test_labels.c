@@ -358,6 +358,26 @@ static double sweep_error(const tc_grid_options *grid, const tc_mesh_data *befor
     return most;
 }
 
+/* So many vertices that several ranges of them are smoothed, each sample with a label of its own. */
+static void test_ranges(void) {
+    tc_mesh *meshes[2] = {NULL, NULL};
+    tc_grid_options grid;
+    tc_labels_options how;
+    tc_mesh_data stairs, smooth;
+    grid_begin(&grid, 23, 16, 15);
+    for (int64_t n = 0; n < sample_count(&grid); n++) samples[n] = (uint8_t)random_between(0, LABELS);
+    options_begin(&how);
+    bool is_made = extract_labels(reference, &grid, &how, &meshes[0], &stairs);
+    how.smoothing = 1;
+    is_made = is_made && extract_labels(reference, &grid, &how, &meshes[1], &smooth);
+    if (is_made) {
+        EXPECT(stairs.vertex_count > 1 << 16, "%d vertices are too few", (int)stairs.vertex_count);
+        EXPECT(sweep_error(&grid, &stairs, &smooth) < 1e-5, "a vertex is %g from where one sweep takes it",
+               sweep_error(&grid, &stairs, &smooth));
+    }
+    for (int n = 0; n < 2; n++) tc_mesh_destroy(meshes[n]);
+}
+
 /* Triangles stay, vertices keep to their boxes, those on the border to it; surfaces get smaller. */
 static void test_smoothing(void) {
     static tc_mesh *meshes[3];
@@ -586,6 +606,7 @@ int main(int argc, char **argv) {
     test_closed();
     test_other_grids();
     test_smoothing();
+    test_ranges();
     test_faults_are_found();
     test_refused();
     tc_context_destroy(reference);

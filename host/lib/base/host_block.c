@@ -36,3 +36,7 @@ void host_block_release(host_block *block) {
     if (block->memory) munmap(block->memory, block->bytes + margin_bytes);
     *block = (host_block){0};
 }
+
+void host_block_idle(const host_block *block) {
+    if (block->memory) madvise(block->memory, block->bytes, MADV_FREE);
+}

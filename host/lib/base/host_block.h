@@ -22,4 +22,7 @@ typedef struct host_block {
 tc_status host_block_reserve(host_block *block, uint64_t bytes);
 void host_block_release(host_block *block);
 
+/* Keeps a block for its next use. Its content is lost; where memory is short, the system takes its pages. */
+void host_block_idle(const host_block *block);
+
 #endif

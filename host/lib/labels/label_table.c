@@ -10,17 +10,8 @@ _Static_assert((int)LABEL_SHARED_TYPES == (int)LABEL_TYPE_INNER, "kernels share 
 
 /* The word of a row that has the vertex, and whether it is the next sample's along x. */
 static uint32_t vertex_word(owned_edge v) {
-    static const uint8_t of_y1[] = {EDGE_X, EDGE_Z, EDGE_XZ, LABEL_TYPE_FACES + 2, LABEL_TYPE_FACES + 3};
-    static const uint8_t of_z1[] = {EDGE_X, EDGE_Y, EDGE_XY, LABEL_TYPE_FACES, LABEL_TYPE_FACES + 1};
-    uint32_t n = 0, word = v.type;
-    if (v.dy && v.dz) {
-        word = LABEL_WORD_YZ1;
-    } else if (v.dy || v.dz) {
-        const uint8_t *types = v.dy ? of_y1 : of_z1;
-        while (n < 4 && types[n] != v.type) n++;
-        word = (v.dy ? LABEL_WORD_Y1 : LABEL_WORD_Z1) + n;
-    }
-    return LABEL_VERTEX(word, (uint32_t)v.dx);
+    const uint32_t first = v.dy && v.dz ? LABEL_WORD_YZ1 : v.dy ? LABEL_WORD_Y1 : v.dz ? LABEL_WORD_Z1 : 0;
+    return LABEL_VERTEX(first + v.type, (uint32_t)v.dx);
 }
 
 static uint32_t interface_word(const label_interface *i) {

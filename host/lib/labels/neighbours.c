@@ -5,21 +5,31 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { BLOCK_TRIANGLES = 4096, RANGES_MOST = 64, RANGE_LEAST = 1 << 14 };
+enum { BLOCK_TRIANGLES = 4096, RANGE_LEAST = 1 << 14 };
 
 /* The vertices that a block of triangles uses: a range of vertices looks only at blocks that may use some of it. */
 typedef struct block_span {
     uint32_t low, high;
 } block_span;
 
+/* What is known of a vertex while its list is found. */
+typedef struct vertex_state {
+    uint64_t sum;   /* of its followers less that of those before it, mixed; 0: they are the same */
+    uint32_t count; /* of its triangles */
+    uint32_t place; /* where its next entry goes */
+} vertex_state;
+
+_Static_assert(sizeof(vertex_state) == NEIGHBOUR_STATE_BYTES, "the caller has room for it");
+
 typedef struct search {
     const uint32_t *triangles;
     uint64_t triangle_count, block_count;
     block_span *blocks;
+    vertex_state *states; /* of all vertices */
     neighbour_lists *lists;
     _Atomic uint64_t next;
-    atomic_bool has_failed;
 } search;
 
 static uint64_t block_end(const search *s, uint64_t block) {
@@ -42,46 +52,37 @@ static void blocks_span(void *shared) {
 
 static bool is_beside(const block_span *b, const neighbour_range *r) { return b->low < r->end && b->high >= r->first; }
 
-/* What is made for a range while its lists are found. */
-typedef struct range_work {
-    neighbour_range *r;
-    uint64_t *sums;   /* per vertex: of its followers less that of those before it, mixed; 0: they are the same */
-    uint32_t *places; /* per vertex: where its next entry goes; then where those of irregular ones begin */
-    uint32_t *all;    /* of irregular vertices: followers, and those before */
-} range_work;
-
 static uint64_t mixed(uint32_t vertex) { return (vertex + 1) * UINT64_C(0x9e3779b97f4a7c15) ^ vertex; }
 
-typedef void corner_visit(range_work *w, uint32_t vertex, uint32_t after, uint32_t before);
+/* state: of the vertex; entries: the lists of its range. */
+typedef void corner_visit(vertex_state *state, uint32_t *entries, uint32_t after, uint32_t before);
 
-/* Calls visit for the corners of triangles that lie at vertices of the range; vertex: from its first on. */
-static inline void corners_visit(const search *s, range_work *w, corner_visit *visit) {
-    const uint32_t first = w->r->first, count = w->r->end - first;
+/* Calls visit for the corners of triangles that lie at vertices of the range. */
+static inline void corners_visit(const search *s, const neighbour_range *r, corner_visit *visit) {
+    const uint32_t first = r->first, count = r->end - first;
+    vertex_state *states = s->states + first;
     for (uint64_t b = 0; b < s->block_count; b++) {
-        if (!is_beside(&s->blocks[b], w->r)) continue;
+        if (!is_beside(&s->blocks[b], r)) continue;
         for (const uint32_t *t = s->triangles + 3 * b * BLOCK_TRIANGLES; t < s->triangles + 3 * block_end(s, b);
              t += 3) {
-            if (t[0] - first < count) visit(w, t[0] - first, t[1], t[2]);
-            if (t[1] - first < count) visit(w, t[1] - first, t[2], t[0]);
-            if (t[2] - first < count) visit(w, t[2] - first, t[0], t[1]);
+            if (t[0] - first < count) visit(&states[t[0] - first], r->vertices, t[1], t[2]);
+            if (t[1] - first < count) visit(&states[t[1] - first], r->vertices, t[2], t[0]);
+            if (t[2] - first < count) visit(&states[t[2] - first], r->vertices, t[0], t[1]);
         }
     }
 }
 
-static void corner_count(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
-    w->r->starts[vertex + 1]++;
-    w->sums[vertex] += mixed(after) - mixed(before);
+static void corner_count(vertex_state *state, uint32_t *entries, uint32_t after, uint32_t before) {
+    (void)entries;
+    state->count++;
+    state->sum += mixed(after) - mixed(before);
 }
 
-static void corner_fill(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
-    (void)before;
-    w->r->vertices[w->places[vertex]++] = after;
-}
-
-static void corner_fill_all(range_work *w, uint32_t vertex, uint32_t after, uint32_t before) {
-    if (!w->sums[vertex]) return;
-    w->all[w->places[vertex]++] = after;
-    w->all[w->places[vertex]++] = before;
+/* A vertex whose followers are those before it lies within a surface: its neighbours are its followers. Other vertices
+ * lie on junctions or borders, and need both. */
+static void corner_fill(vertex_state *state, uint32_t *entries, uint32_t after, uint32_t before) {
+    entries[state->place++] = after;
+    if (state->sum) entries[state->place++] = before;
 }
 
 static void sort(uint32_t *values, uint32_t count) {
@@ -93,10 +94,9 @@ static void sort(uint32_t *values, uint32_t count) {
     }
 }
 
-/* Entries of a vertex, sorted: a neighbour is there once for each triangle at the edge. Keeps those that pull, at most
- * `room`, at `to`; returns how many. */
-static uint32_t neighbours_choose(const uint32_t *entries, uint32_t count, uint32_t *to, uint32_t room,
-                                  uint8_t *on_border) {
+/* Entries of a vertex, sorted: a neighbour is there once for each triangle at the edge. Those that pull are kept, at
+ * the beginning, at most UINT8_MAX; returns how many. */
+static uint8_t neighbours_choose(uint32_t *entries, uint32_t count, uint8_t *on_border) {
     uint32_t kept = 0;
     bool has_border = false, has_junction = false;
     for (uint32_t n = 0, end; n < count; n = end) {
@@ -104,107 +104,99 @@ static uint32_t neighbours_choose(const uint32_t *entries, uint32_t count, uint3
         has_border |= end - n == 1;
         has_junction |= end - n > 2;
     }
-    for (uint32_t n = 0, end; n < count && kept < room; n = end) {
+    for (uint32_t n = 0, end; n < count && kept < UINT8_MAX; n = end) {
         for (end = n; end < count && entries[end] == entries[n];) end++;
-        if (has_border ? end - n == 1 : has_junction ? end - n > 2 : true) to[kept++] = entries[n];
+        if (has_border ? end - n == 1 : has_junction ? end - n > 2 : true) entries[kept++] = entries[n];
     }
     *on_border = has_border;
-    return kept;
+    return (uint8_t)kept;
 }
 
-/* A vertex whose followers are those before it lies within a surface: its neighbours are its followers. There is room
- * for one more, as a vertex with one triangle has two. False without memory, or numbers of 32 bits. */
-static bool followers_find(const search *s, range_work *w) {
-    neighbour_range *r = w->r;
-    const uint32_t count = r->end - r->first;
-    uint64_t sum = 0;
-    corners_visit(s, w, corner_count);
-    for (uint32_t n = 0; n < count; n++) {
-        w->places[n] = (uint32_t)sum;
-        sum += r->starts[n + 1] + 1u;
-        if (sum > UINT32_MAX) return false;
-        r->counts[n] = (uint8_t)(r->starts[n + 1] < UINT8_MAX ? r->starts[n + 1] : UINT8_MAX);
-        r->starts[n + 1] = (uint32_t)sum;
-    }
-    r->vertices = malloc(((size_t)sum + 1) * sizeof *r->vertices);
-    if (!r->vertices) return false;
-    corners_visit(s, w, corner_fill);
-    return true;
-}
-
-/* Other vertices lie on junctions or borders. */
-static bool irregular_find(const search *s, range_work *w) {
-    neighbour_range *r = w->r;
-    const uint32_t count = r->end - r->first;
-    uint32_t sum = 0;
-    for (uint32_t n = 0; n < count; n++) {
-        const uint32_t triangles = r->starts[n + 1] - r->starts[n] - 1;
-        w->places[n] = sum;
-        if (w->sums[n]) sum += 2 * triangles;
-    }
-    w->all = malloc(((size_t)sum + 1) * sizeof *w->all);
-    if (!w->all) return false;
-    corners_visit(s, w, corner_fill_all);
-    for (uint32_t n = 0, begin = 0; n < count; n++) {
-        if (!w->sums[n]) continue;
-        const uint32_t room = r->starts[n + 1] - r->starts[n], end = w->places[n];
-        sort(w->all + begin, end - begin);
-        r->counts[n] = (uint8_t)neighbours_choose(w->all + begin, end - begin, r->vertices + r->starts[n],
-                                                  room < UINT8_MAX ? room : UINT8_MAX, &r->on_border[n]);
-        begin = end;
-    }
-    return true;
-}
-
-static bool range_find(const search *s, neighbour_range *r) {
-    const size_t count = r->end - r->first;
-    range_work w = {
-        .r = r, .sums = calloc(count + 1, sizeof *w.sums), .places = malloc((count + 1) * sizeof *w.places)};
-    r->starts = calloc(count + 1, sizeof *r->starts);
-    r->counts = malloc(count + 1);
-    r->on_border = calloc(count + 1, 1);
-    bool is_found = w.sums && w.places && r->starts && r->counts && r->on_border;
-    is_found = is_found && followers_find(s, &w) && irregular_find(s, &w);
-    free(w.sums);
-    free(w.places);
-    free(w.all);
-    return is_found;
-}
-
-static void ranges_find(void *shared) {
+/* Counts, and sets starts and places. */
+static void ranges_count(void *shared) {
     search *s = shared;
-    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists->range_count;)
-        if (!range_find(s, &s->lists->ranges[n])) atomic_store(&s->has_failed, true);
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists->range_count;) {
+        neighbour_range *r = &s->lists->ranges[n];
+        vertex_state *states = s->states + r->first;
+        memset(states, 0, (size_t)(r->end - r->first) * sizeof *states);
+        corners_visit(s, r, corner_count);
+        for (uint32_t v = 0; v < r->end - r->first; v++) {
+            r->starts[v] = states[v].place = (uint32_t)r->room;
+            r->room += states[v].sum ? UINT64_C(2) * states[v].count : states[v].count;
+        }
+    }
 }
 
-tc_status neighbours_find(const tc_mesh *mesh, neighbour_lists *out) {
-    const uint64_t vertices = mesh->vertex_count, wanted = vertices / RANGE_LEAST + 1;
-    const uint32_t ranges = wanted < RANGES_MOST ? (uint32_t)wanted : RANGES_MOST;
-    search s = {.triangles = mesh->triangles.memory, .triangle_count = mesh->triangle_count, .lists = out};
-    *out = (neighbour_lists){calloc(ranges, sizeof *out->ranges), ranges};
-    s.block_count = (s.triangle_count + BLOCK_TRIANGLES - 1) / BLOCK_TRIANGLES;
+static void ranges_fill(void *shared) {
+    search *s = shared;
+    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists->range_count;) {
+        neighbour_range *r = &s->lists->ranges[n];
+        corners_visit(s, r, corner_fill);
+        for (uint32_t v = 0; v < r->end - r->first; v++) {
+            const vertex_state *state = &s->states[r->first + v];
+            uint32_t *entries = r->vertices + r->starts[v];
+            r->on_border[v] = 0;
+            r->counts[v] = (uint8_t)(state->count < UINT8_MAX ? state->count : UINT8_MAX);
+            if (!state->sum) continue;
+            sort(entries, 2 * state->count);
+            r->counts[v] = neighbours_choose(entries, 2 * state->count, &r->on_border[v]);
+        }
+    }
+}
+
+static void on_shares(search *s, uint64_t share_count, void (*work)(void *shared)) {
+    atomic_store(&s->next, 0);
+    parallel_run(share_count, work, s);
+}
+
+static void ranges_make(uint64_t vertices, void *arrays, neighbour_lists *out) {
+    const uint64_t wanted = vertices / RANGE_LEAST + 1;
+    uint32_t *starts = arrays;
+    uint8_t *counts = (uint8_t *)(starts + vertices), *on_border = counts + vertices;
+    out->range_count = wanted < NEIGHBOUR_RANGES ? (uint32_t)wanted : NEIGHBOUR_RANGES;
+    for (uint64_t n = 0; n < out->range_count; n++) {
+        const uint64_t first = n * vertices / out->range_count, end = (n + 1) * vertices / out->range_count;
+        out->ranges[n] = (neighbour_range){.first = (uint32_t)first,
+                                           .end = (uint32_t)end,
+                                           .starts = starts + first,
+                                           .counts = counts + first,
+                                           .on_border = on_border + first};
+    }
+}
+
+/* False without memory, or numbers of 32 bits. */
+static bool lists_reserve(neighbour_lists *lists, host_block *block) {
+    uint64_t room = 0;
+    for (uint32_t n = 0; n < lists->range_count; n++) {
+        if (lists->ranges[n].room > UINT32_MAX) return false;
+        room += lists->ranges[n].room;
+    }
+    if (host_block_reserve(block, (room + 1) * sizeof(uint32_t))) return false;
+    uint32_t *vertices = block->memory;
+    for (uint32_t n = 0; n < lists->range_count; n++) {
+        lists->ranges[n].vertices = vertices;
+        vertices += lists->ranges[n].room;
+    }
+    return true;
+}
+
+tc_status neighbours_find(const tc_mesh *mesh, void *states, host_block *arrays, host_block *lists,
+                          neighbour_lists *out) {
+    search s = {.triangles = mesh->triangles.memory,
+                .triangle_count = mesh->triangle_count,
+                .block_count = (mesh->triangle_count + BLOCK_TRIANGLES - 1) / BLOCK_TRIANGLES,
+                .states = states,
+                .lists = out};
     s.blocks = malloc((size_t)(s.block_count + 1) * sizeof *s.blocks);
-    if (!out->ranges || !s.blocks) atomic_store(&s.has_failed, true);
-    for (uint64_t n = 0; n < ranges && out->ranges; n++) {
-        out->ranges[n].first = (uint32_t)(n * vertices / ranges);
-        out->ranges[n].end = (uint32_t)((n + 1) * vertices / ranges);
+    bool is_found = s.blocks && !host_block_reserve(arrays, mesh->vertex_count * (sizeof(uint32_t) + 2));
+    if (is_found) {
+        ranges_make(mesh->vertex_count, arrays->memory, out);
+        on_shares(&s, s.block_count, blocks_span);
+        on_shares(&s, out->range_count, ranges_count);
+        is_found = lists_reserve(out, lists);
     }
-    if (!s.has_failed) {
-        parallel_run(s.block_count, blocks_span, &s);
-        atomic_store(&s.next, 0);
-        parallel_run(ranges, ranges_find, &s);
-    }
+    if (is_found) on_shares(&s, out->range_count, ranges_fill);
     free(s.blocks);
-    return s.has_failed ? (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing")
-                        : TC_OK;
-}
-
-void neighbours_release(neighbour_lists *lists) {
-    for (uint32_t n = 0; n < lists->range_count && lists->ranges; n++) {
-        free(lists->ranges[n].starts);
-        free(lists->ranges[n].vertices);
-        free(lists->ranges[n].counts);
-        free(lists->ranges[n].on_border);
-    }
-    free(lists->ranges);
+    return is_found ? TC_OK
+                    : (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing");
 }

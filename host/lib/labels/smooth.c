@@ -1,7 +1,8 @@
 /*
  * Each sweep makes new positions of all old ones, so neither threads nor the order of vertices change a bit. The box of
- * a vertex lies along the grid's axes, around the place where it was made. Positions have four components while they
- * are smoothed, as processors take them.
+ * a vertex lies along the grid's axes, around the place where it was made. Three arrays are enough: the places, a
+ * second one, and the mesh's own positions, to which the last sweep leads. Positions are read as four components, of
+ * which the last means nothing.
  */
 #include "labels/smooth.h"
 
@@ -18,6 +19,8 @@
 typedef float vector __attribute__((vector_size(16)));
 typedef int32_t bits __attribute__((vector_size(16)));
 
+enum { PAST = 4 }; /* floats behind an array, of which the last vertex's read takes one */
+
 static const float reach = 0.45f; /* cells, along each axis: surfaces on either side of a sample keep apart */
 static const float pull = 0.75f;  /* of the way to the mean of the neighbours */
 
@@ -28,11 +31,9 @@ typedef struct smoothing {
     bool is_straight;                  /* the grid's axes are those of space */
     vector most;                       /* then: how far a vertex may move */
     float shares[UINT8_MAX + 1];       /* of each of n neighbours */
-    uint8_t *fixed;                    /* one per vertex: bit n, it does not move along axis n */
-    float *mesh;                       /* where vertices were made; the mesh's own positions */
-    vector *places[2];
-    const vector *from;
-    vector *to;
+    float *mesh, *places, *second;     /* the mesh's own positions; where vertices were made */
+    const float *from;
+    float *to;
     _Atomic uint64_t next;
 } smoothing;
 
@@ -55,7 +56,11 @@ static void invert(smoothing *s) {
     for (int n = 1; n <= UINT8_MAX; n++) s->shares[n] = pull / (float)n;
 }
 
-static vector vector_load(const float *from) { return (vector){from[0], from[1], from[2], 0}; }
+static vector vector_load(const float *from, uint64_t vertex) {
+    vector v;
+    memcpy(&v, from + 3 * vertex, sizeof v);
+    return v;
+}
 
 /* Vertices at the end of a mesh stay in the planes of the grid's border that they lie in. */
 static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
@@ -71,22 +76,16 @@ static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
     return fixed;
 }
 
+/* From here on, on_border has the axes along which a vertex does not move. */
 static void ranges_begin(void *shared) {
     smoothing *s = shared;
     for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) {
         const neighbour_range *r = &s->lists.ranges[n];
-        for (uint64_t v = r->first; v < r->end; v++) {
-            s->places[0][v] = vector_load(s->mesh + 3 * v);
-            s->fixed[v] = r->on_border[v - r->first] ? fixed_axes(s, s->mesh + 3 * v) : 0;
-        }
+        memcpy(s->places + 3 * (uint64_t)r->first, s->mesh + 3 * (uint64_t)r->first,
+               (size_t)(r->end - r->first) * CHANNEL_BYTES);
+        for (uint64_t v = r->first; v < r->end; v++)
+            if (r->on_border[v - r->first]) r->on_border[v - r->first] = fixed_axes(s, s->mesh + 3 * v);
     }
-}
-
-static void ranges_end(void *shared) {
-    smoothing *s = shared;
-    for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;)
-        for (uint64_t v = s->lists.ranges[n].first; v < s->lists.ranges[n].end; v++)
-            memcpy(s->mesh + 3 * v, &s->to[v], CHANNEL_BYTES);
 }
 
 /* A vertex that may have left its box, in space or along some axes. */
@@ -112,21 +111,27 @@ static vector lesser(vector a, vector b) {
     return (vector)(((bits)a & is) | ((bits)b & ~is));
 }
 
-static vector constrain_straight(const smoothing *s, vector place, vector at) {
-    return place - lesser(-lesser(at - place, s->most), s->most);
+static vector constrain_straight(vector most, vector place, vector at) {
+    return place - lesser(-lesser(at - place, most), most);
 }
 
+/* What the loop reads of the structures lies in variables: compilers cannot know that positions do not overwrite it. */
 static void range_move(const smoothing *s, const neighbour_range *r) {
-    const vector *from = s->from;
-    for (uint32_t n = 0; n < r->end - r->first; n++) {
-        const uint64_t vertex = r->first + (uint64_t)n;
-        const uint32_t *neighbours = r->vertices + r->starts[n], count = r->counts[n];
-        const vector old = from[vertex], place = vector_load(s->mesh + 3 * vertex);
+    const float *from = s->from, *places = s->places, *shares = s->shares;
+    const uint8_t *counts = r->counts, *fixed = r->on_border;
+    const uint32_t *starts = r->starts, *vertices = r->vertices, first = r->first, size = r->end - first;
+    const bool is_straight = s->is_straight;
+    const vector most = s->most;
+    float *to = s->to;
+    for (uint32_t n = 0; n < size; n++) {
+        const uint64_t vertex = first + (uint64_t)n;
+        const uint32_t *neighbours = vertices + starts[n], count = counts[n];
+        const vector old = vector_load(from, vertex), place = vector_load(places, vertex);
         vector sum = {0, 0, 0, 0};
-        for (uint32_t m = 0; m < count; m++) sum += from[neighbours[m]] - old;
-        const vector at = old + s->shares[count] * sum;
-        s->to[vertex] = s->is_straight && !s->fixed[vertex] ? constrain_straight(s, place, at)
-                                                            : constrain(s, s->fixed[vertex], place, at);
+        for (uint32_t m = 0; m < count; m++) sum += vector_load(from, neighbours[m]) - old;
+        vector at = old + shares[count] * sum;
+        at = is_straight && !fixed[n] ? constrain_straight(most, place, at) : constrain(s, fixed[n], place, at);
+        memcpy(to + 3 * vertex, &at, n + 1 < size ? sizeof at : CHANNEL_BYTES); /* the next one is made after it */
     }
 }
 
@@ -144,30 +149,33 @@ static tc_status sweep(smoothing *s, uint32_t sweeps) {
     tc_status status = TC_OK;
     on_ranges(s, ranges_begin);
     for (uint32_t n = 0; n < sweeps && !status; n++) {
-        s->from = s->places[n & 1];
-        s->to = s->places[~n & 1];
+        s->from = n ? s->to : s->places;
+        s->to = (sweeps - n) & 1 ? s->mesh : s->second;
         on_ranges(s, ranges_move);
         status = context_progress(s->v->grid->context, "smooth", (double)(n + 1) / (double)sweeps);
     }
-    if (!status) on_ranges(s, ranges_end);
     return status;
 }
 
 tc_status labels_smooth(const label_volume *volume, uint32_t sweeps, tc_mesh *mesh) {
-    smoothing s = {.v = volume, .mesh = mesh->channels[CHANNEL_POSITIONS].memory};
+    tc_context *context = volume->grid->context;
+    host_block *room = context->smoothing;
+    const uint64_t vertices = mesh->vertex_count;
+    if (!sweeps || !vertices) return TC_OK;
+    smoothing *s = calloc(1, sizeof *s);
     tc_status status = TC_OK;
-    if (!sweeps || !mesh->vertex_count) return TC_OK;
-    host_block blocks[2] = {{0}};
-    for (int n = 0; n < 2 && !status; n++) status = host_block_reserve(&blocks[n], mesh->vertex_count * sizeof(vector));
-    for (int n = 0; n < 2; n++) s.places[n] = blocks[n].memory;
-    s.fixed = malloc((size_t)mesh->vertex_count);
-    if (status || !s.fixed)
+    if (!s || host_block_reserve(&room[0], 2 * (vertices * CHANNEL_BYTES + PAST * sizeof(float))))
         status = (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing");
-    invert(&s);
-    if (!status) status = neighbours_find(mesh, &s.lists);
-    if (!status) status = sweep(&s, sweeps);
-    neighbours_release(&s.lists);
-    free(s.fixed);
-    for (int n = 0; n < 2; n++) host_block_release(&blocks[n]);
+    if (!status) status = neighbours_find(mesh, room[0].memory, &room[1], &room[2], &s->lists);
+    if (!status) {
+        s->v = volume;
+        s->mesh = mesh->channels[CHANNEL_POSITIONS].memory;
+        s->places = room[0].memory;
+        s->second = s->places + 3 * vertices + PAST;
+        invert(s);
+        status = sweep(s, sweeps);
+    }
+    free(s);
+    for (int n = 0; n < SMOOTHING_BLOCKS; n++) host_block_idle(&room[n]);
     return status;
 }

@@ -93,13 +93,16 @@ typedef struct workspace {
     device_buffer cases[METHOD_COUNT][2][2]; /* table of each method; [1] for mirrored grids, for closed surfaces */
 } workspace;
 
+enum { SMOOTHING_BLOCKS = 3 };
+
 struct tc_context {
     tc_context_options options; /* the caller's; pointers that are read once are NULL */
     tc_expert_options expert;   /* the caller's, or the defaults */
     launch_parameters launch;
     tc_device_info info;
-    pid_t process; /* that made it */
-    bool in_place; /* the device works in the host's memory: nothing is copied */
+    pid_t process;                          /* that made it */
+    host_block smoothing[SMOOTHING_BLOCKS]; /* of label maps: kept between extractions */
+    bool in_place;                          /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
     cl_command_queue queue;
