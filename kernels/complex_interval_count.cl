@@ -90,7 +90,6 @@ inline_always volume_cluster cluster_sides(uint n, const volume_count *a) {
         found.low = cluster_points(n, a);
     else
         found.low = cluster_present(n, a);
-    found.high &= found.low; /* it is, but where the caller has changed samples in between */
     return found;
 }
 
@@ -99,8 +98,14 @@ inline_always uint pattern_of(const volume_cluster *c, uint m) {
     return (uint)(c->low >> 4 * m & 15) << 4 | (uint)(c->high >> 4 * m & 15);
 }
 
-/* The tetrahedra of a cluster that lie within in part: the lowest bit of four for each. */
-inline_always ulong cluster_reached(const volume_cluster *c) { return nibbles_any(c->low) & nibbles_any(~c->high); }
+/* Tetrahedra with a point that is above and below: the caller has changed them or samples in between. They are left
+ * out. The lowest bit of four for each, here and in what follows. */
+inline_always ulong cluster_changed(const volume_cluster *c) { return nibbles_any(c->high & ~c->low); }
+
+/* The tetrahedra of a cluster that lie within in part. */
+inline_always ulong cluster_reached(const volume_cluster *c) {
+    return nibbles_any(c->low) & nibbles_any(~c->high) & ~cluster_changed(c);
+}
 
 inline_always uint cluster_tetrahedra(const volume_cluster *c, global const uchar *cases) {
     uint sum = 0;

@@ -202,14 +202,14 @@ inline_always void item_store(uint n, const volume_emit *e) {
         for (ulong rest = e->points[n].within; rest; rest &= rest - 1) point_store(n, lowest_bit(rest), e);
     if (n >= e->low->cluster_count) return;
     const volume_cluster c = e->clusters[n];
-    const ulong reached = cluster_reached(&c);
+    const ulong changed = cluster_changed(&c), reached = cluster_reached(&c);
     if (!reached) return;
     global const uint *points = e->tetrahedra + (ulong)CLUSTER_POINTS * n;
     tetrahedron_vertices t = {points, 0, 0};
     global uint *out = cluster_out(n, &c, e);
     if (nibbles_mixed(c.low)) t.low = slots_of(e->low, e->low_slots, n, 0);
     if (nibbles_mixed(c.high)) t.high = slots_of(e->high, e->high_slots, n, 0);
-    for (ulong rest = reached; rest; rest &= rest - 1) {
+    for (ulong rest = reached | changed; rest; rest &= rest - 1) {
         const uint m = lowest_bit(rest) / 4, pattern = pattern_of(&c, m);
         t.points = points + 4 * m;
         if (pattern == VOLUME_WITHIN) {
@@ -217,7 +217,7 @@ inline_always void item_store(uint n, const volume_emit *e) {
             out += 4;
             continue;
         }
-        out = part_store(t, pattern, e, out);
+        if (reached >> 4 * m & 1) out = part_store(t, pattern, e, out);
         if (is_active(pattern >> 4)) t.low += 4;
         if (is_active(pattern & 15)) t.high += 4;
     }

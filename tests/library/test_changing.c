@@ -1,7 +1,7 @@
 /*
- * test_changing.c - samples, blanks and tetrahedra that change while a surface or an interval volume is made of them,
- * which callers may not do: a call then fails, or what it makes is of what there was at some time, but no index leads
- * beyond its vertices
+ * test_changing.c - samples, blanks and tetrahedra that change while a surface, an interval volume or the surfaces of a
+ * label map are made of them, which callers may not do: a call then fails, or what it makes is of what there was at
+ * some time, but no index leads beyond its vertices
  *
  * The callback for progress changes them, between the two stages among others.
  */
@@ -136,6 +136,14 @@ static void expect_made(const tc_mesh_data *data, const char *name, int kind, in
            (unsigned long long)unmade);
 }
 
+static void expect_within_vertices(const uint32_t *indices, uint64_t count, uint64_t vertices, const char *of,
+                                   size_t change, int kind, int at) {
+    uint64_t beyond = 0;
+    for (uint64_t n = 0; n < count; n++) beyond += indices[n] >= vertices;
+    EXPECT(beyond == 0, "%s, %s, kind %d, at call %d: %llu indices beyond the vertices", changes[change].name, of, kind,
+           at, (unsigned long long)beyond);
+}
+
 static void extract_while_changing(tc_context *context, size_t change, int kind, moment *m, int at) {
     tc_extract_options how;
     tc_mesh *mesh = NULL;
@@ -153,33 +161,48 @@ static void extract_while_changing(tc_context *context, size_t change, int kind,
     EXPECT(status == TC_OK || (status == TC_ERROR_DATA && *tc_message()), "%s: status %d: %s", changes[change].name,
            (int)status, tc_message());
     if (!status) tc_mesh_get(mesh, &data);
-    uint64_t beyond = 0;
-    for (uint64_t n = 0; n < 3 * data.triangle_count; n++) beyond += data.triangles[n] >= data.vertex_count;
-    EXPECT(beyond == 0, "%s, kind %d, at call %d: %llu indices beyond the vertices", changes[change].name, kind, at,
-           (unsigned long long)beyond);
+    expect_within_vertices(data.triangles, 3 * data.triangle_count, data.vertex_count, "surface", change, kind, at);
     if (is_reference && !changes[change].complex) expect_made(&data, changes[change].name, kind, at);
     tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
 }
 
-static void interval_while_changing(tc_context *context, size_t change, moment *m, int at) {
+static void interval_while_changing(tc_context *context, size_t change, int kind, moment *m, int at) {
     tc_interval_options how;
     tc_interval *interval = NULL;
     tc_interval_data data = {.struct_size = sizeof data};
     tc_interval_options_init(&how);
     how.low = -0.3, how.high = 0.4;
     noise_fill();
-    tc_grid *grid = grid_open(context, true, 1);
+    tc_grid *grid = grid_open(context, changes[change].complex, kind);
     *m = (moment){0, at, changes[change].make};
     tc_status status = tc_extract_interval(grid, &how, &interval);
     EXPECT(status == TC_OK || (status == TC_ERROR_DATA && *tc_message()), "%s, interval: status %d: %s",
            changes[change].name, (int)status, tc_message());
     if (!status) tc_interval_get(interval, &data);
-    uint64_t beyond = 0;
-    for (uint64_t n = 0; n < 4 * data.tetrahedron_count; n++) beyond += data.tetrahedra[n] >= data.vertex_count;
-    EXPECT(beyond == 0, "%s, interval, at call %d: %llu indices beyond the vertices", changes[change].name, at,
-           (unsigned long long)beyond);
+    expect_within_vertices(data.tetrahedra, 4 * data.tetrahedron_count, data.vertex_count, "interval", change, kind,
+                           at);
     tc_interval_destroy(interval);
+    tc_grid_destroy(grid);
+}
+
+/* From two labels to 256, which have several times as many triangles in a cube. */
+static void labels_while_changing(tc_context *context, size_t change, moment *m, int at) {
+    tc_labels_options how;
+    tc_mesh *mesh = NULL;
+    tc_mesh_data data = {.struct_size = sizeof data};
+    tc_labels_options_init(&how);
+    how.smoothing = 0;
+    noise_fill();
+    for (int n = 0; n < SAMPLES; n++) bytes[n] &= 1;
+    tc_grid *grid = grid_open(context, false, 0);
+    *m = (moment){0, at, changes[change].make};
+    tc_status status = tc_extract_labels(grid, &how, &mesh);
+    EXPECT(status == TC_OK || (status == TC_ERROR_DATA && *tc_message()), "%s, labels: status %d: %s",
+           changes[change].name, (int)status, tc_message());
+    if (!status) tc_mesh_get(mesh, &data);
+    expect_within_vertices(data.triangles, 3 * data.triangle_count, data.vertex_count, "labels", change, 0, at);
+    tc_mesh_destroy(mesh);
     tc_grid_destroy(grid);
 }
 
@@ -202,7 +225,10 @@ static void changes_try(tc_context *context, moment *m) {
                 if (changes[change].complex && (kind != 1 || method != TC_METHOD_TETRA)) continue;
                 if (changes[change].complex) complex_make();
                 extract_while_changing(context, change, kind, m, at);
-                if (changes[change].complex) complex_make(), interval_while_changing(context, change, m, at);
+                if (changes[change].complex) complex_make();
+                if (method != TC_METHOD_TETRA || at % 3) continue;
+                if (kind == 1) interval_while_changing(context, change, kind, m, at);
+                if (changes[change].make == change_samples && kind == 0) labels_while_changing(context, change, m, at);
             }
 }
 

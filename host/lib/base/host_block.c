@@ -5,9 +5,10 @@
 #include <sys/mman.h>
 
 /* Unused address space behind a block. Where the caller changes samples during an extraction, a brick may emit more
- * vertices and triangles than were counted; the margin keeps these from overwriting other memory. A brick of 2,048
- * cubes has at most ten triangles of 12 bytes per cube. */
-static const size_t margin_bytes = 256 << 10;
+ * vertices, triangles or tetrahedra than were counted; the margin keeps these from overwriting other memory. A brick
+ * has 2,048 cubes, and these, at 12 bytes, ten triangles each; of label maps 60, twelve for each tetrahedron, which is
+ * most. */
+static const size_t margin_bytes = 1536 << 10;
 
 /* From here on, faults of small pages cost more than clearing a huge one. */
 static const size_t huge_from_bytes = 256 << 10;
