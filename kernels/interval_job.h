@@ -28,7 +28,6 @@ typedef struct interval_job {
     slab_u32 offset[INTERVAL_BLOCKS]; /* floats in the buffer before that */
     slab_u32 tetrahedron_window;      /* the same of tetrahedra, from the slab's first on */
     slab_u32 tetrahedron_offset;      /* indices in the buffer before that */
-    slab_u32 reserved;
 } interval_job;
 
 /* A vertex of a tetrahedron that a cube has, as a byte: block, the row of samples that owns it (y + 2 z), its type of
@@ -58,7 +57,7 @@ enum {
 enum { INTERVAL_COUNTS = 25 };
 
 #ifndef __OPENCL_VERSION__
-_Static_assert(sizeof(interval_job) == 8 + 20 * 4, "no padding: see slab.h");
+_Static_assert(sizeof(interval_job) == 8 + 18 * 4, "no padding: see slab.h");
 #endif
 
 #endif

@@ -10,12 +10,11 @@
  * Usage: test_bytes [whole|sample|small|groups [TEXT]]: sample: some of the cases; small: all, of small grids, in the
  * variants that take other ways through the kernels, for devices that simulate; groups: likewise, of structured grids,
  * only variants of many work-items per group; planted: one case, in one variant of which a sample is changed, which has
- * to fail; TEXT: only cases that have it in their names. Prints a line "case NAME: HASH" for each; a difference names
- * case and variant. Seeds are fixed.
- * test_bytes driver [TEXT [WORK_ITEMS]]: all cases of small grids once, for the table of drivers; WORK_ITEMS: which of
- * the two variants of the kernels, left out what the device gets. Prints what the device is, too, and "refused NAME: no
- * fp64" for a case that is the reference's alone there; "known fault: TEXT" where the library refuses the driver to who
- * asks for a trial.
+ * to fail; TEXT: only cases that have it in their names; after "=" it is a whole name. Prints a line "case NAME: HASH"
+ * for each; a difference names case and variant. Seeds are fixed. test_bytes driver [TEXT [WORK_ITEMS]]: all cases of
+ * small grids once, for the table of drivers; WORK_ITEMS: which of the two variants of the kernels, left out what the
+ * device gets. Prints what the device is, too, and "refused NAME: no fp64" for a case that is the reference's alone
+ * there; "known fault: TEXT" where the library refuses the driver to who asks for a trial.
  */
 #include "cases.h"
 
@@ -239,6 +238,11 @@ static void case_run(const bytes_case *c, tc_context *reference, tier t, bool gr
     case_free(&data);
 }
 
+/* Whether a name has the text in it, or is it, where the text begins with "=". */
+static bool name_wanted(const char *name, const char *text) {
+    return *text == '=' ? !strcmp(name, text + 1) : strstr(name, text) != NULL;
+}
+
 /* Says what the device is, and finds out what it takes. */
 static void device_tell(void) {
     tc_device_info info = {.struct_size = sizeof info};
@@ -273,11 +277,12 @@ int main(int argc, char **argv) {
     for (int groups = 0; groups < 2; groups++) {
         if (groups) groups_begin();
         for (int n = 0; n < case_count; n++)
-            if (case_wanted(&cases[n], t) && strstr(case_name(&cases[n]), text))
+            if (case_wanted(&cases[n], t) && name_wanted(case_name(&cases[n]), text))
                 case_run(&cases[n], reference, t, groups);
     }
     for (int n = 0; n < VARIANTS; n++) used += done.used[n];
     EXPECT(done.slab_meshes > 1 || t >= GROUPS || *text || !takes_alone, "%ld meshes made in slabs", done.slab_meshes);
+    EXPECT(done.cases > 0, "no case has %s in its name", text);
     printf("figures %ld cases, %d variants, %ld meshes, %ld in slabs\n", done.cases, used, done.meshes,
            done.slab_meshes);
     tc_context_destroy(reference);

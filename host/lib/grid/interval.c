@@ -44,7 +44,8 @@ tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
             "the interval volume takes %llu bytes, and %llu are available: take a narrower interval, or "
             "parts of the grid",
             (unsigned long long)interval_bytes(size), (unsigned long long)(available + held));
-    tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float));
+    const uint64_t pages = (uint64_t)BLOCK_COUNT * PAGE_BYTES; /* each block may begin with a page of its own */
+    tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float) + pages);
     if (!status) status = host_block_reserve(&interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
     if (!status) interval->size = *size;
     return status;

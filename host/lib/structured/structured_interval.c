@@ -356,6 +356,7 @@ static tc_status interval_slabs_emit(interval_run *r, tc_interval *interval) {
         size_add(&r->before, &r->size);
         if (!status) status = context_progress(r->context, "emit", 0.5 + 0.5 * (n + 1.0) / r->plan.slab_count);
     }
+    if (!status) interval_blocks_join(r, interval);
     return status;
 }
 

@@ -64,6 +64,9 @@ tc_status interval_classify(interval_run *r, uint32_t n);
 /* Emits the slab that was classified last. */
 tc_status interval_slab_emit(interval_run *r, tc_interval *interval);
 
+/* When all slabs are there: brings the blocks of vertices together, which had pages of their own. */
+void interval_blocks_join(const interval_run *r, tc_interval *interval);
+
 /* The kind of the kernels. */
 kernel_kind structured_interval_kind(const tc_grid *grid);
 

@@ -6,6 +6,7 @@
 #include "structured/structured_interval.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { PARTS = BLOCK_COUNT + 1 }; /* vertices in their blocks, tetrahedra */
 
@@ -64,10 +65,33 @@ static uint32_t step_end(const interval_run *r, const brick_sums *sums, uint32_t
     return low;
 }
 
-/* The item of the whole volume that a part of the slab begins with. */
-static uint64_t part_first(const interval_run *r, const tc_interval *interval, int part) {
-    if (part == BLOCK_COUNT) return r->before.tetrahedra;
-    return interval_first(&interval->size, part) + r->before.vertices[part];
+/* The number of the slab's first vertex in a block. */
+static uint64_t block_first(const interval_run *r, const tc_interval *interval, int block) {
+    return interval_first(&interval->size, block) + r->before.vertices[block];
+}
+
+/* Where a part lies in its block of memory while it is made, in bytes. On a device that works in the host's memory no
+ * page is in two buffers, which would be undefined, so each block of vertices then begins with a page of its own. */
+static uint64_t part_start(const interval_run *r, const tc_interval *interval, int part) {
+    uint64_t start = 0;
+    if (part == BLOCK_COUNT) return 0;
+    if (!r->context->in_place) return interval_first(&interval->size, part) * item_bytes[part];
+    for (int n = 0; n < part; n++)
+        start += (interval->size.vertices[n] * item_bytes[n] + PAGE_BYTES - 1) & ~(uint64_t)(PAGE_BYTES - 1);
+    return start;
+}
+
+/* Of the slab's item n. */
+static uint64_t part_byte(const interval_run *r, const tc_interval *interval, int part, uint64_t n) {
+    const uint64_t before = part == BLOCK_COUNT ? r->before.tetrahedra : r->before.vertices[part];
+    return part_start(r, interval, part) + (before + n) * item_bytes[part];
+}
+
+void interval_blocks_join(const interval_run *r, tc_interval *interval) {
+    for (int n = BLOCK_LOW; n < BLOCK_COUNT && r->context->in_place; n++)
+        memmove((char *)interval->positions.memory + interval_first(&interval->size, n) * item_bytes[n],
+                (char *)interval->positions.memory + part_start(r, interval, n),
+                (size_t)(interval->size.vertices[n] * item_bytes[n]));
 }
 
 static const host_block *part_block(const tc_interval *interval, int part) {
@@ -79,17 +103,16 @@ static tc_status step_open(interval_run *r, const tc_interval *interval, const b
     interval_job *job = &r->job;
     tc_status status = TC_OK;
     for (int n = 0; n < PARTS && !status; n++) {
-        const uint64_t before = part_first(r, interval, n);
         uint32_t offset = 0;
         status = mesh_part_open(r->context, &r->buffers->parts[n], part_block(interval, n),
-                                (before + first->at[n]) * item_bytes[n], (before + end->at[n]) * item_bytes[n], &offset,
+                                part_byte(r, interval, n, first->at[n]), part_byte(r, interval, n, end->at[n]), &offset,
                                 part_names[n]);
         if (n == BLOCK_COUNT) {
             job->tetrahedron_window = (uint32_t)first->at[n], job->tetrahedron_offset = offset;
             continue;
         }
-        job->first[n] = (uint32_t)before;
-        job->window[n] = (uint32_t)(before + first->at[n]);
+        job->first[n] = (uint32_t)block_first(r, interval, n);
+        job->window[n] = job->first[n] + (uint32_t)first->at[n];
         job->offset[n] = offset;
     }
     return status;
@@ -134,9 +157,8 @@ static tc_status step_close(interval_run *r, tc_interval *interval, const brick_
     const double begin = clock_ms();
     tc_status status = error ? context_fail(r->context, "kernel interval_emit", error) : TC_OK;
     for (int n = 0; n < PARTS && !status; n++) {
-        const uint64_t at = (part_first(r, interval, n) + first->at[n]) * item_bytes[n];
-        const uint64_t bytes = (end->at[n] - first->at[n]) * item_bytes[n];
-        status = mesh_part_close(r->context, &r->buffers->parts[n], part_block(interval, n), at, at + bytes);
+        status = mesh_part_close(r->context, &r->buffers->parts[n], part_block(interval, n),
+                                 part_byte(r, interval, n, first->at[n]), part_byte(r, interval, n, end->at[n]));
     }
     if (!r->context->in_place) interval->timings.readback_ms += clock_ms() - begin;
     return status;
