@@ -110,8 +110,7 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- rows
- */
+/* ------------------------------------------------------------------------------------------------------------- rows */
 
 /* Vertices of a bound that a row owns, into the buffer of the bound's block. */
 inline_always void bound_store(const slab *s, const interval_job *job, const bound *b, const sample_rows rows[4],

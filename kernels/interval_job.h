@@ -12,7 +12,7 @@
 /* Blocks of vertices. */
 enum { INTERVAL_SAMPLES, INTERVAL_LOW_BOUND, INTERVAL_HIGH_BOUND, INTERVAL_BLOCKS };
 
-/* What a brick has: while it is counted its own sums, then those of the bricks before it in the slab. */
+/* Of a brick: after interval_count its own sums; then, by the host, those of the bricks before it in the slab. */
 typedef struct interval_brick {
     slab_u32 tetrahedra, samples;
 } interval_brick;
@@ -23,11 +23,11 @@ typedef struct interval_job {
     slab_u32 has_low, has_high;       /* without a bound all samples are on the inner side of it */
     slab_u32 own_bricks, all_bricks;  /* of the layers that are emitted, and of the window */
     slab_u32 brick_first, brick_last; /* those that a launch emits */
-    slab_u32 first[INTERVAL_BLOCKS];  /* number of the slab's first vertex of each block */
-    slab_u32 window[INTERVAL_BLOCKS]; /* number of the vertex that each buffer starts with */
-    slab_u32 offset[INTERVAL_BLOCKS]; /* floats in the buffer before that */
-    slab_u32 tetrahedron_window;      /* the same of tetrahedra, from the slab's first on */
-    slab_u32 tetrahedron_offset;      /* indices in the buffer before that */
+    slab_u32 first[INTERVAL_BLOCKS];  /* of each block the number of the slab's first vertex */
+    slab_u32 window[INTERVAL_BLOCKS]; /* the number of the first vertex that lies in the buffer */
+    slab_u32 offset[INTERVAL_BLOCKS]; /* floats from the start of the buffer to that vertex */
+    slab_u32 tetrahedron_window;      /* the first tetrahedron that lies in the buffer, counted from the slab's first */
+    slab_u32 tetrahedron_offset;      /* indices from the start of the buffer to it */
 } interval_job;
 
 /* A vertex of a tetrahedron that a cube has, as a byte: block, the row of samples that owns it (y + 2 z), its type of
@@ -36,10 +36,11 @@ typedef struct interval_job {
 #define INTERVAL_VERTEX(block, row, type, at_x) (2 * INTERVAL_PLACE(block, row, type) + (at_x))
 enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
 
-/* The table of cases. First, for each of 2 parities x 5 tetrahedra, what a pattern of a cube's corners is to the base 3
- * in the tetrahedron: the digits of the corners that are not below, added to those of the ones above, are its case.
- * Then for each of them 81 entries: how many tetrahedra there are, and how many vertices; these; and for each corner of
- * a tetrahedron which of them it is. */
+/* The table of cases. First, for each of 2 parities x 5 tetrahedra, 256 bytes: that of a pattern of the cube's corners
+ * is the sum of 3^m over the corners m of the tetrahedron that are in the pattern. A case is the byte of the corners
+ * not below plus the byte of those above: a number to the base 3 whose digits are 0 below, 1 within, 2 above. Then, for
+ * each of the ten, 81 entries: the number of tetrahedra, the number of vertices, up to eight vertices
+ * (INTERVAL_VERTEX), and for each tetrahedron four indices into these. */
 enum {
     INTERVAL_ORDERED = 10,
     INTERVAL_CASE_COUNT = 81,
@@ -52,8 +53,7 @@ enum {
     INTERVAL_WITHIN = 40 /* the case of a tetrahedron that lies within whole */
 };
 
-/* The table of counts: tetrahedra in one of which so many corners are not below, and so many above, at index 5 times
- * the first plus the second. */
+/* The table of counts: entry 5 n + m says how many tetrahedra come of one with n corners not below and m above. */
 enum { INTERVAL_COUNTS = 25 };
 
 #ifndef __OPENCL_VERSION__

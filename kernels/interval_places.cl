@@ -42,8 +42,8 @@ inline_always owner bound_owner(const slab *s, const bound *b, uint first, uint 
     return o;
 }
 
-/* Edges with a vertex that the samples of row n of a row of cubes own. In rows behind the first only those of types are
- * right that the cubes have. */
+/* Edges with a vertex that the samples of row n of a row of cubes own. In rows 1 to 3 only the types that the cubes
+ * have are correct. */
 inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], uint n, global const ulong *cells,
                                       uint y, uint z, uint w) {
     const sample_rows none = rows_shifted(0, 0);
@@ -113,7 +113,7 @@ inline_always global const uchar *interval_entry(global const uchar *cases, uint
     return cases + INTERVAL_DIGIT_BYTES + INTERVAL_ENTRY_BYTES * (INTERVAL_CASE_COUNT * ordered + index);
 }
 
-/* Vertex m, of 40, of two cubes side by side that lie within whole. */
+/* Corner m, of 40, of the ten tetrahedra of two cubes side by side that lie within whole. */
 inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
     global const uchar *entry = interval_entry(cases, 5 * (odd ^ (m >= 20)) + m / 4 % 5, INTERVAL_WITHIN);
     return entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m % 4]];

@@ -26,7 +26,7 @@ inline_always uint label_tile_first(const label_job *s, uint tile) {
     return tile < s->own_tiles ? tile * s->tile_bricks : s->own_bricks + (tile - s->own_tiles) * s->tile_bricks;
 }
 
-/* Behind the last brick of a tile. */
+/* One past the last brick of a tile. */
 inline_always uint label_tile_end(const label_job *s, uint tile) {
     return min(label_tile_first(s, tile) + s->tile_bricks, tile < s->own_tiles ? s->own_bricks : s->brick_count);
 }

@@ -12,10 +12,13 @@
 /* Types of vertices that a sample owns; the first twelve are used by cubes of other rows too. */
 enum { LABEL_ROW_TYPES = 21, LABEL_SHARED_TYPES = 12, LABEL_OFFSETS = 16, LABEL_WORDS = 6 };
 
-/* Words of the tables: for each of 64 patterns the number of interfaces, then these; for each parity and tetrahedron
- * its eleven vertices, and its corners; for each parity and type the offset from the owner, as floats; for each parity
- * and pattern of a cube with two labels, of which the set bits have the first, bytes: the number of triangles, then
- * three vertices each. */
+/* Words of the tables, in this order:
+ *
+ *     for each of 64 patterns          the number of interfaces, then these
+ *     LABEL_MAPS                       for each parity and tetrahedron: its eleven vertices, then its corners
+ *     LABEL_PLACES                     for each parity and type: the vertex from its owner, three floats
+ *     LABEL_CUBES                      for each parity and pattern of a cube with two labels (bits set: the first one),
+ *                                      in bytes: the number of triangles, then three vertices each */
 enum {
     LABEL_CASE_WORDS = 8,
     LABEL_MAP_WORDS = 16,
@@ -55,7 +58,7 @@ enum {
     LABEL_HEAD_WORDS
 };
 
-/* What kernel 1 finds out about a row of a brick that emits something: what the rows before it in its tile do. */
+/* Of a row that emits something: vertices and triangles of the rows before it in its tile. */
 typedef struct label_row_base {
     slab_u32 vertices, triangles;
 } label_row_base;
@@ -73,8 +76,9 @@ typedef struct label_job {
     slab_u32 tile_bricks, tile_count, own_tiles; /* tiles of own bricks come first, then those behind */
     slab_u32 spin_limit;
     slab_u32 vertex_base;     /* number of the slab's first vertex */
-    slab_u32 position_offset; /* floats in the buffer before it; indices and labels before the slab's first triangle: */
-    slab_u32 triangle_offset, label_offset;
+    slab_u32 position_offset; /* floats in the buffer before it */
+    slab_u32 triangle_offset; /* indices in the buffer before the slab's first triangle */
+    slab_u32 label_offset;    /* labels in the buffer before it */
     slab_u32 mirrored;
     slab_f32 matrix[12];
     slab_u32 reserved;

@@ -10,7 +10,7 @@
 #include "label_words.cl"
 
 /* Faces whose three edges differ: of the xy, xz and yz faces that begin at the samples, two triangles each. The first
- * one has the first corner that the diagonal does not join. */
+ * one has the lower of the two corners that are not on the diagonal. */
 inline_always ulong label_first_half(ulong even, ulong diagonal, ulong along, ulong across, ulong across_next) {
     return diagonal & along & label_select(even, across_next, across);
 }
@@ -50,7 +50,9 @@ typedef struct label_cells {
     ulong three, four, five, six;
 } label_cells;
 
-/* Three edges at a corner, and three around the face across from it. Bits are added: four bits make no seven. */
+/* Of six edges: three at a corner, and three around the face across from it. Their bits are added for all cubes at
+ * once. Sums 1 and 2 do not occur, as equality is transitive, and six bits make no 7: so one bit and its neighbour tell
+ * the sums 3 to 6 apart. */
 inline_always label_cells label_cells_of(ulong a, ulong b, ulong c, ulong d, ulong f, ulong g) {
     const ulong low = a ^ b ^ c, low_carry = (a & b) | (c & (a ^ b));
     const ulong high = d ^ f ^ g, high_carry = (d & f) | (g & (d ^ f));

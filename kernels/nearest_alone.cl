@@ -81,8 +81,7 @@ inline_always samples16 samples16_of(const slab *s, global const BITS *at, uint 
     return here;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- crossings
- */
+/* -------------------------------------------------------------------------------------------------------- crossings */
 
 /* Half the difference in value to neighbours with these pulls, positive towards the other side. */
 inline_always REAL16 differences16(const samples16 *here, pulls16 pulls) {

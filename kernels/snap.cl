@@ -47,8 +47,7 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
     if (nonfinite) atomic_or(&state[s.results.head_offset + STATE_NONFINITE], 1u);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ bricks
- */
+/* ----------------------------------------------------------------------------------------------------------- bricks */
 
 inline_always uint brick_count_of(const slab *s) { return window_layers(s) * s->bricks_y * s->words_x; }
 
@@ -147,8 +146,7 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ passes
- */
+/* ----------------------------------------------------------------------------------------------------------- passes */
 
 #if WORK_ITEMS == 1
 #include "snap_link_alone.cl"

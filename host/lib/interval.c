@@ -72,7 +72,8 @@ static tc_status kernels_run(tc_grid *grid, const tc_interval_options *options, 
                     : structured_interval_count(grid, options, size, classify_ms);
 }
 
-/* By kernels that are vetted and tried first; again where they were exchanged on the way. interval NULL: counts. */
+/* By kernels that are vetted and tried first; again if vetting has switched to the other variant. interval NULL:
+ * counts. */
 static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size,
                              double *classify_ms, tc_interval *interval) {
     tc_status status;

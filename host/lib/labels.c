@@ -40,7 +40,7 @@ static bool runs_on_device(const tc_grid *grid) {
     return grid->context->options.engine == TC_ENGINE_OPENCL && grid->kind == GRID_UNIFORM;
 }
 
-/* By kernels that are vetted and tried first; again where they were exchanged on the way. */
+/* By kernels that are vetted and tried first; again if vetting has switched to the other variant. */
 static tc_status device_make(const label_volume *volume, tc_mesh *mesh) {
     tc_context *context = volume->grid->context;
     tc_status status;

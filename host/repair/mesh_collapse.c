@@ -3,8 +3,8 @@
  *
  * Method.
  *   1. Vertices that edges of zero length join form a set (union-find); they are its members. A triangle with two
- *      corners in one set is dropped. Only local triangles, those with a member as a corner, are looked at from here
- * on.
+ *      corners in one set is dropped. From here on only local triangles are looked at, those with a member as a
+ *      corner.
  *   2. From each kept half-edge a walk finds the kept triangle on the other side: over the twin of the half-edge,
  *      through a dropped triangle to the other of its two edges that have a length, over the twin of that, and so on.
  *      The two kept triangles become neighbours there: their corners at the two ends are united.

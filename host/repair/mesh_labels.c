@@ -95,6 +95,10 @@ int mesh_labels_find(const tc_mesh_data *mesh, mesh_labels *out) {
     return status;
 }
 
+int mesh_labels_has(const mesh_labels *l, uint32_t label) {
+    return l->count && bsearch(&label, l->labels, l->count, sizeof label, compare_labels) != NULL;
+}
+
 void mesh_labels_release(mesh_labels *l) {
     free(l->labels);
     free(l->starts);

@@ -30,6 +30,8 @@ typedef struct label_mesh {
 int mesh_labels_find(const tc_mesh_data *mesh, mesh_labels *out);
 void mesh_labels_release(mesh_labels *l);
 
+int mesh_labels_has(const mesh_labels *l, uint32_t label);
+
 /* Makes the surface of label n of the list; *out is zeroed before the first. Returns as above. */
 int mesh_label_take(mesh_labels *l, size_t n, label_mesh *out);
 void label_mesh_release(label_mesh *m);

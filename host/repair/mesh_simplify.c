@@ -150,8 +150,7 @@ static void mark_neighbours(const stage_mesh *m, uint8_t *marks) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------------- a stage
- */
+/* ---------------------------------------------------------------------------------------------------------- a stage */
 
 typedef struct stage {
     const simplify_options *how;
@@ -283,8 +282,7 @@ static int run_stage(stage *s, int *goes_on) {
     return status;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- the whole
- */
+/* -------------------------------------------------------------------------------------------------------- the whole */
 
 void simplified_mesh_release(simplified_mesh *mesh) {
     free(mesh->triangles);

@@ -83,8 +83,7 @@ static int corner_lists_make(uint64_t vertex_count, const uint32_t *triangles, u
     return 0;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- fans
- */
+/* ------------------------------------------------------------------------------------------------------------- fans */
 
 /* The corner with that `next`; NULL where there is none. */
 static const corner *corner_to(const fan *f, uint32_t next) {
@@ -126,8 +125,7 @@ static fan fan_of(const corner_lists *lists, uint64_t v) {
     return f;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- folds
- */
+/* ------------------------------------------------------------------------------------------------------------ folds */
 
 static void normal_of(const float *positions, uint32_t a, uint32_t b, uint32_t c, double normal[3]) {
     double u[3], v[3];
@@ -154,8 +152,7 @@ static int is_folded(const fan *f, const float *positions, uint32_t v, const cor
     return lengths > 0 && dot(one, other) < (fold_cosine + margin) * lengths;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ shape
- */
+/* ------------------------------------------------------------------------------------------------------------ shape */
 
 static uint32_t root_of(uint32_t *roots, uint32_t v) {
     while (roots[v] != v) v = roots[v] = roots[roots[v]];

@@ -290,8 +290,7 @@ static int make_surfaces(job *j) {
     return 0;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- streams
- */
+/* ---------------------------------------------------------------------------------------------------------- streams */
 
 /* Makes the surfaces window by window, where they would not fit into memory; else j->streams is 0 afterwards. */
 static int make_streamed(job *j) {

@@ -192,13 +192,10 @@ static int take_labels(label_job *j) {
 
 /* Labels that were asked for and have no surface. */
 static void tell_absent(const label_job *j) {
-    size_t at = 0;
     if (!j->labels.count && !j->o->label_count) notice("no surface: all samples have the same label");
-    for (size_t n = 0; n < j->o->label_count; n++) {
-        for (at = 0; at < j->labels.count && j->labels.labels[at] != j->o->labels[n];) at++;
-        if (at == j->labels.count)
+    for (size_t n = 0; n < j->o->label_count; n++)
+        if (!mesh_labels_has(&j->labels, j->o->labels[n]))
             notice("label %" PRIu32 " has no surface: no sample has it, or all have", j->o->labels[n]);
-    }
 }
 
 static int publish(label_job *j) {

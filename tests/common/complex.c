@@ -220,8 +220,7 @@ cell_list mixed_block_make(uint32_t size, uint64_t seed) {
     return list;
 }
 
-/* -------------------------------------------------------------------------------- truncated octahedra and honeycombs
- */
+/* ------------------------------------------------------------------------------- truncated octahedra and honeycombs */
 
 /* The point at x, y, z of a block of side^3 of them; made where it is not there yet. */
 static uint32_t lattice_point(cell_list *list, uint32_t *made, int side, int x, int y, int z) {

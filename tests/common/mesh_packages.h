@@ -25,8 +25,7 @@ static inline tc_mesh_data parse_off(const char *text, size_t bytes) {
     return mesh;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- GLB
- */
+/* -------------------------------------------------------------------------------------------------------------- GLB */
 
 /* The number behind the n-th time that the text is there; -1 where it is not. */
 static inline long long number_behind(const char *text, const char *name, int n) {
@@ -94,8 +93,7 @@ static inline tc_mesh_data parse_glb(const char *text, size_t bytes) {
     return mesh;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- HTML
- */
+/* ------------------------------------------------------------------------------------------------------------- HTML */
 
 /* What the page's script of that name holds, decoded to so many bytes; zeros where it holds something else. */
 static inline void *html_array(const char *text, const char *name, uint64_t bytes) {
@@ -137,8 +135,7 @@ static inline tc_mesh_data parse_html(const char *text, size_t bytes) {
     return mesh;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- NPZ
- */
+/* -------------------------------------------------------------------------------------------------------------- NPZ */
 
 static inline uint32_t sum_of(const char *data, uint64_t bytes) {
     uint32_t c = UINT32_MAX;

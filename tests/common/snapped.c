@@ -53,8 +53,7 @@ static void link_make(const signs *s, const int64_t p[3], sample_link *l) {
         l->faces |= (unsigned)(p[axis] == 0 || p[axis] + 1 == s->grid->dims[axis]) << axis;
 }
 
-/* ----------------------------------------------------------------------------------------------- the curve in a link
- */
+/* ---------------------------------------------------------------------------------------------- the curve in a link */
 
 /* Where the surface meets the link: nodes are samples on it and crossed edges, arcs join them across triangles. */
 typedef struct curve {
@@ -181,8 +180,7 @@ bool sample_is_regular(const signs *s, const int8_t *sides, const int64_t p[3]) 
     return link_is_regular(&l, sides);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- snapping
- */
+/* --------------------------------------------------------------------------------------------------------- snapping */
 
 typedef struct snapped {
     signs signs;
@@ -253,8 +251,7 @@ static const char *fault_of(snapped *w, const char *what, uint64_t number, const
     return w->fault;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- vertices
- */
+/* --------------------------------------------------------------------------------------------------------- vertices */
 
 static bool vertex_lies_between(const snapped *w, uint64_t n, const int64_t p[3], const int64_t q[3]) {
     const bool ordered = signs_index(&w->signs, p) < signs_index(&w->signs, q);
@@ -317,8 +314,7 @@ static const char *row_walk(snapped *w, int64_t x0, int64_t x1, int64_t y, int64
     return NULL;
 }
 
-/* --------------------------------------------------------------------------------------------------------- triangles
- */
+/* -------------------------------------------------------------------------------------------------------- triangles */
 
 /* The vertex on an edge of a cube, or at a corner: both ends are then the same. */
 static uint32_t id_between(const snapped *w, const int64_t cube[3], split_edge e) {
@@ -387,8 +383,7 @@ static const char *cubes_walk(snapped *w, int64_t x0, int64_t x1, int64_t y, int
     return fault;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- whole
- */
+/* ------------------------------------------------------------------------------------------------------------ whole */
 
 static int64_t least_of(int64_t a, int64_t b) { return a < b ? a : b; }
 

@@ -46,8 +46,7 @@ static void check_cases(const limit_case *cases, size_t count) {
         check_file(cases[n].text, file_text(cases[n].name, cases[n].text), cases[n].part);
 }
 
-/* ---------------------------------------------------------------------------------------------------- size arithmetic
- */
+/* -------------------------------------------------------------------------------------------------- size arithmetic */
 
 static void test_sizes(void) {
     file_text("whole.vti", XML8("")); /* the piece of lists of pieces */
@@ -123,8 +122,7 @@ static void test_pages(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ headers without end
- */
+/* ---------------------------------------------------------------------------------------------- headers without end */
 
 static void check_repeated(const char *name, const char *start, const char *line, size_t count, const char *part) {
     bytes file = {0};
@@ -161,8 +159,7 @@ static void test_headers(void) {
                    20000, "more than 16384 files");
 }
 
-/* ------------------------------------------------------------------------------------------------------------- names
- */
+/* ------------------------------------------------------------------------------------------------------------ names */
 
 /* A million names of 4,000 characters; files of more axes than numbers can say. */
 static void test_names(void) {
@@ -183,8 +180,7 @@ static void test_names(void) {
                file_text("type.nrrd", "NRRD0004\ntype: \033]0;a\007\ndimension: 3\nsizes: 2 2 2\n"), "'?]0;a?'");
 }
 
-/* ----------------------------------------------------------------------------------------------------------- numbers
- */
+/* ---------------------------------------------------------------------------------------------------------- numbers */
 
 static double first_value(const char *path) {
     dataset d;
@@ -233,8 +229,7 @@ static void test_numbers(void) {
     check_file("a number with a zero byte in it", file_write("zero.nrrd", zero, sizeof zero - 1), "is no number");
 }
 
-/* ------------------------------------------------------------------------------------------------------------ sharing
- */
+/* ---------------------------------------------------------------------------------------------------------- sharing */
 
 /* So many pieces of points with one array in common. */
 static void write_shared(bytes *file, int pieces, int points, const bytes *data, const char *type, int is_packed) {
@@ -284,8 +279,7 @@ static void test_sharing(void) {
     bytes_free(&file);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- links
- */
+/* ------------------------------------------------------------------------------------------------------------ links */
 
 static const char *link_to(const char *target, const char *name) {
     const char *path = file_path(name);
@@ -338,8 +332,7 @@ static void test_links(void) {
     check_file("a link to nothing", file_path("own/a.mhd"), "cannot be opened");
 }
 
-/* --------------------------------------------------------------------------------------------------------- distances
- */
+/* -------------------------------------------------------------------------------------------------------- distances */
 
 static void test_distances(void) {
     check_cases(distance_cases, sizeof distance_cases / sizeof *distance_cases);

@@ -51,8 +51,7 @@ typedef enum layer_entry {
 
 extern const char *const entry_names[ENTRY_COUNT]; /* "clGetPlatformIDs", ... */
 
-/* ------------------------------------------------------------------------------- what a test finds as `layer_control`
- */
+/* ----------------------------------------------------------------------------- what a test finds as `layer_control` */
 
 typedef struct layer_functions {
     /* Carries commands out. False where one is not understood. */

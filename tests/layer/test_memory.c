@@ -93,8 +93,7 @@ static void test_the_layer(void) {
     clReleaseProgram(program);
 }
 
-/* ----------------------------------------------------------------------------------------------- fallback of the scan
- */
+/* --------------------------------------------------------------------------------------------- fallback of the scan */
 
 /* The device's mesh is the reference's, and the layer finds nothing. */
 static void expect_same(const tc_context_options *options, tc_status (*grid_make)(tc_context *, tc_grid **),

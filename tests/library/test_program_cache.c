@@ -16,8 +16,7 @@
 
 enum { FILES_MOST = 16, PATH_MOST = 512, TEXT_MOST = 1 << 20 };
 
-/* --------------------------------------------------------------------------------------------------- child processes
- */
+/* -------------------------------------------------------------------------------------------------- child processes */
 
 static pid_t child_start(void (*work)(void)) {
     fflush(stdout);
@@ -63,8 +62,7 @@ static void extract_expect(const char *what) {
     EXPECT(status == 0, "%s: exit status %d", what, status);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- files
- */
+/* ------------------------------------------------------------------------------------------------------------ files */
 
 typedef struct entry {
     char path[PATH_MOST];
@@ -126,8 +124,7 @@ static const char *cache_folder(const char *name) {
     return path;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void test_second_process(void) {
     const char *cache = cache_folder("deep/down/cache");

@@ -64,8 +64,7 @@ static void keep(uint32_t work_items, uint32_t work_groups, uint32_t tile_bricks
     tc_context_destroy(context);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void test_mesh(tc_context *context) {
     tc_grid_options grid;

@@ -97,8 +97,7 @@ static void simulate(slab *s, int step) {
            (size_t)(s->end - s->first) * PLANE * sizeof(float));
 }
 
-/* -------------------------------------------------------------------------------------------------------- contouring
- */
+/* ------------------------------------------------------------------------------------------------------- contouring */
 
 static tc_grid_options whole_grid(const slab *s) {
     tc_grid_options whole;
@@ -150,8 +149,7 @@ static piece piece_make(slab *s, tc_context *context, const tc_extract_options *
     return p;
 }
 
-/* -------------------------------------------------------------------------------------------------------- comparison
- */
+/* ------------------------------------------------------------------------------------------------------- comparison */
 
 /* Puts values of all ranks, one behind the other, into *out of rank 0, from malloc. */
 static void gather(const slab *s, const void *own, uint64_t bytes, void **out) {

@@ -37,8 +37,7 @@ static const char *folder;
 static char name[128]; /* of the program that is asked for */
 static int written;
 
-/* ------------------------------------------------------------------------------------------------ stand-in for OpenCL
- */
+/* ---------------------------------------------------------------------------------------------- stand-in for OpenCL */
 
 /* Any address does for an object: the library looks into none. */
 #define OBJECT(type) ((type)(void *)name)
@@ -200,8 +199,7 @@ static const struct opencl_functions stand_in = {
     .GetKernelWorkGroupInfo = kernel_tell,
 };
 
-/* ------------------------------------------------------------------------------------------------------ all programs
- */
+/* ----------------------------------------------------------------------------------------------------- all programs */
 
 static void status_check(tc_status status) {
     if (!status) return;

@@ -22,8 +22,7 @@
 
 static const read_request any_field = {.path = "f", .component = COMPONENT_OPEN};
 
-/* ------------------------------------------------------------------------------------------------ datasets to try on
- */
+/* ----------------------------------------------------------------------------------------------- datasets to try on */
 
 static dataset_block *add_block(dataset *d, int64_t nx, int64_t ny, int64_t nz) {
     dataset_block *b;

@@ -231,8 +231,7 @@ static void test_shapes(void) {
             }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ damage
- */
+/* ----------------------------------------------------------------------------------------------------------- damage */
 
 /* Every shorter file: an error with a text, or, where only the end of the XML is gone, all values. */
 static void test_truncation(enum block_kind kind, const vtk_shape *s) {

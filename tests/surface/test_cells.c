@@ -28,8 +28,7 @@ static void *memory_get(uint64_t bytes) {
     return memory;
 }
 
-/* ----------------------------------------------------------------------------------------------- faces of VTK's cells
- */
+/* --------------------------------------------------------------------------------------------- faces of VTK's cells */
 
 /* By VTK's own pictures; a face ends at -1. */
 typedef struct shape {
@@ -89,8 +88,7 @@ static int face_points(const int64_t *points, const int *corners, uint32_t out[6
     return count;
 }
 
-/* --------------------------------------------------------------------------------------------------- what is expected
- */
+/* ------------------------------------------------------------------------------------------------- what is expected */
 
 typedef struct subject {
     const cell_list *list;
@@ -202,8 +200,7 @@ static wanted wanted_of(const subject *s) {
     return w;
 }
 
-/* ------------------------------------------------------------------------------------------ pieces of the tetrahedra's
- */
+/* --------------------------------------------------------------------------------------- pieces of the tetrahedra's */
 
 static uint32_t root_of(uint32_t *parent, uint32_t n) {
     while (parent[n] != n) n = parent[n] = parent[parent[n]];
@@ -258,8 +255,7 @@ static int64_t defect_of(const subject *s, const tc_mesh_data *tetra) {
     return triangle == tetra->triangle_count ? sum : INT64_MAX / 2;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ checks
- */
+/* ----------------------------------------------------------------------------------------------------------- checks */
 
 typedef struct place {
     float p[3];
@@ -326,8 +322,7 @@ static bool mesh_extract(const subject *s, const tc_cells *cells, tc_method meth
     return !status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- grids
- */
+/* ------------------------------------------------------------------------------------------------------------ grids */
 
 static void values_choose(const cell_list *list, float *values, int kind) {
     float middle[3] = {0, 0, 0};
@@ -423,8 +418,7 @@ static void test_missing(uint64_t seed) {
     cell_list_free(&list);
 }
 
-/* ------------------------------------------------------------------------------------------------- faults and refusals
- */
+/* ---------------------------------------------------------------------------------------------- faults and refusals */
 
 /* What all grids are checked with finds a corner moved, and a triangle less. */
 static void test_faults_are_found(void) {

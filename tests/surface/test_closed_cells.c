@@ -250,8 +250,7 @@ static void run(uint64_t seed) {
     cell_list_free(&list);
 }
 
-/* ------------------------------------------------------------------------------------------------------ cell by cell
- */
+/* ----------------------------------------------------------------------------------------------------- cell by cell */
 
 /* Hexahedra under random numbers, with cells of noise: the whole encloses what its cells do, as both sides of a face
  * are cut alike, one from either side. */

@@ -201,8 +201,7 @@ static void run(uint64_t seed, bool wide) {
     grids_close();
 }
 
-/* ------------------------------------------------------------------------------------------------------ bricks inside
- */
+/* ---------------------------------------------------------------------------------------------------- bricks inside */
 
 /* Bricks that are all inside have nothing to emit but at the border; a run of them is passed over as a whole. */
 static void test_inside_bricks(void) {

@@ -185,8 +185,7 @@ static void scattered_compare(void) {
     engines_compare(&o, &isovalue, 1, true, "scattered tetrahedra");
 }
 
-/* -------------------------------------------------------------------------------------------------- structured grids
- */
+/* ------------------------------------------------------------------------------------------------- structured grids */
 
 static int position_compare(const void *a, const void *b) {
     const float *p = a, *q = b;

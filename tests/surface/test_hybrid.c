@@ -208,8 +208,7 @@ static void run(uint64_t seed, bool large) {
     expect_hybrid(&grid, &how, complete, name);
 }
 
-/* ------------------------------------------------------------------------------------------------------- smooth data
- */
+/* ------------------------------------------------------------------------------------------------------ smooth data */
 
 /* A curvilinear grid with cells left out: bytes of both engines, and topology. */
 static void test_curvilinear(void) {

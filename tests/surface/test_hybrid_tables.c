@@ -48,8 +48,7 @@ static unsigned common_face(unsigned p, unsigned q) {
     return 6;
 }
 
-/* ------------------------------------------------------------------------------------------------ the five's surface
- */
+/* ----------------------------------------------------------------------------------------------- the five's surface */
 
 /* What the surface of the five tetrahedra says of a pattern. */
 typedef struct split_surface {

@@ -186,8 +186,7 @@ static void expect_interval(const subject *s, const tc_interval_options *o, doub
     tc_interval_destroy(interval);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- cases
- */
+/* ------------------------------------------------------------------------------------------------------------ cases */
 
 static const double case_values[3] = {-1.25, 0.5, 2.75};
 
@@ -229,8 +228,7 @@ static void orders_try(uint32_t order[5], int n) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ random grids
- */
+/* ----------------------------------------------------------------------------------------------------- random grids */
 
 static void samples_choose(tc_grid_options *g) {
     const int field = (int)random_below(RANDOM_FIELDS), kind = (int)random_below(3);

@@ -208,8 +208,7 @@ static void many_corners(int sides) {
     cell_list_free(&list);
 }
 
-/* ------------------------------------------------------------------------------------------- damage, and what is odd
- */
+/* ------------------------------------------------------------------------------------------ damage, and what is odd */
 
 static void refused(const tc_cells *cells, tc_status wanted, const char *word) {
     tc_tetrahedra complex = {.struct_size = sizeof complex};

@@ -45,8 +45,7 @@ static bool border_is_in_faces(const tc_grid_options *grid, const tc_mesh_data *
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------------- comparison
- */
+/* ------------------------------------------------------------------------------------------------------- comparison */
 
 /* Position and normal. */
 typedef struct vertex {
@@ -160,8 +159,7 @@ static void expect_snapped(const tc_grid_options *options, const tc_extract_opti
     tc_grid_destroy(grid);
 }
 
-/* ------------------------------------------------------------------------------------------------------ random grids
- */
+/* ----------------------------------------------------------------------------------------------------- random grids */
 
 enum { EXTREMES = RANDOM_FIELDS, FIELD_KINDS };
 
@@ -306,8 +304,7 @@ static void test_between_bricks(void) {
         }
 }
 
-/* ----------------------------------------------------------------------------------------------------------- figures
- */
+/* ---------------------------------------------------------------------------------------------------------- figures */
 
 typedef enum shape { SPHERE, GYROID, WHITE_NOISE, SHAPES } shape;
 
@@ -402,8 +399,7 @@ static void test_figures(void) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is found
- */
+/* ---------------------------------------------------------------------------------------------------- what is found */
 
 /* A corner moved, a triangle turned over and one less are found by what all grids are checked with. */
 static void test_faults_are_found(void) {

@@ -16,8 +16,7 @@ enum { SURFACES = 300, POINTS = 12, FACES = 30 };
 
 static const double fold_cosine = -0.8660254037844386;
 
-/* ------------------------------------------------------------------------------------------------------------ edges
- */
+/* ------------------------------------------------------------------------------------------------------------ edges */
 
 static mesh_edges edges_of(const torus *m, uint64_t triangle_count) {
     mesh_edges found;
@@ -59,8 +58,7 @@ static void test_edges(void) {
     free(m.triangles);
 }
 
-/* --------------------------------------------------------------------------------------------------------- distances
- */
+/* -------------------------------------------------------------------------------------------------------- distances */
 
 /* The square of the distance between p and the triangle, by the nearest of many points in it: an upper bound, and with
  * `steps` of them per edge not far from it. */

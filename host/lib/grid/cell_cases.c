@@ -45,8 +45,7 @@ static const uint8_t places[CELL_OTHER][CELL_CORNERS_MAX][3] = {
          {0, 4, 4}},
 };
 
-/* ------------------------------------------------------------------------------------------------------------ frames
- */
+/* ----------------------------------------------------------------------------------------------------------- frames */
 
 static uint8_t edge_index(const cell_frame *f, uint8_t a, uint8_t b) {
     const uint8_t low = a < b ? a : b, high = a < b ? b : a;
@@ -108,8 +107,7 @@ void cell_frame_end(cell_frame *frame) {
             if (highs[a] >> b & 1) memcpy(frame->edges[frame->edge_count++], (uint8_t[2]){a, b}, 2);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- loops
- */
+/* ------------------------------------------------------------------------------------------------------------ loops */
 
 typedef struct derivation {
     const cell_frame *frame;

@@ -16,8 +16,8 @@ static void add_place(label_tables *t, unsigned parity, unsigned type, unsigned 
     for (unsigned axis = 0; axis < 3; axis++) t->offsets[parity][type][axis] = sum[axis] / (float)to->count;
 }
 
-/* The lowest corner of a face of the cube, which all corners of the set lie in, of the 8 corners as bits; and the axes
- * that it spans. False where they span the cube. */
+/* corners: some of the cube's, a bit each. If one face of the cube has them all: its lowest corner, and its two axes as
+ * bits. Else false. */
 static bool cube_face_of(unsigned corners, unsigned *low, unsigned *axes) {
     unsigned all = 7, any = 0;
     for (unsigned c = 0; c < 8; c++)
@@ -34,8 +34,8 @@ static unsigned half_of(unsigned corners, unsigned low, unsigned axes, unsigned 
     return 0;
 }
 
-/* A vertex on a face of a tetrahedron, which is half of a face of the cube, or lies within it; inner: the number of the
- * latter. */
+/* The owner of the vertex on a face of a tetrahedron: half of a face of the cube, or one that lies within the cube and
+ * then has the number inner. */
 static owned_edge face_owner(unsigned parity, unsigned corners, unsigned inner) {
     unsigned low, axes, diagonal = 0;
     if (!cube_face_of(corners, &low, &axes)) return (owned_edge){0, 0, 0, (uint8_t)(LABEL_TYPE_INNER + inner)};

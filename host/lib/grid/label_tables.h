@@ -10,10 +10,10 @@
  *                      junction, from one face to the other
  *     1 + 1 + 1 + 1    six: vertices on all edges, on all four faces, and one in the cell, where four junctions meet
  *
- *           b                     On a face with three labels the three edges' vertices are joined to the face's.
- *          / \                    So the interfaces of neighbours fit, and each label's surface, taken alone, has in
- * every /   \                   tetrahedron the disks that its corners against all others give, with some vertices
- *        *--.--*                  more on their borders.
+ *           b              On a face with three labels the three edges' vertices are joined to the face's. So the
+ *          / \             interfaces of neighbours fit, and the surface of each label, taken alone, has in every
+ *         /   \            tetrahedron the disks that its corners against all others give, with some vertices more
+ *        *--.--*           on their borders.
  *       /   |   \
  *      a----*----c
  *

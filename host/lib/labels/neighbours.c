@@ -16,7 +16,8 @@ typedef struct block_span {
 
 /* What is known of a vertex while its list is found. */
 typedef struct vertex_state {
-    uint64_t sum;   /* of its followers less that of those before it, mixed; 0: they are the same */
+    uint64_t sum;   /* of its followers less that of those before it, mixed; 0: they are the same, or collide, with
+                       a probability of 2^-64: then the vertex is smoothed as an inner one, on every machine */
     uint32_t count; /* of its triangles */
     uint32_t place; /* where its next entry goes */
 } vertex_state;

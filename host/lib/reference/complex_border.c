@@ -102,8 +102,7 @@ static tc_status face_append(const face_table *t, border_face face, complex_bord
     return TC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------- tetrahedra, cells
- */
+/* ------------------------------------------------------------------------------------------------ tetrahedra, cells */
 
 enum { FACES_MOST = 14 }; /* two hexagons of four triangles each, six quadrilaterals */
 
@@ -193,8 +192,7 @@ void complex_border_release(complex_border *border) {
     *border = (complex_border){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------ inside parts
- */
+/* ----------------------------------------------------------------------------------------------------- inside parts */
 
 /* The part of a polygon that is inside, fanned around its point `apex`, which is. Returns the number of triangles. */
 static int polygon_cut(const uint32_t *points, int count, unsigned inside, int apex, border_vertex triangles[][3]) {

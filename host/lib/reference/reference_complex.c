@@ -142,8 +142,7 @@ static tc_status tetrahedron_run(reference *r) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- cells
- */
+/* ------------------------------------------------------------------------------------------------------------ cells */
 
 /* Takes the next cell; pattern 0 where it is not active. */
 static tc_status cell_take(reference *r, whole_cell *cell, unsigned *pattern) {
@@ -210,8 +209,7 @@ static tc_status cell_run(reference *r) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ border
- */
+/* ----------------------------------------------------------------------------------------------------------- border */
 
 /* Which points of a face are inside, a bit each. */
 static unsigned face_pattern(const reference *r, const border_face *face) {

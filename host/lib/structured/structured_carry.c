@@ -47,8 +47,7 @@ typedef struct carry_job {
     atomic_bool wrong;         /* the results contradict each other */
 } carry_job;
 
-/* -------------------------------------------------------------------------------------------------------- sign words
- */
+/* ------------------------------------------------------------------------------------------------------- sign words */
 
 /* Words of the brick [0] and of the brick at higher x [1]: in the brick's planes and the plane after, of its rows and
  * the row after. */
@@ -87,8 +86,7 @@ static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t 
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- edges
- */
+/* ------------------------------------------------------------------------------------------------------------ edges */
 
 /* Rows of samples of a cube, and the same shifted to x + 1. */
 typedef struct row_pair {
@@ -195,8 +193,7 @@ static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t fi
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ batches
- */
+/* ---------------------------------------------------------------------------------------------------------- batches */
 
 /* Stores the first edge of bits at index `at`, without a branch: where bits is 0 the next edge overwrites it. Most rows
  * have at most two edges of a type, so row_add stores two before it branches. */
@@ -309,8 +306,7 @@ static void bricks_carry(void *shared) {
     carry_batch(j->carry, j->grid, j->isovalue, &batch);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- slabs
- */
+/* ------------------------------------------------------------------------------------------------------------ slabs */
 
 static tc_status slab_carry(carry_job *j, uint32_t slab_index, uint32_t brick_count) {
     const slab_plan *plan = j->plan;

@@ -166,8 +166,8 @@ static tc_status cells_mark(interval_run *r) {
     return cells_launch(r->grid, &r->kernels, s, &b, (s->z1 < s->nz ? s->z1 + 1 : s->nz) - s->arrays.cell_z);
 }
 
-/* Kernel 1 by a bound. The second one finds the ranges of bricks that the first has left, as far as that went: kernel 1
- * looks at the layer behind the window too. */
+/* Kernel 1 by a bound. The pass for the high bound may take the ranges that the one for the low bound has stored, but
+ * only where the window ends with the grid: else kernel 1 reads one layer more than it stores ranges of. */
 static tc_status bound_classify(interval_run *r, int bound) {
     const classify_buffers b = window_buffers(r);
     const uint32_t offset = (uint32_t)((uint64_t)bound * (state_bytes(r) / 4));
@@ -252,8 +252,7 @@ tc_status interval_classify(interval_run *r, uint32_t n) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ calls
- */
+/* ------------------------------------------------------------------------------------------------------------ calls */
 
 static tc_status host_reserve(interval_run *r) {
     const size_t bricks = interval_slab_window(&r->plan, 0) * (size_t)plan_bricks_per_layer(&r->plan.tiles);

@@ -17,8 +17,9 @@ typedef struct interval_plan {
     slab_plan tiles; /* of kernel 1; its slabs are windows */
     uint32_t slab_layers, slab_count;
     bool samples_whole;
-    uint64_t mesh_bytes;         /* bound on what a step emits */
-    uint64_t least_bytes, taken; /* of the smallest window; of the grid and others before */
+    uint64_t mesh_bytes;  /* bound on what a step emits */
+    uint64_t least_bytes; /* of the smallest window */
+    uint64_t taken;       /* by the grid and others before */
 } interval_plan;
 
 /* One call. */
@@ -40,7 +41,7 @@ typedef struct interval_run {
     interval_brick *bricks; /* sums of each brick, then of those before it */
     brick_state *states[BOUND_COUNT];
     interval_size size;   /* of the slab */
-    interval_size before; /* it */
+    interval_size before; /* of the slabs before it */
 } interval_run;
 
 /* Where slab n begins, in layers; the layers that it owns, and that its window has. */

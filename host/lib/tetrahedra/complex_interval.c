@@ -51,8 +51,7 @@ tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *
     return status ? status : table_provide(v);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- count
- */
+/* ------------------------------------------------------------------------------------------------------------ count */
 
 tc_status volume_bound_classify(volume_run *v, int bound) {
     complex_run *r = &v->bounds[bound];
@@ -226,8 +225,7 @@ static tc_status one_piece_emit(volume_run *v, tc_interval *interval) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ calls
- */
+/* ------------------------------------------------------------------------------------------------------------ calls */
 
 static interval_size size_of(const volume_run *v) {
     return (interval_size){

@@ -192,8 +192,7 @@ static tc_status slabs_emit(volume_slabs *t, double before, const interval_size 
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ calls
- */
+/* ------------------------------------------------------------------------------------------------------------ calls */
 
 static tc_status slabs_begin(volume_slabs *t, tc_grid *grid, const tc_interval_options *options,
                              const bool exists[BOUND_COUNT]) {

@@ -159,8 +159,7 @@ tc_status whole_assign(tc_context *context, const tc_grid *grid, active_cell *ce
     return a.cases && !a.no_memory ? TC_OK : memory_fail();
 }
 
-/* ------------------------------------------------------------------------------------------------------- cut faces
- */
+/* -------------------------------------------------------------------------------------------------------- cut faces */
 
 static void shares_cut(void *shared) {
     assignment *a = shared;

@@ -71,8 +71,7 @@ const uint8_t *whole_cases_bytes(const whole_cases *c, uint64_t *bytes) {
     return c->bytes;
 }
 
-/* --------------------------------------------------------------------------------------------------- what a case has
- */
+/* -------------------------------------------------------------------------------------------------- what a case has */
 
 /* Candidates of a cell: its crossed edges, and crossed diagonals of faces that are not cut; by the lower corner a bit
  * for the other. */
@@ -153,8 +152,7 @@ static uint32_t case_write(const cell_frame *f, const case_question *q, uint8_t 
     return (uint32_t)(ends - out);
 }
 
-/* ------------------------------------------------------------------------------------------------------- the table
- */
+/* -------------------------------------------------------------------------------------------------------- the table */
 
 /* Appends a case; 0 where there is no memory, else the answer. */
 static uint32_t case_append(whole_cases *c, const cell_frame *frame, const case_question *q) {

@@ -34,8 +34,7 @@ static void list_clear(struct whole_cells *w) {
     w->own_codes = NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------ the caller's list
- */
+/* ------------------------------------------------------------------------------------------------ the caller's list */
 
 typedef struct survey {
     const complex_grid *c;
@@ -146,8 +145,7 @@ static bool list_take(const complex_grid *c, struct whole_cells *w) {
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------- a gathered list
- */
+/* -------------------------------------------------------------------------------------------------- a gathered list */
 
 typedef struct gathering {
     const complex_grid *c;
@@ -261,8 +259,7 @@ static tc_status list_gather(const complex_grid *c, struct whole_cells *w) {
     return TC_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------- either
- */
+/* ----------------------------------------------------------------------------------------------------------- either */
 
 tc_status whole_cells_provide(tc_grid *grid) {
     complex_grid *c = grid->complex;

@@ -33,8 +33,7 @@ static int damaged(const npy_header *h, const char *what) {
     return fail(STATUS_INPUT, "%s: %s; its header is damaged: write it by numpy.save", h->path, what);
 }
 
-/* ------------------------------------------------------------------------------------------------ Python's dictionary
- */
+/* ---------------------------------------------------------------------------------------------- Python's dictionary */
 
 static int next_character(npy_header *h) {
     while (h->at < h->end && strchr(" \t\r\n", *h->at)) h->at++;

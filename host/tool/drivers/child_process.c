@@ -258,8 +258,7 @@ void child_end_text(const child_end *end, char *text, size_t bytes) {
                                                 : "no process");
 }
 
-/* ------------------------------------------------------------------------------------------------------ in the child
- */
+/* ----------------------------------------------------------------------------------------------------- in the child */
 
 void child_begin(void) {
     const struct rlimit none = {0, 0};

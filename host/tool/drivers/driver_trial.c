@@ -66,8 +66,7 @@ tc_verdict trial_in_child(void *user, const char *job, char *reason, size_t byte
     return end.kind == CHILD_TIMED_OUT ? TC_VERDICT_HUNG : TC_VERDICT_CRASHED;
 }
 
-/* ------------------------------------------------------------------------------------------------------ in the child
- */
+/* ----------------------------------------------------------------------------------------------------- in the child */
 
 static int report_stage(void *user, const char *stage, double fraction) {
     (void)user;

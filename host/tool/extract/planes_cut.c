@@ -45,8 +45,7 @@ void planes_cut_of(const options *o, const int64_t *begins, int64_t nz, int64_t 
     planes[1] = number + 1 < count ? begins[number] : nz;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- cost
- */
+/* ------------------------------------------------------------------------------------------------------------- cost */
 
 /* Counts in place of the stream that is described; both have the same source. */
 typedef struct cost_count {

@@ -57,8 +57,7 @@ int surface_tell_empty(const dataset *d, const scalar *field, const surface_repo
     return 0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- zero area
- */
+/* -------------------------------------------------------------------------------------------------------- zero area */
 
 /* Samples that equal the isovalue, or of f32 samples the float that it is rounded to when vertices are interpolated. */
 static int count_ties(const dataset *d, const scalar *field, double isovalue, uint64_t *ties) {

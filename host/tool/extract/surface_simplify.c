@@ -39,8 +39,7 @@ typedef struct shape {
     mesh_edges edges;
 } shape;
 
-/* --------------------------------------------------------------------------------------------------------- distances
- */
+/* -------------------------------------------------------------------------------------------------------- distances */
 
 static int measure(const block_surface *b, const mesh_view *left, double *to, double *from) {
     int status = mesh_distance(&b->view, left, b->spacing, to);
@@ -69,8 +68,7 @@ static int judge(void *user, const simplified_mesh *m, int *is_good) {
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- check
- */
+/* ------------------------------------------------------------------------------------------------------------ check */
 
 static int shape_find(const mesh_view *m, shape *out) {
     const int status = mesh_check(m->positions, m->vertex_count, m->triangles, m->triangle_count, &out->topology);
@@ -106,8 +104,7 @@ static int check(const block_surface *b, const mesh_view *left, int *good) {
     return 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ blocks
- */
+/* ----------------------------------------------------------------------------------------------------------- blocks */
 
 /* All blocks' results, one behind the other. */
 typedef struct left_mesh {

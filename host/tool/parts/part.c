@@ -24,8 +24,7 @@ void part_close(part *p) {
     part_header_release(&p->header);
 }
 
-/* ------------------------------------------------------------------------------------------------------- one surface
- */
+/* ------------------------------------------------------------------------------------------------------ one surface */
 
 static int surfaces_differ(const part *p, const part *first, const char *key) {
     char *own = json_dumps(json_object_get(p->header.surface, key), JSON_ENCODE_ANY);

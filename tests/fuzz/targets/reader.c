@@ -54,8 +54,7 @@ static const format formats[] = {
     [HDF5] = {{"in/a.h5", "in/a.hdf5", "in/a.vtkhdf", "in/a.h5"}, .read = vtk_hdf_read},
 };
 
-/* ------------------------------------------------------------------------------------------------------ after reading
- */
+/* ---------------------------------------------------------------------------------------------------- after reading */
 
 static volatile uint8_t sink;
 
@@ -165,8 +164,7 @@ static void select_fields(dataset *d, const char *path, uint8_t choice, int comp
     free(names);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ reading
- */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static void check_image(const dataset *d) {
     const dataset_block *b = d->blocks;

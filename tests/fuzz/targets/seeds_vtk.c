@@ -6,8 +6,7 @@
 static const char plain[4] = {-1, -1, 0, 0};
 static const double cube_links[] = {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 10, 11}, ends[] = {8, 12}, types[] = {12, 10};
 
-/* ---------------------------------------------------------------------------------------------------------------- XML
- */
+/* -------------------------------------------------------------------------------------------------------------- XML */
 
 static void xml_section(vtk_writer *w, const char *element, int type, const char *name, int components, int count) {
     double values[64];
@@ -63,8 +62,7 @@ static void add_xml(enum block_kind kind, const vtk_shape *shape) {
     bytes_free(&file);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- legacy
- */
+/* ----------------------------------------------------------------------------------------------------------- legacy */
 
 static void legacy_values(bytes *b, int binary, int stored, uint64_t count) {
     for (uint64_t i = 0; i < count; i++)
@@ -191,8 +189,7 @@ static void add_polyhedra(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- pieces
- */
+/* ----------------------------------------------------------------------------------------------------------- pieces */
 
 /* Half of 5 x 2 x 2 points, with or without a layer of ghosts; a tetrahedron of two that share a face. */
 static bytes piece_file(enum block_kind kind, int piece, int ghosts, int numbered) {
