@@ -138,6 +138,7 @@ TESTS = {
     "test_whole, slabs": test("surface/test_whole", "slabs", device=True),
     "test_complex, f32": test("surface/test_complex", "*f32*, context 1", device=True),
     "test_memory, missing in slabs": test("layer/test_memory", "slabs, missing samples", device=True),
+    "test_memory, interval": test("layer/test_memory", "interval", device=True),
     "test_memory, starved groups": test("layer/test_memory", "starved groups", device=True),
     "test_memory, counted again": test("layer/test_memory", "clusters counted again", device=True),
     "test_device, 64 work-items": test("surface/test_device", "64 work-items*", device=True),

@@ -211,7 +211,7 @@ MUTANTS = [
            ("job->window[n] = job->first[n] + (uint32_t)first->at[n];", "job->window[n] = job->first[n];",
             "intervals in steps: every window begins with the slab"),
            ("PAGE_BYTES - 1) & ~(uint64_t)(PAGE_BYTES - 1);", "3) & ~(uint64_t)3;", "intervals: a page in two buffers",
-            {"tests": ("test_memory",)})),
+            {"tests": ("test_memory, interval",)})),
     *group("host/lib/reference/reference_run.h",
            ("(unsigned)(p[0] + p[1] + p[2])) & 1", "(unsigned)(p[0] + p[1] + p[2]) ^ 1) & 1", "parity: exchanged"),
            ("(grid_parity(r->grid) ^ (unsigned)(p[0]", "((unsigned)(p[0]", "parity: not by the grid's own indices"),
