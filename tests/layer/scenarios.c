@@ -23,6 +23,7 @@ struct scenario {
     tc_method method;
     bool normals, always_copy, slabs, cold;
     bool interval; /* interval volumes are made, from each isovalue on, in place of surfaces */
+    bool is_rare;  /* other scenarios have nearly all of its calls: failures of each are for the long tier */
     tc_engine engine;
 };
 
@@ -51,7 +52,11 @@ static const scenario scenarios[] = {
     {.name = "whole cells, slabs", .flow = FLOW_COMPLEX, .method = TC_METHOD_HYBRID, .slabs = true},
     {.name = "interval", .flow = FLOW_EXTRACT, .interval = true},
     {.name = "complex interval", .flow = FLOW_COMPLEX, .interval = true},
-    {.name = "complex interval, copied buffers", .flow = FLOW_COMPLEX, .interval = true, .always_copy = true},
+    {.name = "complex interval, copied buffers",
+     .flow = FLOW_COMPLEX,
+     .interval = true,
+     .always_copy = true,
+     .is_rare = true},
     {.name = "complex interval, slabs", .flow = FLOW_COMPLEX, .interval = true, .slabs = true},
     {.name = "count and emit", .flow = FLOW_EMIT},
     {.name = "empty cache of programs", .flow = FLOW_EXTRACT, .cold = true},
@@ -69,13 +74,14 @@ static const scenario scenarios[] = {
     {.name = "reference, complex interval", .flow = FLOW_COMPLEX, .interval = true, .engine = TC_ENGINE_REFERENCE},
     {.name = "carry", .flow = FLOW_CARRY, .engine = TC_ENGINE_REFERENCE},
     {.name = "labels", .flow = FLOW_LABELS},
-    {.name = "labels, copied buffers", .flow = FLOW_LABELS, .always_copy = true},
+    {.name = "labels, copied buffers", .flow = FLOW_LABELS, .always_copy = true, .is_rare = true},
     {.name = "labels, slabs", .flow = FLOW_LABELS, .slabs = true},
     {.name = "interval, copied buffers, missing samples",
      .flow = FLOW_EXTRACT,
      .interval = true,
      .type = TC_F32,
-     .always_copy = true},
+     .always_copy = true,
+     .is_rare = true},
     {.name = "reference, labels", .flow = FLOW_LABELS, .engine = TC_ENGINE_REFERENCE},
     {.name = "reference, interval", .flow = FLOW_EXTRACT, .interval = true, .engine = TC_ENGINE_REFERENCE},
 };
@@ -98,6 +104,8 @@ static cl_mem their_samples, their_positions, their_triangles;
 int scenario_count(void) { return SCENARIOS; }
 
 const char *scenario_name(int index) { return scenarios[index].name; }
+
+bool scenario_is_rare(int index) { return scenarios[index].is_rare; }
 
 bool scenario_uses_device(int index) { return scenarios[index].engine == TC_ENGINE_OPENCL; }
 

@@ -30,6 +30,7 @@ void scenarios_release(void);
 
 int scenario_count(void);
 const char *scenario_name(int index);
+bool scenario_is_rare(int index);
 bool scenario_uses_device(int index);
 
 /* NULL, or what went wrong: valid until the next call. */

@@ -165,7 +165,8 @@ int main(int argc, char **argv) {
     }
     layer->command("late hold");
     for (int index = 0; index < scenario_count(); index++)
-        if (scenario_uses_device(index) && (argc < 3 || strstr(scenario_name(index), argv[2])))
+        if (scenario_uses_device(index) && (all || !scenario_is_rare(index)) &&
+            (argc < 3 || strstr(scenario_name(index), argv[2])))
             scenario_sweep(index, all);
     scenarios_release();
     EXPECT(layer->references() == 0, "%ld references are left at the end", layer->references());
