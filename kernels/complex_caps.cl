@@ -46,11 +46,8 @@ inline_always bool cap_splits(const complex_job *c, const cap_face *f, uint insi
 /* Which points of the second half of a quadrilateral are inside. */
 inline_always uint second_half(uint inside) { return (inside & 1) | (inside >> 1 & 6); }
 
-/* Triangles of a triangle's inside part, by how many points are inside: 0, 1, 2, 1. */
-inline_always uint triangle_parts(uint inside) {
-    const uint count = (uint)popcount(inside & 7);
-    return count == 2 ? 2 : count != 0;
-}
+/* Triangles of a triangle's inside part, four bits for each number of points inside: 0, 1, 2, 1. */
+inline_always uint triangle_parts(uint inside) { return 0x1210u >> 4 * popcount(inside & 7) & 3; }
 
 inline_always uint cap_parts(const complex_job *c, const cap_face *f, uint inside, cap_arrays in) {
     const bool splits = cap_splits(c, f, inside, in);
@@ -173,7 +170,7 @@ inline_always void cap_put(uint a, uint b, uint c, global uint **out) {
 inline_always void triangle_emit(const complex_job *c, uint3 p, uint inside, cap_emit e, global uint **out,
                                  uint *wrong) {
     const uint count = (uint)popcount(inside);
-    const uint turn = inside == 2 || inside == 6 ? 1 : inside >= 4 ? 2 : 0; /* where a is */
+    const uint turn = 0x9a10u >> 2 * inside & 3; /* where a is, two bits for each pattern: 0 0 1 0 2 2 1 2 */
     if (!count) return;
     if (turn == 1) p = p.yzx;
     if (turn == 2) p = p.zxy;
