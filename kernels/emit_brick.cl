@@ -224,22 +224,22 @@ inline_always uint border_list(const slab *s, corner c, uint mask, row_results k
 #ifdef WORD_SHUFFLES
 #define WORDS_AT(words) (*(const words16 *)(words))
 
-/* Brings the numbers of a cube's vertices into their slots. */
+/* Brings the numbers of a cube's vertices into their slots. Numbers that lie as far from each other as their slots come
+ * by one load. */
 inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
-    const uint *up = number + NUMBER_STEP * NUMBER_INDEX(0, 1, 0), *deep = number + NUMBER_STEP * NUMBER_INDEX(0, 0, 1);
-    const uint *up_deep = up + (deep - number);
-    if (NUMBER_STEP == 4) {
-        *low = words_with(words_with(WORDS_AT(number), 0xff00, WORDS_AT(up - 8)), 1 << 4, WORDS_AT(up_deep - 4));
-        *high = words_with(WORDS_AT(deep), 0xff00, WORDS_AT(up_deep - 8));
-        return;
+    uint16 slots[2] = {0, 0};
+#define SLOT(slot, x, y, z, type)                                                                                      \
+    if ((type) < VERTEX_TYPES)                                                                                         \
+        slots[(slot) / 16] =                                                                                           \
+            words_with(slots[(slot) / 16], 1 << (slot) % 16,                                                           \
+                       WORDS_AT(number + NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) - (slot) % 16));
+    if (NUMBER_STEP == 8) {
+        SLOTS_OF_EIGHT(SLOT)
+    } else {
+        SLOTS_OF_FOUR(SLOT)
     }
-    *low = words_with(WORDS_AT(number), 1 << 8, WORDS_AT(up_deep - 8));
-    *low = words_with(words_with(*low, 1 << 11, WORDS_AT(up - 1)), 1 << 12, WORDS_AT(deep - 3));
-    *high = words_with(words_with(WORDS_AT(up), 1 << 1 | 1 << 3, WORDS_AT(deep)), 1 << 5, WORDS_AT(deep - 5));
-    if (VERTEX_TYPES <= PLACE_TYPE) return;
-    *high = words_with(words_with(*high, 1 << 10, WORDS_AT(up_deep + 4)), 1 << 11, WORDS_AT(up_deep - 5));
-    *high = words_with(words_with(*high, 1 << 12, WORDS_AT(deep + 2)), 1 << 13, WORDS_AT(deep - 7));
-    *high = words_with(words_with(*high, 1 << 14, WORDS_AT(up - 8)), 1 << 15, WORDS_AT(up - 1));
+#undef SLOT
+    *low = slots[0], *high = slots[1];
 }
 
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {

@@ -39,7 +39,8 @@ static bool share_search(search *s, uint64_t share) {
         const uint32_t *points = s->c->tetrahedra + 4 * n;
         for (int m = 0; m < 4; m++)
             if (points[m] >= s->c->point_count) return false;
-        for (int m = 0; m < 4 && is_present(s, points); m++) point_use(s, points[m]);
+        if (!is_present(s, points)) continue;
+        for (int m = 0; m < 4; m++) point_use(s, points[m]);
     }
     return true;
 }
