@@ -18,7 +18,7 @@ int surface_simplify_check_usage(const options *o) {
     return fail(STATUS_USAGE,
                 "--simplify needs meshoptimizer, which this program was built without; build it with that "
                 "(Debian: libmeshoptimizer-dev) and TETRACUBES_MESHOPTIMIZER=ON, or use --method snap, "
-                "which makes a quarter of the triangles");
+                "which makes fewer triangles");
 }
 
 #if HAVE_MESHOPTIMIZER
@@ -99,7 +99,7 @@ static int check(const block_surface *b, const mesh_view *left, int *good) {
     if (!broken) return status;
     *good = 0;
     message("isovalue %s: the simplified surface %s: leave out --simplify, or give a larger share; --method snap makes "
-            "a quarter of the triangles with the topology kept",
+            "fewer triangles with the topology kept",
             b->iso->text, broken);
     return 0;
 }
