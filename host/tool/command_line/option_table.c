@@ -131,9 +131,9 @@ const option option_table[] = {
     {"--method", NULL, "M", COMMAND_EXTRACT, VALUE_CHOICE, IN(method), method_choices,
      "tetra (default): tetrahedra, five per cube; hybrid: marching cubes whose\n"
      "ambiguous cases the tetrahedra decide; snap: tetrahedra whose samples near\n"
-     "the surface are moved onto it, where its topology stays: a quarter of the\n"
-     "triangles, of better shape (structured grids). Of unstructured grids hybrid\n"
-     "keeps cells whole, polyhedra excepted"},
+     "the surface are moved onto it, where its topology stays: fewer triangles, of\n"
+     "better shape (structured grids). Of unstructured grids hybrid keeps cells\n"
+     "whole, polyhedra excepted"},
     {"--snap", NULL, "A", COMMAND_EXTRACT, VALUE_THRESHOLD, IN(snap), NULL,
      "of --method snap: a sample is moved to a crossing at most this part of an\n"
      "edge away, 0 to 0.5 (default: 0.5)"},
