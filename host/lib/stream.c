@@ -9,7 +9,7 @@
 
 #include "base/structs.h"
 #include "failure.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 
 #include <stdlib.h>
 #include <string.h>

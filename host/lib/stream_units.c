@@ -4,7 +4,7 @@
 #include "stream.h"
 
 #include "failure.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 
 #include <stdlib.h>
 #include <string.h>

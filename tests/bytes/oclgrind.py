@@ -36,7 +36,7 @@ EXCLUDED = [
     re.compile(r"^Read-write data race .*\n\tKernel: (?:complex_join|whole_cut)\n(?=(?:.*\n)*?.*load volatile i32)"
                r"(?=(?:.*\n)*?.*@_Z\d+atomic_(?:cmpxchg|min))"),
     # A pass of snap reads whole words of the bricks around while their groups store to them. What these add are samples
-    # of the pass's own colour, and a reader takes only bits of other colours (kernels/snap.cl).
+    # of the pass's own colour, and a reader takes only bits of other colours (kernels/snap/snap.cl).
     re.compile(r"^Read-write data race .*\n\tKernel: snap_even\n(?=(?:.*\n)*?.*(?:vload8| load i64))"
                r"(?=(?:.*\n)*?.*(?:vstore8| store i64))"),
     # Its own mistake: the upper half of a vector (shufflevector to fewer elements) counts as uninitialised.

@@ -31,6 +31,7 @@ SAMPLE = ["classify-u8-tetra", "classify-f32-tetra-missing", "classify-f64-hybri
 
 ALL_DEFINED = "emit-f32-hybrid-rectilinear-missing-normals-closed"  # its options define what any file looks at
 KERNELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "kernels")
+FILES = {os.path.basename(path): path for path in glob.glob(os.path.join(KERNELS, "*", "*"))}
 
 # Work-items of a group, of which one has the other variant; quick: all processors for it, where most can differ.
 ALONE, GROUPS = "1", "32"
@@ -119,10 +120,10 @@ def files_check(jobs, clang):
         for name in sorted(names):
             whole = ["-DWHOLE=1"] if name.startswith("whole_") else []
             said = compiled(clang, "skylake-avx512", ["-Wno-unused-function", *options[work_items], *whole],
-                            os.path.join(KERNELS, name))
+                            FILES[name])
             if said:
                 wrong.append(f"{name} by itself, {work_items} work-items: {said}")
-    left = {os.path.basename(path) for path in glob.glob(os.path.join(KERNELS, "*.cl"))} - set().union(*seen.values())
+    left = {name for name in FILES if name.endswith(".cl")} - set().union(*seen.values())
     return wrong + [f"{name}: in no program" for name in sorted(left)]
 
 

@@ -55,7 +55,7 @@ PLANTED = [
 
 
 # Registers of kernel 2 on GPUs of NVIDIA; where normals of rectilinear grids are made in double. Local memory for every
-# 32 work-items, as kernels/slab.h has it.
+# 32 work-items, as kernels/base/slab.h has it.
 EMIT_REGISTERS, EMIT_REGISTERS_DOUBLE, LOCAL_BYTES_PER_BRICK = 96, 112, 3072
 
 

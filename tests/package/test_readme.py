@@ -206,7 +206,7 @@ def included(path, name, source, rooms):
     own = room_of(path, rooms)
     library = source / "host" / "lib"
     places = [path.parent, *([library] if own.is_relative_to(library) else []), source / "host" / "common",
-              source / "kernels", *(room for room in rooms if not room.is_relative_to(library))]
+              source, *(room for room in rooms if not room.is_relative_to(library))]
     return next((place / name for place in places if (place / name).exists()), None)
 
 
@@ -249,16 +249,18 @@ def test_rooms(source, text):
 
 
 def test_paths(source, pages):
-    """Names of files in code spans: from the top, from the page's folder, or beside a path before it in the same cell."""
+    """Names of files in code spans: from the top, from the page's folder, in a room of kernels on their page, or beside a
+    path before it in the same cell."""
     for page, text in pages.items():
         for cell in re.split(r"[|\n]", text):
             home = folder = (source / page).parent
+            rooms = sorted(home.glob("*/")) if page == "kernels/README.md" else []
             for name in re.findall(r"`([\w*./-]+\.(?:cl|c|h|inc|py|txt)|[\w./-]+\.\*)`", cell):
                 if "NAME" in name:  # stands for what is to be made
                     folder = (source / name).parent if "/" in name else folder
                 if "NAME" in name or name.startswith((".", "share/")) or name in ("CMakeLists.txt", "tetracubes.h"):
                     continue
-                base = next((base for base in (folder, source, home) if list(base.glob(name))), None)
+                base = next((base for base in (folder, source, home, *rooms) if list(base.glob(name))), None)
                 expect(base, f"{page}: {name} is not there")
                 folder = (base / name).parent if base else folder
 
@@ -268,7 +270,7 @@ def test_paths(source, pages):
 def test_kernels(source, text):
     table = section("kernels/README.md", text, "## The files", "## Sources")
     named = re.findall(r"`(\w+\.(?:cl|h))`", "\n".join(line.split(" | ")[0] for line in table.split("\n")))
-    there = sorted(path.name for path in (source / "kernels").glob("*.[ch]*"))
+    there = sorted(path.name for path in (source / "kernels").glob("*/*.[ch]*"))
     expect(sorted(named) == there, f"kernels/README.md: files left out, too many or twice: "
                                    f"{sorted(set(named) ^ set(there))}")
 

@@ -12,7 +12,7 @@
 #include "random.h"
 #include "split.h"
 #include "grid/tables.h"
-#include "methods.h"
+#include "kernels/base/methods.h"
 
 #include <string.h>
 

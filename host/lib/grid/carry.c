@@ -2,8 +2,8 @@
  * A batch takes three steps: load the samples at the ends of all edges, find where the isovalue lies between them,
  * interpolate the field there. Each is a loop over arrays of one type, which compilers vectorise.
  *
- * The arithmetic is that of kernels/crossing.cl and of the reference (reference_crossing.inc, carry_vertex.c): the same
- * operations in the same order.
+ * The arithmetic is that of kernels/base/crossing.cl and of the reference (reference_crossing.inc, carry_vertex.c): the
+ * same operations in the same order.
  */
 #include "grid/carry.h"
 

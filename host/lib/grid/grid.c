@@ -5,7 +5,7 @@
 #include "grid/coordinates.h"
 #include "grid/tables.h"
 #include "failure.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 
 #include <float.h>
 #include <math.h>

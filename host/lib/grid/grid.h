@@ -8,7 +8,7 @@
 #include "sample_types.h"
 #include "tetracubes.h"
 #include "opencl/tuning.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 
 #include <math.h>
 

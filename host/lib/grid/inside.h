@@ -9,7 +9,7 @@
 #ifndef INSIDE_H
 #define INSIDE_H
 
-#include "slab.h"
+#include "kernels/base/slab.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>

@@ -5,7 +5,7 @@
 #define METHOD_H
 
 #include "grid/tables.h"
-#include "methods.h"
+#include "kernels/base/methods.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 #include "labels/label_run.h"
 
 #include "failure.h"
-#include "label_job.h"
+#include "kernels/labels/label_job.h"
 #include "opencl/context.h"
 #include "structured/structured.h"
 

@@ -1,6 +1,6 @@
 /* label_table.c - the tables of label_tables.h as kernel 2 reads them */
 #include "grid/label_tables.h"
-#include "label_job.h"
+#include "kernels/labels/label_job.h"
 #include "labels/label_run.h"
 
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef CONTEXT_H
 #define CONTEXT_H
 
-#include "complex_job.h"
+#include "kernels/tetrahedra/complex_job.h"
 #include "base/host_block.h"
 #include "opencl/kernel_kind.h"
 #include "opencl/opencl.h"

@@ -5,7 +5,7 @@
 #define KERNEL_KIND_H
 
 #include "base/channels.h"
-#include "methods.h"
+#include "kernels/base/methods.h"
 #include "tetracubes.h"
 
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 
 #include "opencl/cache.h"
 #include "failure.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 #include "opencl/variant.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /*
- * variant.h - the two variants of the kernels (kernels/common.cl), and which device gets which
+ * variant.h - the two variants of the kernels (kernels/base/common.cl), and which device gets which
  */
 #ifndef VARIANT_H
 #define VARIANT_H

@@ -1,6 +1,6 @@
 /*
  * Method snap: the surface is made to go through samples that it passes closely, where that does not change its
- * topology (kernels/README.md). kernels/snap.cl does the same for 64 samples at a time.
+ * topology (kernels/README.md). kernels/snap/snap.cl does the same for 64 samples at a time.
  *
  * The signs of a sample's link decide. They must be such that the sample is a regular point of the surface, and of the
  * surface's border where the sample is on the grid's border: then the surface through the sample and the one on either
@@ -9,7 +9,7 @@
 #include "reference/reference_run.h"
 
 #include "grid/tables.h"
-#include "link.h"
+#include "kernels/snap/link.h"
 
 #include <string.h>
 

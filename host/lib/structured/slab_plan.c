@@ -1,7 +1,7 @@
 #include "structured/slab_plan.h"
 
 #include "failure.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 #include "grid/tables.h"
 
 /* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan

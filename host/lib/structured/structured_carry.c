@@ -104,7 +104,7 @@ static uint64_t row_valid(const carry_job *j, uint32_t x) {
     return left >= 64 ? UINT64_MAX : (UINT64_C(1) << left) - 1;
 }
 
-/* As crossings_owned in kernels/tetrahedra.cl: crossed edges that the samples of a row own. */
+/* As crossings_owned in kernels/structured/tetrahedra.cl: crossed edges that the samples of a row own. */
 static void crossings_of(const carry_job *j, const brick_words *w, int row, int plane, const uint32_t first[3],
                          uint64_t crossed[VERTEX_TYPES_MOST]) {
     const int64_t *dims = j->grid->dims;
@@ -158,7 +158,7 @@ static bool at_border_of_cubes(const tc_grid *grid, const int64_t p[3]) {
     return present > 0 && present < 8;
 }
 
-/* As border_samples in kernels/border.cl: those of the samples of a row, from `first` on. */
+/* As border_samples in kernels/structured/border.cl: those of the samples of a row, from `first` on. */
 static uint64_t border_only(const carry_job *j, uint64_t samples, const int64_t first[3]) {
     const int64_t *dims = j->grid->dims, last = dims[0] - 1 - first[0];
     uint64_t kept = first[0] == 0 ? 1 : 0;
@@ -174,8 +174,8 @@ static uint64_t border_only(const carry_job *j, uint64_t samples, const int64_t 
     return kept;
 }
 
-/* Where a row's vertices of a type end, counted from its first, as kernel 1 has packed it (kernels/tetrahedra.cl:
- * offsets_pack). The end of the last type is not packed. */
+/* Where a row's vertices of a type end, counted from its first, as kernel 1 has packed it
+ * (kernels/structured/tetrahedra.cl: offsets_pack). The end of the last type is not packed. */
 static uint32_t type_end(uint64_t packed, int type) {
     static const uint8_t shift[] = {14, 21, 29, 37, 46}, width[] = {7, 8, 8, 9, 9};
     return (uint32_t)(packed >> shift[type]) & ((1u << width[type]) - 1);

@@ -5,7 +5,7 @@
  */
 #include "structured/structured_emission.h"
 
-#include "case_slots.h"
+#include "kernels/structured/case_slots.h"
 #include "failure.h"
 #include "grid/method.h"
 

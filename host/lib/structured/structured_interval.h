@@ -10,7 +10,7 @@
 #define STRUCTURED_INTERVAL_H
 
 #include "grid/interval.h"
-#include "interval_job.h"
+#include "kernels/interval/interval_job.h"
 #include "structured/structured_run.h"
 
 typedef struct interval_plan {

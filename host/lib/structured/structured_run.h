@@ -10,7 +10,7 @@
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
 #include "grid/method.h"
-#include "slab.h"
+#include "kernels/base/slab.h"
 #include "structured/slab_plan.h"
 
 /* Kernel 1's results kept on the host while the device holds only a window of them. */

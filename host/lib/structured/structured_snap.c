@@ -5,7 +5,7 @@
  */
 #include "structured/structured_run.h"
 
-#include "link.h"
+#include "kernels/snap/link.h"
 
 /* The window as one slab. */
 static slab window_of(const run *r, slab_ref ref, const slab *s) {

@@ -7,7 +7,7 @@
 #ifndef BORDER_LIST_H
 #define BORDER_LIST_H
 
-#include "complex_job.h"
+#include "kernels/tetrahedra/complex_job.h"
 #include "grid/complex.h"
 
 typedef struct border_list {

@@ -8,7 +8,7 @@
 #ifndef COMPLEX_INTERVAL_H
 #define COMPLEX_INTERVAL_H
 
-#include "complex_interval_job.h"
+#include "kernels/tetrahedra/complex_interval_job.h"
 #include "grid/interval.h"
 #include "tetrahedra/complex_run.h"
 

@@ -6,7 +6,7 @@
  * slabs every tetrahedron counts as active; for those of interval volumes by both bounds, with six tetrahedra of the
  * volume.
  */
-#include "complex_interval_job.h"
+#include "kernels/tetrahedra/complex_interval_job.h"
 #include "tetrahedra/complex_run.h"
 
 #include "failure.h"

@@ -8,7 +8,7 @@
 #ifndef WHOLE_CASES_H
 #define WHOLE_CASES_H
 
-#include "complex_job.h"
+#include "kernels/tetrahedra/complex_job.h"
 #include "grid/complex.h"
 
 typedef struct whole_cases whole_cases;

@@ -5,7 +5,7 @@
 #define LINK_ALONE_CL
 
 #include "link.h"
-#include "tetrahedra.cl"
+#include "../structured/tetrahedra.cl"
 
 /* Signs of a link, by index. Samples outside the grid are in none. */
 typedef struct link_signs {

@@ -8,8 +8,8 @@
 #define COMPLEX_CLUSTER_CL
 
 #include "complex_job.h"
-#include "ranges.cl"
-#include "words.cl"
+#include "../base/ranges.cl"
+#include "../base/words.cl"
 
 enum { CLUSTER_POINTS = 4 * CLUSTER_TETRAHEDRA };
 

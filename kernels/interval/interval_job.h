@@ -7,7 +7,7 @@
 #ifndef INTERVAL_JOB_H
 #define INTERVAL_JOB_H
 
-#include "slab.h"
+#include "../base/slab.h"
 
 /* Blocks of vertices. */
 enum { INTERVAL_SAMPLES, INTERVAL_LOW_BOUND, INTERVAL_HIGH_BOUND, INTERVAL_BLOCKS };

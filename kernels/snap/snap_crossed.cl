@@ -4,7 +4,7 @@
 #ifndef SNAP_CROSSED_CL
 #define SNAP_CROSSED_CL
 
-#include "cells.cl"
+#include "../structured/cells.cl"
 #include "snap_samples.cl"
 
 #if MISSING

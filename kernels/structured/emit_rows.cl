@@ -12,7 +12,7 @@
 
 #include "border.cl"
 #include "mesh.cl"
-#include "snapped.cl"
+#include "../snap/snapped.cl"
 #include "tetrahedra.cl"
 #include "vertex.cl"
 

@@ -7,7 +7,7 @@
 #ifndef COMPLEX_JOB_H
 #define COMPLEX_JOB_H
 
-#include "slab.h"
+#include "../base/slab.h"
 
 #ifndef WHOLE
 #define WHOLE 0

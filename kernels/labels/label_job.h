@@ -7,7 +7,7 @@
 #ifndef LABEL_JOB_H
 #define LABEL_JOB_H
 
-#include "slab.h"
+#include "../base/slab.h"
 
 /* Types of vertices that a sample owns; the first twelve are used by cubes of other rows too. */
 enum { LABEL_ROW_TYPES = 21, LABEL_SHARED_TYPES = 12, LABEL_OFFSETS = 16, LABEL_WORDS = 6 };

@@ -6,8 +6,8 @@
 #ifndef VERTEX_CL
 #define VERTEX_CL
 
-#include "crossing.cl"
-#include "words.cl"
+#include "../base/crossing.cl"
+#include "../base/words.cl"
 
 /* The arrays of a grid that have an item per sample or coordinate. */
 typedef struct grid_arrays {

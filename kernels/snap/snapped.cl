@@ -5,7 +5,7 @@
 #ifndef SNAPPED_CL
 #define SNAPPED_CL
 
-#include "mesh.cl"
+#include "../structured/mesh.cl"
 #include "nearest.cl"
 
 #ifdef REAL

@@ -7,7 +7,7 @@
 #define COMPLEX_TILE_CL
 
 #include "complex_cluster.cl"
-#include "tiles.cl"
+#include "../base/tiles.cl"
 
 typedef struct tile_tools {
     const complex_job *c;

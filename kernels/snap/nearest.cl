@@ -7,9 +7,9 @@
 #ifndef NEAREST_CL
 #define NEAREST_CL
 
-#include "crossing.cl"
+#include "../base/crossing.cl"
 #include "link_steps.cl"
-#include "words.cl"
+#include "../base/words.cl"
 
 #ifdef REAL
 

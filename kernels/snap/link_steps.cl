@@ -5,7 +5,7 @@
 #define LINK_STEPS_CL
 
 #include "link.h"
-#include "common.cl"
+#include "../base/common.cl"
 
 #define LINK_STEP(x, y, z) {x, y, z},
 constant const char link_steps[LINK_EVEN][3] = {LINK_SAMPLES(LINK_STEP)};

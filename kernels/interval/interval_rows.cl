@@ -4,9 +4,9 @@
 #ifndef INTERVAL_ROWS_CL
 #define INTERVAL_ROWS_CL
 
-#include "cells.cl"
+#include "../structured/cells.cl"
 #include "interval_job.h"
-#include "mesh.cl"
+#include "../structured/mesh.cl"
 
 /* What kernel 1 has left of a bound. */
 typedef struct bound {

@@ -9,7 +9,7 @@
 #define LABEL_WORDS_CL
 
 #include "label_job.h"
-#include "tiles.cl"
+#include "../base/tiles.cl"
 
 enum {
     EX,

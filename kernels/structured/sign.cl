@@ -10,8 +10,8 @@
 #ifndef SIGN_CL
 #define SIGN_CL
 
-#include "ranges.cl"
-#include "words.cl"
+#include "../base/ranges.cl"
+#include "../base/words.cl"
 
 inline_always ulong sign_word(uint sign) { return sign == SIGN_INSIDE ? ~0ul : 0; }
 

@@ -15,7 +15,7 @@
 #include "border.cl"
 #include "case_slots.h"
 #include "mesh.cl"
-#include "snapped.cl"
+#include "../snap/snapped.cl"
 #include "tetrahedra.cl"
 
 #define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)

@@ -5,7 +5,7 @@
 #define SNAP_WISH_ALONE_CL
 
 #include "nearest_alone.cl"
-#include "sign.cl"
+#include "../structured/sign.cl"
 #include "snap_crossed.cl"
 #include "snap_wishes.cl"
 

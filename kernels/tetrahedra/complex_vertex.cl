@@ -5,7 +5,7 @@
 #define COMPLEX_VERTEX_CL
 
 #include "complex_edges.cl"
-#include "crossing.cl"
+#include "../base/crossing.cl"
 
 /* The vertex on an edge. */
 inline_always void edge_vertex(const complex_job *c, uint2 edge, global const BITS *samples, global const float *points,

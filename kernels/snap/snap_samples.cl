@@ -5,7 +5,7 @@
 #define SNAP_SAMPLES_CL
 
 #include "snap_rows.cl"
-#include "tetrahedra.cl"
+#include "../structured/tetrahedra.cl"
 
 inline_always lanes shifted_up(lanes word, lanes before) { return word << 1 | before >> 63; }
 inline_always lanes shifted_down(lanes word, lanes after) { return word >> 1 | after << 63; }

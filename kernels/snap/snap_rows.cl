@@ -5,7 +5,7 @@
 #ifndef SNAP_ROWS_CL
 #define SNAP_ROWS_CL
 
-#include "words.cl"
+#include "../base/words.cl"
 
 inline_always uint window_layers(const slab *s) {
     return (s->z1 - s->results.word_z + BRICK_PLANES - 1) / BRICK_PLANES;

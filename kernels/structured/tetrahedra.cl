@@ -9,8 +9,8 @@
 #ifndef TETRAHEDRA_CL
 #define TETRAHEDRA_CL
 
-#include "methods.h"
-#include "words.cl"
+#include "../base/methods.h"
+#include "../base/words.cl"
 
 /* Sign words of LANES rows, and the same shifted to x + 1. Samples that are vertices themselves (method snap) are in
  * the words `zero`, and count as outside in the others. */

@@ -4,7 +4,7 @@
 #ifndef SNAP_WISHES_CL
 #define SNAP_WISHES_CL
 
-#include "common.cl"
+#include "../base/common.cl"
 
 /* A word for each row, and a list of the bricks that have any. */
 typedef struct wish_results {

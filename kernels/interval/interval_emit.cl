@@ -2,12 +2,12 @@
  * interval_emit.cl - kernel interval_emit: vertices and tetrahedra of an interval volume
  *
  * Tetrahedra come from the table of cases; those of runs of cubes that lie within whole, whose numbers rise by one from
- * cube to cube, from the first two of them (interval_places.cl).
+ * cube to cube, from the first two of them (interval_numbers.cl).
  */
 #ifndef INTERVAL_EMIT_CL
 #define INTERVAL_EMIT_CL
 
-#include "interval_places.cl"
+#include "interval_numbers.cl"
 
 #ifdef REAL
 

@@ -18,7 +18,7 @@
 
 #include "cells.cl"
 #include "count.cl"
-#include "scan.cl"
+#include "../base/scan.cl"
 
 /* Words of local memory in which the leader tells its group how far it has come; at the end, the two sums. */
 enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_WORDS };

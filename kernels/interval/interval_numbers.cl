@@ -1,5 +1,5 @@
 /*
- * interval_places.cl - numbers of the vertices of an interval volume
+ * interval_numbers.cl - numbers of the vertices of an interval volume
  *
  * A vertex is owned by a sample, at a place (INTERVAL_PLACE): itself, or on an edge with a bound. Its number is that of
  * the first vertex there in the row, and the vertices of that place at lower x: a population count of a word. For a row

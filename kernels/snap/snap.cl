@@ -16,8 +16,8 @@
 #ifndef SNAP_CL
 #define SNAP_CL
 
-#include "cells.cl"
-#include "count.cl"
+#include "../structured/cells.cl"
+#include "../structured/count.cl"
 #include "snap_crossed.cl"
 
 inline_always global uint *snap_ticket(const slab *s, global uint *state, uint ticket) {
