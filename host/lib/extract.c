@@ -5,7 +5,7 @@
 
 #include "opencl/context.h"
 #include "failure.h"
-#include "grid/method.h"
+#include "tables/method.h"
 #include "base/float_environment.h"
 #include "base/structs.h"
 #include "structured/structured.h"

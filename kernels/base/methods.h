@@ -12,9 +12,9 @@
  * most: triangles of a cube at the most; no more than 10, which fill CUBE_CASE_BYTES
  * usual: triangles that are copied without a branch; more only where a cube has more
  *
- * A method also has the table name_cases_derive (declared in host/lib/grid/tables.h), which fills cubes with triangles,
- * and the function name_triangles (tetrahedra.cl), which counts them. Where samples can be vertices they have a third
- * sign, 0, and a cube has more cases (CASE_COUNT in slab.h). */
+ * A method also has the table name_cases_derive (declared in host/lib/tables/tables.h), which fills cubes with
+ * triangles, and the function name_triangles (tetrahedra.cl), which counts them. Where samples can be vertices they
+ * have a third sign, 0, and a cube has more cases (CASE_COUNT in slab.h). */
 #define METHODS(METHOD)                                                                                                \
     METHOD(tetra, 6, 10, 5)                                                                                            \
     METHOD(hybrid, 3, 6, 3)                                                                                            \

@@ -1,9 +1,9 @@
 /*
  * label_words.cl - words of a label map: a bit for each of 64 samples along x, set where the ends of an edge differ
  *
- * Of a row of cubes there are 18 edges, in the order of cube_edges (host/lib/grid/tables.c): six that the row's samples
- * own, three of row y + 1, three of row z + 1, one of row y + 1, z + 1, and five that the next samples along x own,
- * which are words shifted by a bit. Edges that do not lie in the grid have no bits.
+ * Of a row of cubes there are 18 edges, in the order of cube_edges (host/lib/tables/tables.c): six that the row's
+ * samples own, three of row y + 1, three of row z + 1, one of row y + 1, z + 1, and five that the next samples along x
+ * own, which are words shifted by a bit. Edges that do not lie in the grid have no bits.
  */
 #ifndef LABEL_WORDS_CL
 #define LABEL_WORDS_CL

@@ -3,7 +3,7 @@
  *
  * A face that one present cube has is on the border. Its inside part closes the surface: that of each of the two
  * triangles that the split's diagonal makes of it, or in the hybrid method of the face as a whole. Inside samples of
- * the border are vertices. host/lib/grid/cap_tables.c has the triangles, by which kernel 2 emits them.
+ * the border are vertices. host/lib/tables/cap_tables.c has the triangles, by which kernel 2 emits them.
  */
 #ifndef BORDER_CL
 #define BORDER_CL

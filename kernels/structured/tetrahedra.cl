@@ -4,7 +4,7 @@
  * A cube row is 64 cubes along x between the rows of samples (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1), called
  * a, b, c, d here; suffix 1 is the row shifted to x + 1. In an even cube (bit set in `even`) the face diagonals join
  * corners 0 3, 0 5, 0 6 (000 to 110, 101, 011), in an odd one the other two corners of the faces; see
- * host/lib/grid/tables.h. Lanes follow each other in y.
+ * host/lib/tables/tables.h. Lanes follow each other in y.
  */
 #ifndef TETRAHEDRA_CL
 #define TETRAHEDRA_CL

@@ -68,7 +68,7 @@ enum {
 enum { SHAPE_CORNERS, SHAPE_ORDER, SHAPE_BYTES = 16, SHAPE_CODES = 128, CODE_MIRRORED = 0x80 };
 
 /* The table of the 16 cases. For each: the number of crossed edges and of triangles; the two ends of each edge; the
- * triangles' corners, as slots of edges. Derived from the tables of host/lib/grid/tables.h. */
+ * triangles' corners, as slots of edges. Derived from the tables of host/lib/tables/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
 /* A face on the border of the complex, counter-clockwise seen from outside, by the places of its points in the list of

@@ -1,9 +1,9 @@
 /*
  * split.h - the split of cubes into tetrahedra and what one tetrahedron may emit, from geometry alone
  *
- * Shares nothing with host/lib/grid/tables.c, and needs no table: the central tetrahedron of every cube has the samples
- * whose i + j + k is even, and each of the other four corners forms one with its three neighbours in the cube. So face
- * diagonals join even samples, wherever they lie. Corners are numbered x + 2 y + 4 z.
+ * Shares nothing with host/lib/tables/tables.c, and needs no table: the central tetrahedron of every cube has the
+ * samples whose i + j + k is even, and each of the other four corners forms one with its three neighbours in the cube.
+ * So face diagonals join even samples, wherever they lie. Corners are numbered x + 2 y + 4 z.
  */
 #ifndef SPLIT_H
 #define SPLIT_H

@@ -41,13 +41,13 @@ def cell_type_entry(path, entry):
 
 # Of a file: how a table begins, how its entries are changed.
 TABLES = {
-    "host/lib/grid/tables.c": [("tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4] = ", counting(8)),
+    "host/lib/tables/tables.c": [("tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4] = ", counting(8)),
                           ("tetrahedron_edges[6][2] = ", counting(4)),
                           ("tetrahedron_cases[16] = ", case_entry),
                           ("cube_edges[CUBE_EDGES] = ", owned_edge_entry),
                           ("type_of_axes[8] = ", owned_edge_entry)],
     "host/lib/reference/reference.c": [("edge_axes[EDGES_PER_SAMPLE] = ", counting(8))],
-    "host/lib/grid/cell_split.c": [("#define HEXAHEDRON ", counting(8)), ("#define VOXEL      ", counting(8)),
+    "host/lib/tables/cell_split.c": [("#define HEXAHEDRON ", counting(8)), ("#define VOXEL      ", counting(8)),
                               ("#define WEDGE      ", counting(6)), ("#define WEDGE_UP   ", counting(6)),
                               ("#define PRISM_5    ", counting(10)), ("#define PRISM_6    ", counting(12)),
                               ("hexahedron_faces[6][4] = ", counting(8)), ("wedge_faces[3][4] = ", counting(6)),

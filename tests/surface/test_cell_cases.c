@@ -7,9 +7,9 @@
  * disc for each curve. No chord lies in a face unless both its edges leave the side of the face's smallest corner,
  * walking counter-clockwise seen from outside: a neighbour, who walks the other way, then has no such chord.
  */
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 #include "expect.h"
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 #include "random.h"
 
 #include <string.h>

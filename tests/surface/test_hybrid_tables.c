@@ -11,7 +11,7 @@
 #include "expect.h"
 #include "random.h"
 #include "split.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 #include "kernels/base/methods.h"
 
 #include <string.h>

@@ -9,7 +9,7 @@
 #include "expect.h"
 #include "random.h"
 #include "split.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <math.h>
 #include <stdlib.h>

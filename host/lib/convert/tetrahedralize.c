@@ -4,7 +4,7 @@
  */
 #include "convert/tetrahedralize.h"
 
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 #include "failure.h"
 #include "base/float_environment.h"
 #include "convert/polyhedron.h"

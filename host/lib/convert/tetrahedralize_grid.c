@@ -8,7 +8,7 @@
 #include "failure.h"
 #include "base/float_environment.h"
 #include "grid/grid.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 typedef struct grid_source {
     tc_grid grid;

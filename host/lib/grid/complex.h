@@ -4,7 +4,7 @@
 #ifndef COMPLEX_H
 #define COMPLEX_H
 
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 #include "opencl/context.h"
 #include "grid/carry.h"
 #include "grid/grid.h"

@@ -3,7 +3,7 @@
 #include "base/structs.h"
 #include "opencl/context.h"
 #include "grid/coordinates.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 #include "failure.h"
 #include "kernels/base/slab.h"
 

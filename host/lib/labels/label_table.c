@@ -1,5 +1,5 @@
 /* label_table.c - the tables of label_tables.h as kernel 2 reads them */
-#include "grid/label_tables.h"
+#include "tables/label_tables.h"
 #include "kernels/labels/label_job.h"
 #include "labels/label_run.h"
 

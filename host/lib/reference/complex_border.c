@@ -6,7 +6,7 @@
 #include "reference/complex_border.h"
 
 #include "failure.h"
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 #include "grid/complex.h"
 
 #include <math.h>

@@ -5,12 +5,12 @@
  * surfaces go on with the border (complex_border.h): vertices at its inside points, in the order of these, and its
  * triangles.
  */
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 #include "grid/complex.h"
 #include "reference/reference_complex_run.h"
 
 #include "failure.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <math.h>
 #include <stdlib.h>

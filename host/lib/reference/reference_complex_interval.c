@@ -4,7 +4,7 @@
  * points that a present tetrahedron has, by point number.
  */
 #include "failure.h"
-#include "grid/interval_cases.h"
+#include "tables/interval_cases.h"
 #include "reference/reference_complex_run.h"
 #include "reference/reference_interval.h"
 

@@ -6,7 +6,7 @@
 #include "reference/reference_interval.h"
 
 #include "failure.h"
-#include "grid/interval_cases.h"
+#include "tables/interval_cases.h"
 #include "opencl/context.h"
 #include "reference/carry_vertex.h"
 #include "reference/reference_run.h"

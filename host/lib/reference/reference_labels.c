@@ -5,7 +5,7 @@
  */
 #include "reference/reference_labels.h"
 
-#include "grid/label_tables.h"
+#include "tables/label_tables.h"
 #include "opencl/context.h"
 #include "failure.h"
 

@@ -8,7 +8,7 @@
 #include "grid/carry.h"
 #include "grid/grid.h"
 #include "grid/mesh.h"
-#include "grid/method.h"
+#include "tables/method.h"
 
 /* Of a sample. SNAPPED: the surface goes through it (method snap); INSIDE is then what it was before. */
 enum { INSIDE = 1, PRESENT = 2, SNAPPED = 4 };

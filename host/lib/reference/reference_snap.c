@@ -8,7 +8,7 @@
  */
 #include "reference/reference_run.h"
 
-#include "grid/tables.h"
+#include "tables/tables.h"
 #include "kernels/snap/link.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
 
 #include "failure.h"
 #include "kernels/base/slab.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 /* A cube of five tetrahedra emits ten triangles at most, a sample owns six edges; a scan
  * word counts to 2^30. Closed surfaces have four triangles at most in each face of a cube, of which planes have one

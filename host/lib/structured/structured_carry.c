@@ -11,7 +11,7 @@
 
 #include "failure.h"
 #include "grid/carry.h"
-#include "grid/method.h"
+#include "tables/method.h"
 #include "parallel.h"
 #include "reference/reference.h"
 #include "structured/structured_run.h"

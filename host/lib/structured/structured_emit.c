@@ -7,7 +7,7 @@
 
 #include "kernels/structured/case_slots.h"
 #include "failure.h"
-#include "grid/method.h"
+#include "tables/method.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "structured/structured_interval.h"
 
 #include "failure.h"
-#include "grid/interval_cases.h"
+#include "tables/interval_cases.h"
 #include "structured/structured.h"
 
 #include <stdlib.h>

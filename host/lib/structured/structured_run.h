@@ -9,7 +9,7 @@
 #include "grid/inside.h"
 #include "opencl/kernels.h"
 #include "grid/mesh.h"
-#include "grid/method.h"
+#include "tables/method.h"
 #include "kernels/base/slab.h"
 #include "structured/slab_plan.h"
 

@@ -7,7 +7,7 @@
 #include "tetrahedra/border_list.h"
 
 #include "failure.h"
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 #include "parallel.h"
 #include "sample_types.h"
 

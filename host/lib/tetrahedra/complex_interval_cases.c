@@ -3,7 +3,7 @@
  * numbers (interval_cases.h): for each order of a tetrahedron's points its own entries, which name the points and the
  * slots of crossed edges as the tetrahedron has them.
  */
-#include "grid/interval_cases.h"
+#include "tables/interval_cases.h"
 #include "tetrahedra/complex_interval.h"
 
 #include <stdlib.h>

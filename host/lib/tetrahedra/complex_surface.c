@@ -7,7 +7,7 @@
 #include "tetrahedra/whole_run.h"
 
 #include "failure.h"
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "tetrahedra/whole_cases.h"
 
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

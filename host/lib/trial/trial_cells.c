@@ -5,7 +5,7 @@
 #include "trial/trial.h"
 
 #include "failure.h"
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 
 #include <stdlib.h>
 #include <string.h>

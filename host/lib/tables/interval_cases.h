@@ -7,7 +7,7 @@
 #ifndef INTERVAL_CASES_H
 #define INTERVAL_CASES_H
 
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <stdbool.h>
 

@@ -1,4 +1,4 @@
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 const uint8_t tetrahedron_corners[2][TETRAHEDRA_PER_CUBE][4] = {
     {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 3, 5, 6}},

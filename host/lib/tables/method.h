@@ -4,7 +4,7 @@
 #ifndef METHOD_H
 #define METHOD_H
 
-#include "grid/tables.h"
+#include "tables/tables.h"
 #include "kernels/base/methods.h"
 #include "tetracubes.h"
 

@@ -12,8 +12,8 @@
  * of the cube could be one of the neighbour's too, and four triangles would meet in it. Twelve loops of eight vertices
  * have no triangulation without one: they have it in a face at x, y or z = 0, where no neighbour may have one.
  */
-#include "grid/loop.h"
-#include "grid/tables.h"
+#include "tables/loop.h"
+#include "tables/tables.h"
 
 #include <string.h>
 

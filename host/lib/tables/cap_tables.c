@@ -11,7 +11,7 @@
  * Polygons are fanned around an inside sample, so that all chords end there: the surface has no such vertex, and so no
  * such edge. In the hybrid method a face is cut as a whole, and its crossed edges are joined as the diagonal says.
  */
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * of it, and those on the two surfaces. It is cut by pulling: a cone from its first vertex over the faces that do not
  * have that, each a fan around its own first vertex.
  */
-#include "grid/interval_cases.h"
+#include "tables/interval_cases.h"
 
 #include <string.h>
 

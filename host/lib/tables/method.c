@@ -1,4 +1,4 @@
-#include "grid/method.h"
+#include "tables/method.h"
 
 #include "tetracubes.h"
 

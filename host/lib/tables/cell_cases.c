@@ -12,9 +12,9 @@
  * from outside, leaves the side of the isovalue that the face's smallest point is on. Seen from the neighbour the walk
  * enters that side there, so it has no such chord. No shape has a loop that needs another (test_cell_cases).
  */
-#include "grid/cell_cases.h"
+#include "tables/cell_cases.h"
 
-#include "grid/loop.h"
+#include "tables/loop.h"
 
 #include <string.h>
 

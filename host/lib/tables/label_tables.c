@@ -1,4 +1,4 @@
-#include "grid/label_tables.h"
+#include "tables/label_tables.h"
 
 #include <string.h>
 

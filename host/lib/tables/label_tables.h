@@ -23,7 +23,7 @@
 #ifndef LABEL_TABLES_H
 #define LABEL_TABLES_H
 
-#include "grid/tables.h"
+#include "tables/tables.h"
 
 #include <stdbool.h>
 

@@ -1,5 +1,5 @@
 /* loop.c - the triangulation of least cost, by dynamic programming (Gilbert 1979, Klincsek 1980); see loop.h */
-#include "grid/loop.h"
+#include "tables/loop.h"
 
 #include <string.h>
 

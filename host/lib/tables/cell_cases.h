@@ -9,7 +9,7 @@
 #ifndef CELL_CASES_H
 #define CELL_CASES_H
 
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 
 enum { CELL_EDGES_MAX = 30, CELL_TRIANGLES_MAX = 28 };
 

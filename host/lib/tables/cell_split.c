@@ -1,4 +1,4 @@
-#include "grid/cell_split.h"
+#include "tables/cell_split.h"
 
 #include <string.h>
 
