@@ -88,9 +88,9 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emittin
 }
 
 /* For a tile whose sums are posted: looks back, posts its prefix and completes its bricks. */
-inline_always void tile_settle(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
-                               tile_words signs, global uint *active, global uint *head, global uint *tiles,
-                               local uint *shared) {
+inline_always void tile_complete(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
+                                 tile_words signs, global uint *active, global uint *head, global uint *tiles,
+                                 local uint *shared) {
     uint2 prefix = tile_prefix(s, number, samples, cells, signs, tiles, shared);
     uint emitting = tiles[TILE_WORDS * number + TILE_BRICKS];
     if (get_local_id(0) == 0) {
@@ -141,11 +141,11 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             if (SETTLES_LATER)
                 own_append(&own, number, tiles);
             else
-                tile_settle(&s, number, samples, cells, signs, active, head, tiles, shared);
+                tile_complete(&s, number, samples, cells, signs, active, head, tiles, shared);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
-        tile_settle(&s, n, samples, cells, signs, active, head, tiles, shared);
+        tile_complete(&s, n, samples, cells, signs, active, head, tiles, shared);
     if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
     if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }

@@ -348,7 +348,7 @@ inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arra
 #endif
     signs_load(s, c, number, k1, &signs);
     corners_store(&signs, work);
-    crossings_store(s, c, &signs, at_border, k1, work);
+    crossed_store(s, c, &signs, at_border, k1, work);
     uint count = edges_list(s, c, state.rows, first, in, work);
 #ifdef REAL
     vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);

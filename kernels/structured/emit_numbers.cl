@@ -73,8 +73,8 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 
 /* The words of the brick that lies 0 or 1 bricks further in x, y and z (across, up, deep); outside the grid all are 0.
  */
-inline_always global const ulong *words_beside(const slab *s, corner c, uint number, uint across, uint up, uint deep,
-                                               row_results k1) {
+inline_always global const ulong *words_of_brick(const slab *s, corner c, uint number, uint across, uint up, uint deep,
+                                                 row_results k1) {
     bool exists = c.x + 64 * across < s->nx && c.y + BRICK_ROWS * up < s->ny && c.z + BRICK_PLANES * deep < s->nz;
     if (!exists) return brick_words(0, SIGN_OUTSIDE, k1.words);
     number += (deep * s->bricks_y + up) * s->words_x + across;
@@ -92,10 +92,10 @@ inline_always sample_rows plane_load(const slab *s, uint z, ulong valid, global 
 inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
     ulong valid = word_valid(s, c.x / 64);
     for (uint up = 0; up < 2; up++) {
-        global const ulong *at = words_beside(s, c, number, 0, up, 0, k1);
-        global const ulong *next = words_beside(s, c, number, 1, up, 0, k1);
+        global const ulong *at = words_of_brick(s, c, number, 0, up, 0, k1);
+        global const ulong *next = words_of_brick(s, c, number, 1, up, 0, k1);
         for (uint z = 0; z < BRICK_PLANES; z++) signs->rows[up][z] = plane_load(s, z, valid, at, next);
-        at = words_beside(s, c, number, 0, up, 1, k1), next = words_beside(s, c, number, 1, up, 1, k1);
+        at = words_of_brick(s, c, number, 0, up, 1, k1), next = words_of_brick(s, c, number, 1, up, 1, k1);
         signs->rows[up][BRICK_PLANES] = plane_load(s, 0, valid, at, next);
     }
 }
@@ -129,8 +129,8 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 
 /* Crossed edges and active cubes of the brick itself. at_border: whether a closed surface may end in the brick; else
  * none of its samples, and of those that its cubes have, is on the border. */
-inline_always void crossings_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
-                                   brick_work *work) {
+inline_always void crossed_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
+                                 brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
         cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
                                    signs->rows[0][n + 1], signs_up(signs, n + 1));

@@ -22,7 +22,7 @@ inline_always uint owned_edges(const complex_job *c, uint a, global const active
 /* Triangles that are counted with the vertices: of cells, as cut faces are known now. */
 inline_always uint triangles_of(uint a, global const active_item *active, global const uchar *cases) {
 #if WHOLE
-    return case_of(active + a, cases)[WHOLE_TRIANGLES];
+    return cell_case(active + a, cases)[WHOLE_TRIANGLES];
 #else
     return 0;
 #endif

@@ -10,13 +10,13 @@ inline_always uint slot_of(const complex_job *c, uint a, uint n) { return (a << 
 inline_always uint slot_item(const complex_job *c, uint slot) { return slot >> c->slot_shift; }
 inline_always uint slot_edge(const complex_job *c, uint slot) { return slot & ((1u << c->slot_shift) - 1); }
 
-inline_always global const uchar *case_of(global const active_cell *cell, global const uchar *cases) {
+inline_always global const uchar *cell_case(global const active_cell *cell, global const uchar *cases) {
     return cases + (ulong)CASE_UNIT * cell->pattern;
 }
 
 /* The two points of candidate n, the lower first. */
 inline_always uint2 candidate_points(global const active_cell *cell, uint n, global const uchar *cases) {
-    const uint ends = case_of(cell, cases)[WHOLE_ENDS + n];
+    const uint ends = cell_case(cell, cases)[WHOLE_ENDS + n];
     const uint a = cell->points[ends & 15], b = cell->points[ends >> 4];
     return (uint2)(min(a, b), max(a, b));
 }
@@ -27,12 +27,12 @@ inline_always uint2 edge_points(const complex_job *c, global const active_cell *
 }
 
 inline_always uint edges_of(uint a, global const active_cell *active, global const uchar *cases) {
-    return case_of(active + a, cases)[WHOLE_CANDIDATES];
+    return cell_case(active + a, cases)[WHOLE_CANDIDATES];
 }
 
 /* Bit n: candidate n is a diagonal. */
 inline_always uint diagonals_of(uint a, global const active_cell *active, global const uchar *cases) {
-    global const uchar *d = case_of(active + a, cases) + WHOLE_DIAGONALS;
+    global const uchar *d = cell_case(active + a, cases) + WHOLE_DIAGONALS;
     return d[0] | (uint)d[1] << 8 | (uint)d[2] << 16 | (uint)d[3] << 24;
 }
 

@@ -30,14 +30,14 @@ inline_always void item_prefetch(const complex_job *c, uint a, global const BITS
  * would have to be as long as the longest case. */
 inline_always uint candidate_number(const complex_job *c, uint a, uint n, global const active_cell *active,
                                     global const uint *tiles, global const uint *table, global const uint *entries) {
-    return vertex_number(c, table[entries[slot_of(c, a, n)]], active, tiles);
+    return edge_vertex(c, table[entries[slot_of(c, a, n)]], active, tiles);
 }
 
 inline_always void item_emit(const complex_job *c, uint a, global const BITS *samples, global const float *points,
                              global const active_cell *active, global const uchar *cases, global const uint *tiles,
                              global const uint *table, global const uint *entries, global float *positions,
                              global uint *triangles) {
-    global const uchar *row = case_of(active + a, cases), *corners = row + WHOLE_ENDS + row[WHOLE_CANDIDATES];
+    global const uchar *row = cell_case(active + a, cases), *corners = row + WHOLE_ENDS + row[WHOLE_CANDIDATES];
     const uint tile = a / c->tile_actives, vertex = tile_before(tiles, tile, TILE_VERTICES) + active[a].vertex;
     global uint *out = triangles + 3ul * (tile_before(tiles, tile, TILE_TRIANGLES) + active[a].triangle);
     uint own = 0;
