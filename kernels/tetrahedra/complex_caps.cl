@@ -156,7 +156,7 @@ inline_always uint point_vertex(const complex_job *c, uint point, cap_emit e) {
 /* The vertex on a crossed edge; *wrong where there is none. */
 inline_always uint crossing_vertex(const complex_job *c, uint a, uint b, cap_emit e, uint *wrong) {
     const uint entry = cap_edge(c, a, b, e.in);
-    if (entry != EDGE_NONE) return edge_vertex(c, e.in.table[entry], e.in.active, e.tiles);
+    if (entry != EDGE_NONE) return edge_number(c, e.in.table[entry], e.in.active, e.tiles);
     *wrong = 1;
     return 0;
 }

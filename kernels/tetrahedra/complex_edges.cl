@@ -56,7 +56,7 @@ inline_always uint edge_find(const complex_job *c, uint2 edge, uint entry, globa
 }
 
 /* The number of the vertex in slot `owner`, whose item owns it. */
-inline_always uint edge_vertex(const complex_job *c, uint owner, global const active_item *active,
+inline_always uint edge_number(const complex_job *c, uint owner, global const active_item *active,
                                global const uint *tiles) {
     global const active_item *t = active + slot_item(c, owner);
     uint lower = t->owned & ((1u << slot_edge(c, owner)) - 1);

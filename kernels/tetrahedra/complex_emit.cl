@@ -43,7 +43,7 @@ inline_always void item_emit(const complex_job *c, uint a, global const BITS *sa
     for (uint n = 0; n < 4; n++) {
         if (n >= edges) break;
         uint owner = table[entries[4 * a + n]];
-        numbers[n] = edge_vertex(c, owner, active, tiles);
+        numbers[n] = edge_number(c, owner, active, tiles);
         if (owner == 4 * a + n)
             edge_vertex(c, edge_points(c, active, owner, cases), samples, points, positions + 3ul * numbers[n]);
     }

@@ -30,7 +30,7 @@ inline_always void item_prefetch(const complex_job *c, uint a, global const BITS
  * would have to be as long as the longest case. */
 inline_always uint candidate_number(const complex_job *c, uint a, uint n, global const active_cell *active,
                                     global const uint *tiles, global const uint *table, global const uint *entries) {
-    return edge_vertex(c, table[entries[slot_of(c, a, n)]], active, tiles);
+    return edge_number(c, table[entries[slot_of(c, a, n)]], active, tiles);
 }
 
 inline_always void item_emit(const complex_job *c, uint a, global const BITS *samples, global const float *points,
