@@ -371,6 +371,8 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
+
+/* The context keeps the memory for its next mesh; the system takes it where it is short of any (MADV_FREE). */
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
 
 /* ------------------------------------------------------------------------------------------------------ label maps */
@@ -589,6 +591,8 @@ TC_API tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *o
 
 /* Fills *data. Its pointers stay valid until the interval volume is made anew or destroyed. */
 TC_API tc_status tc_interval_get(const tc_interval *interval, tc_interval_data *data);
+
+/* As tc_mesh_destroy. */
 TC_API void tc_interval_destroy(tc_interval *interval);
 
 /* Another field at the vertices of the interval volume that tc_extract_interval makes of the same grid and options: at

@@ -137,10 +137,11 @@ tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options,
     FLOAT_ENVIRONMENT_DEFAULT;
     tc_interval_options o;
     if (out && *out) interval_clear(*out);
-    if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract_interval needs a place for the interval volume");
-    tc_interval *interval = *out ? *out : calloc(1, sizeof *interval);
-    if (!interval) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for an interval volume");
-    interval_clear(interval);
+    if (!grid || !out)
+        return (tc_status)fail(TC_ERROR_ARGUMENT,
+                               "tc_extract_interval needs a grid and a place for the interval volume");
+    tc_interval *interval = *out ? *out : interval_create(grid->context->spare);
+    if (!interval) return TC_ERROR_MEMORY;
     tc_status status = interval_begin(grid, options, &o, "tc_extract_interval");
     if (!status) status = interval_make(grid, &o, interval);
     if (!status) memcpy(interval->origin, grid->origin, sizeof interval->origin);

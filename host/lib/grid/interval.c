@@ -29,6 +29,17 @@ uint64_t interval_bytes(const interval_size *size) {
     return 3 * sizeof(float) * interval_first(size, BLOCK_COUNT) + TETRAHEDRON_BYTES * size->tetrahedra;
 }
 
+tc_interval *interval_create(spare_blocks *spare) {
+    tc_interval *interval = calloc(1, sizeof *interval);
+    if (!interval) {
+        fail(TC_ERROR_MEMORY, "no memory for an interval volume");
+        return NULL;
+    }
+    interval->spare = spare_blocks_join(spare);
+    interval_clear(interval);
+    return interval;
+}
+
 tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
     const uint64_t vertices = interval_first(size, BLOCK_COUNT);
     if (vertices > UINT32_MAX)
@@ -37,7 +48,8 @@ tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
             "the interval volume has %llu vertices, and indices of 32 bits reach %lu: take a narrower "
             "interval, or parts of the grid",
             (unsigned long long)vertices, (unsigned long)UINT32_MAX);
-    const uint64_t held = interval->positions.bytes + interval->tetrahedra.bytes, available = host_memory_available();
+    const uint64_t held = interval->positions.bytes + interval->tetrahedra.bytes + spare_blocks_bytes(interval->spare);
+    const uint64_t available = host_memory_available();
     if (interval_bytes(size) > held && interval_bytes(size) - held > available)
         return (tc_status)fail(
             TC_ERROR_MEMORY,
@@ -45,8 +57,9 @@ tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
             "parts of the grid",
             (unsigned long long)interval_bytes(size), (unsigned long long)(available + held));
     const uint64_t pages = (uint64_t)BLOCK_COUNT * PAGE_BYTES; /* each block may begin with a page of its own */
-    tc_status status = host_block_reserve(&interval->positions, vertices * 3 * sizeof(float) + pages);
-    if (!status) status = host_block_reserve(&interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
+    tc_status status = spare_block_take(interval->spare, &interval->positions, vertices * 3 * sizeof(float) + pages);
+    if (!status)
+        status = spare_block_take(interval->spare, &interval->tetrahedra, size->tetrahedra * TETRAHEDRON_BYTES);
     if (!status) interval->size = *size;
     return status;
 }
@@ -81,7 +94,8 @@ tc_status tc_interval_get(const tc_interval *interval, tc_interval_data *data) {
 
 void tc_interval_destroy(tc_interval *interval) {
     if (!interval) return;
-    host_block_release(&interval->positions);
-    host_block_release(&interval->tetrahedra);
+    spare_block_give(interval->spare, &interval->positions);
+    spare_block_give(interval->spare, &interval->tetrahedra);
+    spare_blocks_leave(interval->spare);
     free(interval);
 }

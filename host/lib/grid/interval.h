@@ -4,7 +4,7 @@
 #ifndef INTERVAL_H
 #define INTERVAL_H
 
-#include "base/host_block.h"
+#include "base/spare_blocks.h"
 #include "grid/inside.h"
 #include "tetracubes.h"
 
@@ -21,6 +21,7 @@ typedef struct interval_size {
 } interval_size;
 
 struct tc_interval {
+    spare_blocks *spare; /* of the context */
     interval_size size;
     double origin[3]; /* that positions are relative to */
     host_block positions, tetrahedra;
@@ -37,6 +38,9 @@ uint64_t interval_first(const interval_size *size, int block);
 
 /* Bytes of positions and tetrahedra. */
 uint64_t interval_bytes(const interval_size *size);
+
+/* An empty one, the caller's to destroy; NULL: no memory. */
+tc_interval *interval_create(spare_blocks *spare);
 
 /* Sets the size and reserves the memory; checks that indices fit 32 bits. */
 tc_status interval_allocate(tc_interval *interval, const interval_size *size);

@@ -7,6 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+tc_mesh *mesh_create(spare_blocks *spare) {
+    tc_mesh *mesh = calloc(1, sizeof *mesh);
+    if (!mesh) {
+        fail(TC_ERROR_MEMORY, "no memory for a mesh");
+        return NULL;
+    }
+    mesh->spare = spare_blocks_join(spare);
+    mesh_clear(mesh);
+    return mesh;
+}
+
 tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, channel_set made) {
     if (vertex_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
@@ -16,8 +27,8 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
     tc_status status = TC_OK;
     for (int channel = 0; channel < CHANNEL_COUNT && !status; channel++)
         if (channel_in(made, channel))
-            status = host_block_reserve(&mesh->channels[channel], vertex_count * CHANNEL_BYTES);
-    if (!status) status = host_block_reserve(&mesh->triangles, triangle_count * TRIANGLE_BYTES);
+            status = spare_block_take(mesh->spare, &mesh->channels[channel], vertex_count * CHANNEL_BYTES);
+    if (!status) status = spare_block_take(mesh->spare, &mesh->triangles, triangle_count * TRIANGLE_BYTES);
     if (status) return status;
     mesh->vertex_count = vertex_count;
     mesh->triangle_count = triangle_count;
@@ -27,7 +38,7 @@ tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_
 
 tc_status mesh_allocate_labelled(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count) {
     tc_status status = mesh_allocate(mesh, vertex_count, triangle_count, POSITIONS_ALONE);
-    if (!status) status = host_block_reserve(&mesh->boundary_labels, triangle_count * LABELS_BYTES);
+    if (!status) status = spare_block_take(mesh->spare, &mesh->boundary_labels, triangle_count * LABELS_BYTES);
     mesh->has_labels = !status;
     return status;
 }
@@ -65,8 +76,9 @@ tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data) {
 
 void tc_mesh_destroy(tc_mesh *mesh) {
     if (!mesh) return;
-    for (int channel = 0; channel < CHANNEL_COUNT; channel++) host_block_release(&mesh->channels[channel]);
-    host_block_release(&mesh->triangles);
-    host_block_release(&mesh->boundary_labels);
+    for (int channel = 0; channel < CHANNEL_COUNT; channel++) spare_block_give(mesh->spare, &mesh->channels[channel]);
+    spare_block_give(mesh->spare, &mesh->triangles);
+    spare_block_give(mesh->spare, &mesh->boundary_labels);
+    spare_blocks_leave(mesh->spare);
     free(mesh);
 }

@@ -5,10 +5,11 @@
 #define MESH_H
 
 #include "base/channels.h"
-#include "base/host_block.h"
+#include "base/spare_blocks.h"
 #include "tetracubes.h"
 
 struct tc_mesh {
+    spare_blocks *spare; /* of the context; NULL: none */
     uint64_t vertex_count;
     uint64_t triangle_count;
     uint64_t active_cell_count;
@@ -21,6 +22,9 @@ struct tc_mesh {
     uint32_t slab_count;
     tc_timings timings;
 };
+
+/* Without vertices, the caller's to destroy; NULL: no memory. spare: of the context, or NULL. */
+tc_mesh *mesh_create(spare_blocks *spare);
 
 /* Sets the counts and reserves the memory; checks that indices fit 32 bits. */
 tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, channel_set made);

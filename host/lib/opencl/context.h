@@ -5,7 +5,7 @@
 #define CONTEXT_H
 
 #include "kernels/tetrahedra/complex_job.h"
-#include "base/host_block.h"
+#include "base/spare_blocks.h"
 #include "opencl/kernel_kind.h"
 #include "opencl/opencl.h"
 #include "sample_types.h"
@@ -102,6 +102,7 @@ struct tc_context {
     tc_device_info info;
     pid_t process;                          /* that made it */
     host_block smoothing[SMOOTHING_BLOCKS]; /* of label maps: kept between extractions */
+    spare_blocks *spare;                    /* of results that were destroyed; NULL: none are kept */
     bool in_place;                          /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;

@@ -82,11 +82,8 @@ static tc_status reference_make(const trial_volume *v, const tc_extract_options 
     tc_grid *grid;
     tc_status status = trial_grid_create(v, &host, host.launch.scan, &grid);
     for (int n = 0; n < SURFACES && !status; n++) {
-        meshes[n] = calloc(1, sizeof *meshes[n]);
-        if (meshes[n])
-            status = surface_extract(grid, &how[n], meshes[n]);
-        else
-            status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
+        meshes[n] = mesh_create(NULL);
+        status = meshes[n] ? surface_extract(grid, &how[n], meshes[n]) : TC_ERROR_MEMORY;
     }
     grid_destroy(grid);
     return status;
@@ -101,9 +98,8 @@ static tc_status count_try(tc_context *context, const trial_volume *v, tc_grid *
 
 static tc_status extract_try(tc_context *context, const trial_volume *v, tc_grid *grid, const tc_extract_options *how,
                              const tc_mesh *expected) {
-    tc_mesh *mesh = calloc(1, sizeof *mesh);
-    if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
-    mesh_clear(mesh);
+    tc_mesh *mesh = mesh_create(NULL);
+    if (!mesh) return TC_ERROR_MEMORY;
     tc_status status = surface_extract(grid, how, mesh);
     if (!status) status = meshes_compare(context, v, mesh, expected);
     tc_mesh_destroy(mesh);

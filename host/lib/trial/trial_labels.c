@@ -60,8 +60,8 @@ static tc_status kernels_build(tc_context *context, kernel_kind kind) {
 static tc_status device_try(tc_context *context, const label_volume *volume, const tc_mesh *expected) {
     tc_status status = TC_OK;
     for (uint32_t again = 0; again < 2 && !status; again++) {
-        tc_mesh *mesh = calloc(1, sizeof *mesh);
-        if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
+        tc_mesh *mesh = mesh_create(NULL);
+        if (!mesh) return TC_ERROR_MEMORY;
         const scan_parameters scan = {1, again ? 1 : context->launch.scan.spin_limit};
         status = labels_extract(volume, scan, mesh);
         if (!status) status = compare(context, mesh, expected);
@@ -75,9 +75,8 @@ static tc_status volume_try(tc_context *context, const tc_grid_options *grid_opt
     tc_labels_options_init(&all);
     label_volume volume = {0};
     tc_grid *grid = NULL;
-    tc_mesh *expected = calloc(1, sizeof *expected);
-    tc_status status = expected ? grid_create(context, grid_options, context->launch.scan, &grid)
-                                : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the trial of a device");
+    tc_mesh *expected = mesh_create(NULL);
+    tc_status status = expected ? grid_create(context, grid_options, context->launch.scan, &grid) : TC_ERROR_MEMORY;
     if (!status) status = label_volume_make(grid, &all, &volume);
     if (!status) status = reference_labels(&volume, expected);
     if (!status) status = device_try(context, &volume, expected);
