@@ -2,8 +2,8 @@
  * measure.h - one case: verified against the reference, then timed
  *
  * Times are the library's own, tc_timings; what tc_grid_create takes is not counted. There are three kinds:
- *   cold     the first extraction on a new grid into a new mesh, whose memory is allocated and first touched within the
- *            timed part and released outside it
+ *   cold     the first extraction on a new grid into a new mesh; the one before was destroyed, outside the timed part,
+ *            and the context kept its memory
  *   warm     the first extraction on a new grid into the mesh of the extraction before
  *   second   another isovalue on the same grid, after a warm one
  * On a new grid nothing is known of the samples. The context keeps its working buffers in all three.

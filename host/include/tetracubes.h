@@ -372,7 +372,8 @@ TC_API tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc
 /* Fills *data. Its pointers stay valid until the mesh is extracted into again or destroyed. */
 TC_API tc_status tc_mesh_get(tc_mesh *mesh, tc_mesh_data *data);
 
-/* The context keeps the memory for its next mesh; the system takes it where it is short of any (MADV_FREE). */
+/* The context keeps the memory for its next mesh, unless it has max_memory_bytes; the system takes it where it is short
+ * of any (MADV_FREE). */
 TC_API void tc_mesh_destroy(tc_mesh *mesh);
 
 /* ------------------------------------------------------------------------------------------------------ label maps */

@@ -100,7 +100,7 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
         return (tc_status)fail(TC_ERROR_ARGUMENT, "%d is no engine", (int)o.engine);
     tc_context *context = calloc(1, sizeof *context);
     if (!context) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
-    context->spare = spare_blocks_create();
+    if (!o.max_memory_bytes) context->spare = spare_blocks_create();
     context->process = getpid();
     context->options = o;
     context->progress_share = 1;
