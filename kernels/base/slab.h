@@ -30,7 +30,7 @@ enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
 enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 
 /* What kernel 1 finds out about a brick. While samples are snapped, `rows` tells whether it is in the list of those
- * that wish something. */
+ * that have violated samples. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
     slab_u32 rows;                /* bit n: row n of the brick emits something */
@@ -71,7 +71,15 @@ enum { LOCAL_BYTES_PER_BRICK = 3072 };
 #define EDGE_ITEM(x, y, z, type) ((type) + 8 * ((x) + 2 * (y) + 4 * (z)))
 
 /* Kernels of method snap that take what they do by ticket; the passes over even samples have one each. */
-enum { TICKET_SIGN, TICKET_OPEN, TICKET_WISH, TICKET_CLOSE, TICKET_ODD, TICKET_EVEN, SNAP_TICKETS = TICKET_EVEN + 4 };
+enum {
+    TICKET_SIGN,
+    TICKET_OPEN,
+    TICKET_VIOLATED,
+    TICKET_CLOSE,
+    TICKET_ODD,
+    TICKET_EVEN,
+    SNAP_TICKETS = TICKET_EVEN + 4
+};
 
 /* Indices in a slab's head: STATE_WORDS words of the state buffer, cleared before kernel 1. */
 enum {
@@ -82,9 +90,9 @@ enum {
     STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
     STATE_VERTICES,  /* totals of the slab */
     STATE_TRIANGLES,
-    STATE_NEAR_BRICKS,    /* method snap: bricks near the surface */
-    STATE_WISHING_BRICKS, /* and those of them with samples that wish to be snapped */
-    STATE_SNAP_TICKET,    /* its kernels' next tile or brick of these: one each */
+    STATE_NEAR_BRICKS,     /* method snap: bricks near the surface */
+    STATE_VIOLATED_BRICKS, /* and those of them with violated samples */
+    STATE_SNAP_TICKET,     /* its kernels' next tile or brick of these: one each */
     STATE_WORDS = STATE_SNAP_TICKET + SNAP_TICKETS
 };
 

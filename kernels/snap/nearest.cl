@@ -41,7 +41,7 @@ inline_always void link_offsets(const slab *s, long offsets[LINK_EVEN]) {
 
 /* Whether a sample on no border of the grid is near enough to a crossing: the sample of its link that differs most on
  * the other side has the nearest one along its kind of edge. */
-inline_always bool wishes_inside(const slab *s, global const BITS *at, const long *offsets, bool odd) {
+inline_always bool is_violated(const slab *s, global const BITS *at, const long *offsets, bool odd) {
     const REAL half_of = (REAL)0.5f, here = SAMPLE_VALUE(*at);
     REAL least = here, most = here;
 #pragma unroll
@@ -83,13 +83,13 @@ inline_always uint nearest_of_sample(const slab *s, uint x, uint y, uint z, glob
 }
 
 /* Which of the samples of a row on the grid's border are near enough to a crossing. */
-inline_always ulong border_wishes(const slab *s, uint y, uint z, uint w, ulong rest, global const BITS *samples) {
-    ulong wishes = 0;
+inline_always ulong border_violated(const slab *s, uint y, uint z, uint w, ulong rest, global const BITS *samples) {
+    ulong violated = 0;
     for (; rest; rest &= rest - 1) {
         const uint bit = lowest_bit(rest);
-        if (nearest_of_sample(s, 64 * w + bit, y, z, samples) != LINK_EVEN) wishes |= 1ul << bit;
+        if (nearest_of_sample(s, 64 * w + bit, y, z, samples) != LINK_EVEN) violated |= 1ul << bit;
     }
-    return wishes;
+    return violated;
 }
 
 #endif

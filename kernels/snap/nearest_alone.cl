@@ -97,7 +97,7 @@ inline_always char16 near_enough16(const slab *s, const samples16 *here, REAL16 
 
 /* A bit for each sample that is near enough to a crossing. The neighbour that differs most on the other side has the
  * nearest one along its kind of edge. */
-inline_always uint wishes16(const slab *s, const samples16 *here, const long *offsets) {
+inline_always uint violated16(const slab *s, const samples16 *here, const long *offsets) {
     pulls16 along = here->pulls, across = here->pulls;
 #pragma unroll
     for (uint n = 0; n < LINK_EVEN; n++) {

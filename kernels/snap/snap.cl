@@ -5,10 +5,10 @@
  *
  * 1. snap_sign: the first stage of kernel 1 (sign.cl), over all bricks;
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
- * 3. snap_wish: which of their samples are near enough to a crossing of theirs; lists the bricks that have any. Mixed
- *    bricks get words of zeros, empty so far;
+ * 3. snap_violated: which of their samples are violated, near enough to a crossing of theirs; lists the bricks that
+ * have any. Mixed bricks get words of zeros, empty so far;
  * 4. snap_open: bricks on that list that are uniform get sign words of their own, and words of zeros;
- * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: those that wish it and are regular points
+ * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: violated samples that are regular points
  *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
  *    that another group stores to meanwhile has the same bits for its readers before and after;
  * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
@@ -96,44 +96,45 @@ inline_always uint run_length(uint count) {
 #ifdef REAL
 
 #if WORK_ITEMS == 1
-#include "snap_wish_alone.cl"
+#include "snap_violated_alone.cl"
 #else
-#include "snap_wish_groups.cl"
+#include "snap_violated_groups.cl"
 #endif
 
-/* wishes: a word for each row of the bricks near the surface. Mixed bricks get words of zeros. */
-kernel void snap_wish(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
-                      global brick_state *bricks, global const uint *near, global uint *state, global ulong *wishes,
-                      global uint *wishing) {
+/* violated: a word for each row of the bricks near the surface. Mixed bricks get words of zeros. */
+kernel void snap_violated(slab s, global const BITS *samples, global const ulong *cells, global ulong *words,
+                          global brick_state *bricks, global const uint *near, global uint *state,
+                          global ulong *violated, global uint *violated_bricks) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
-    wish_room room;
+    violated_room room;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     global ulong *zeros = words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
-    wish_results results = {wishes, bricks, wishing, &state[s.results.head_offset + STATE_WISHING_BRICKS]};
-    wishes_begin(&s, &room);
-    RUNS_OF(count, snap_ticket(&s, state, TICKET_WISH)) BRICKS_OF_RUN(count) {
+    violated_results results = {violated, bricks, violated_bricks,
+                                &state[s.results.head_offset + STATE_VIOLATED_BRICKS]};
+    violated_begin(&s, &room);
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_VIOLATED)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK, number = near[min(n, end - 1)];
         if (n >= end) continue;
         for (uint row = ITEM_ROW; row < BRICK_WORDS && bricks[number].sign == SIGN_MIXED; row += BRICK_ITEMS)
             zeros[BRICK_WORDS * (ulong)number + row] = 0;
         around_make(&s, words, bricks, number, &a);
-        wishes_make(&s, &a, brick_place_of(&s, number), number, samples, cells, results, &room);
+        violated_find(&s, &a, brick_place_of(&s, number), number, samples, cells, results, &room);
     }
-    wishes_end(&s, samples, results, &room);
+    violated_end(&s, samples, results, &room);
 }
 
 #endif
 
-/* Uniform bricks that wish something get words of their own, and words of zeros. */
-kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *wishing,
+/* Uniform bricks that have violated samples get words of their own, and words of zeros. */
+kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *violated_bricks,
                       global uint *state) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
+    const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += UNIFORM_BRICKS * BRICK_WORDS;
     RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK, number = wishing[min(n, end - 1)], sign = bricks[number].sign;
+        const uint n = step + OWN_BRICK, number = violated_bricks[min(n, end - 1)], sign = bricks[number].sign;
         const brick_place p = brick_place_of(&s, number);
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end && sign != SIGN_MIXED; row += BRICK_ITEMS) {
             const bool exists = p.y + row % BRICK_ROWS < s.ny && p.z + row / BRICK_ROWS < s.z1;
@@ -155,9 +156,9 @@ kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, g
 #endif
 
 kernel void snap_even(slab s, uint colour, global ulong *words, global const brick_state *bricks,
-                      global const uint *wishing, global uint *state, global const ulong *wishes) {
+                      global const uint *violated_bricks, global uint *state, global const ulong *violated) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS], odd_j = colour >> 1;
+    const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS], odd_j = colour >> 1;
     const uint odd_k = COLOUR_EVEN(odd_j, 0) == colour ? 0 : 1;
     const uint odd_y = (odd_j ^ (uint)s.first[1]) & 1, odd_z = (odd_k ^ (uint)s.first[2]) & 1;
     brick_around a;
@@ -166,56 +167,56 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
     RUNS_OF(count, snap_ticket(&s, state, TICKET_EVEN + colour)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         if (n >= end) continue;
-        if (n + 2 < count) around_prefetch(&s, words, wishes, wishing[n + 2]);
-        const ulong index = BRICK_WORDS * (ulong)wishing[n];
-        const brick_place p = brick_place_of(&s, wishing[n]);
+        if (n + 2 < count) around_prefetch(&s, words, violated, violated_bricks[n + 2]);
+        const ulong index = BRICK_WORDS * (ulong)violated_bricks[n];
+        const brick_place p = brick_place_of(&s, violated_bricks[n]);
         for (uint set = ITEM_ROW; set < SETS_STRIDED; set += BRICK_ITEMS) {
             const row_set r = set_strided(p.y, p.z, p.w, set, odd_y, odd_z);
-            lanes wanted = set_load(wishes + index, r, true) & samples_even(&s, r);
+            lanes wanted = set_load(violated + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
-            around_make(&s, words, bricks, wishing[n], &a);
+            around_make(&s, words, bricks, violated_bricks[n], &a);
             wanted = set_snap(&s, &a, r, true, wanted, false);
             if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
         }
     }
 }
 
-/* What becomes of the odd samples replaces the wishes. */
-kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *wishing,
-                     global uint *state, global ulong *wishes) {
+/* What becomes of the odd samples replaces the words of violated ones. */
+kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *violated_bricks,
+                     global uint *state, global ulong *violated) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
+    const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     RUNS_OF(count, snap_ticket(&s, state, TICKET_ODD)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         if (n >= end) continue;
-        if (n + 2 < count) around_prefetch(&s, words, wishes, wishing[n + 2]);
-        const ulong index = BRICK_WORDS * (ulong)wishing[n];
-        const brick_place p = brick_place_of(&s, wishing[n]);
+        if (n + 2 < count) around_prefetch(&s, words, violated, violated_bricks[n + 2]);
+        const ulong index = BRICK_WORDS * (ulong)violated_bricks[n];
+        const brick_place p = brick_place_of(&s, violated_bricks[n]);
         bool have_around = false;
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
             const row_set r = set_of_plane(p.y, p.z, p.w, set);
-            lanes wanted = set_load(wishes + index, r, false) & ~samples_even(&s, r);
+            lanes wanted = set_load(violated + index, r, false) & ~samples_even(&s, r);
             if (lanes_any(wanted)) {
-                if (!have_around) around_make(&s, words, bricks, wishing[n], &a);
+                if (!have_around) around_make(&s, words, bricks, violated_bricks[n], &a);
                 have_around = true;
                 wanted = set_snap(&s, &a, r, false, wanted, true);
             }
-            set_store(wanted, wishes + index, r);
+            set_store(wanted, violated + index, r);
         }
     }
 }
 
-kernel void snap_close(slab s, global ulong *words, global const uint *wishing, global uint *state,
+kernel void snap_close(slab s, global ulong *words, global const uint *violated_bricks, global uint *state,
                        global const ulong *last) {
     local uint shared[1];
-    const uint count = state[s.results.head_offset + STATE_WISHING_BRICKS];
+    const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += BRICK_WORDS * (UNIFORM_BRICKS + (ulong)s.snapping.zero_bricks);
     RUNS_OF(count, snap_ticket(&s, state, TICKET_CLOSE)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
-            const ulong index = BRICK_WORDS * (ulong)wishing[n] + row;
+            const ulong index = BRICK_WORDS * (ulong)violated_bricks[n] + row;
             words[index] |= last[index];
         }
     }

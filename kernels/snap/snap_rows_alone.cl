@@ -40,13 +40,14 @@ inline_always void around_make(const slab *s, global const ulong *words, global 
 }
 
 /* Prefetches what a pass reads of a brick, and of the one after it in z, which is read here first. */
-inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *wishes, uint number) {
+inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *violated,
+                                   uint number) {
     global const ulong *own = words + BRICK_WORDS * (ulong)number;
     const ulong deep = BRICK_WORDS * (ulong)s->bricks_y * s->words_x;
     for (uint line = 0; line < BRICK_WORDS; line += 8) {
         line_prefetch(own + line);
         line_prefetch(zeros_of(s, own) + line);
-        line_prefetch(wishes + BRICK_WORDS * (ulong)number + line);
+        line_prefetch(violated + BRICK_WORDS * (ulong)number + line);
     }
     line_prefetch(own + deep);
     line_prefetch(zeros_of(s, own) + deep);

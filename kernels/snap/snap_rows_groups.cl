@@ -33,7 +33,8 @@ inline_always void around_make(const slab *s, global const ulong *words, global 
 }
 
 /* No prefetch: while a work-item waits for memory, others of its group run. */
-inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *wishes, uint number) {}
+inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *violated,
+                                   uint number) {}
 
 /* The word at w + step_w of the row a step from that of the set, 0 where there is none. */
 inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool strided, int step_y, int step_z,

@@ -125,7 +125,7 @@ static const program_sources programs[PROGRAM_COUNT] = {
     [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
                           {[VARIANT_ALONE] = kernel_classify_alone, [VARIANT_GROUPS] = kernel_classify_groups}},
     [PROGRAM_EMIT] = {{"emit"}, {[VARIANT_ALONE] = kernel_emit_alone, [VARIANT_GROUPS] = kernel_emit_groups}},
-    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_wish", "snap_even", "snap_odd", "snap_close"},
+    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_violated", "snap_even", "snap_odd", "snap_close"},
                       {[VARIANT_ALONE] = kernel_snap_alone, [VARIANT_GROUPS] = kernel_snap_groups}},
     [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
                          {[VARIANT_ALONE] = kernel_complex_alone, [VARIANT_GROUPS] = kernel_complex_groups}},

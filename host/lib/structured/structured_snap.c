@@ -1,7 +1,7 @@
 /*
  * Method snap on a device: the kernels of snap.cl, before kernel 1 counts. They run over the window of sign words, the
  * whole grid where it holds that. Until kernel 1 counts, its buffers hold what snapping needs: lists of bricks near the
- * surface (active) and of those that wish something (triangle_offsets), and the wishes (offsets).
+ * surface (active) and of those with violated samples (triangle_offsets), and words of these (offsets).
  */
 #include "structured/structured_run.h"
 
@@ -44,15 +44,15 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
                                     ARGUMENT(work->state.memory)};
     const kernel_argument near[] = {ARGUMENT(window), ARGUMENT(b->bricks.memory), ARGUMENT(b->active.memory),
                                     ARGUMENT(work->state.memory)};
-    const kernel_argument wish[] = {ARGUMENT(window),
-                                    ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
-                                    ARGUMENT(work->cells.memory),
-                                    ARGUMENT(b->words.memory),
-                                    ARGUMENT(b->bricks.memory),
-                                    ARGUMENT(b->active.memory),
-                                    ARGUMENT(work->state.memory),
-                                    ARGUMENT(b->offsets.memory),
-                                    ARGUMENT(b->triangle_offsets.memory)};
+    const kernel_argument violated[] = {ARGUMENT(window),
+                                        ARGUMENT(slab_array(r, ref, ARRAY_SAMPLES)->memory),
+                                        ARGUMENT(work->cells.memory),
+                                        ARGUMENT(b->words.memory),
+                                        ARGUMENT(b->bricks.memory),
+                                        ARGUMENT(b->active.memory),
+                                        ARGUMENT(work->state.memory),
+                                        ARGUMENT(b->offsets.memory),
+                                        ARGUMENT(b->triangle_offsets.memory)};
     const kernel_argument open[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->bricks.memory),
                                     ARGUMENT(b->triangle_offsets.memory), ARGUMENT(work->state.memory)};
     const kernel_argument odd[] = {ARGUMENT(window),
@@ -66,7 +66,7 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
     const sized_kernel *kernel = r->kernels.snap;
     tc_status status = kernel_launch(r->context, kernel[SNAP_SIGN], "kernel snap_sign", sign, 6);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_NEAR], "kernel snap_near", near, 4);
-    if (!status) status = kernel_launch(r->context, kernel[SNAP_WISH], "kernel snap_wish", wish, 9);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_VIOLATED], "kernel snap_violated", violated, 9);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_OPEN], "kernel snap_open", open, 5);
     if (!status) status = even_pass(r, ref, &window);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_PASS_ODD], "kernel snap_odd", odd, 6);

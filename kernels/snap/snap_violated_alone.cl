@@ -1,50 +1,51 @@
 /*
- * snap_wish_alone.cl - wishes for a work-item alone: sixteen samples at once, from a sample with a crossing on
+ * snap_violated_alone.cl - violated samples, for a work-item alone: sixteen samples at once, from a sample with a
+ * crossing on
  */
-#ifndef SNAP_WISH_ALONE_CL
-#define SNAP_WISH_ALONE_CL
+#ifndef SNAP_VIOLATED_ALONE_CL
+#define SNAP_VIOLATED_ALONE_CL
 
 #include "nearest_alone.cl"
 #include "../structured/sign.cl"
 #include "snap_crossed.cl"
-#include "snap_wishes.cl"
+#include "snap_violated.cl"
 
-/* A brick's samples with crossings, and which of them wish to be snapped. */
-typedef struct wish_list {
+/* A brick's samples with crossings, and which of them are violated. */
+typedef struct violated_list {
     brick_place p;
     uint number;
     uint rows; /* bit n: row n has samples that are not looked at yet: */
     ulong crossed[BRICK_WORDS];
-    ulong wishes[BRICK_WORDS];
-} wish_list;
+    ulong violated[BRICK_WORDS];
+} violated_list;
 
 /* Two lists in turn: a brick is finished after samples of the next one have been asked for, so that its own have
  * arrived. */
-typedef struct wish_room {
+typedef struct violated_room {
     long offsets[LINK_EVEN];
-    wish_list lists[2];
+    violated_list lists[2];
     uint brick_count;
-} wish_room;
+} violated_room;
 
-/* Enters the samples of a plane that have a crossing. Of those that cannot be looked at together the wishes are found
- * at once. */
+/* Enters the samples of a plane that have a crossing. Of those that cannot be looked at together the violated ones are
+ * found at once. */
 inline_always void plane_enter(const slab *s, row_set r, lanes crossed_any, const borders *b,
-                               global const BITS *samples, wish_list *l) {
+                               global const BITS *samples, violated_list *l) {
     const uint plane = r.z % BRICK_PLANES;
     const bool fit = links_fit16(s, r.w, r.y + BRICK_ROWS - 1, r.z);
     const lanes inner = fit ? ~(b->across[0] | b->across[1] | b->across[2]) : (lanes)0, others = crossed_any & ~inner;
-    ulong *wishes = l->wishes + BRICK_ROWS * plane;
-    vstore8(crossed_any & inner, plane, l->crossed), vstore8(others, 0, wishes);
+    ulong *violated = l->violated + BRICK_ROWS * plane;
+    vstore8(crossed_any & inner, plane, l->crossed), vstore8(others, 0, violated);
     for (uint rows = lanes_nonzero(others); rows; rows &= rows - 1) {
         const uint y = lowest_bit(rows);
-        wishes[y] = border_wishes(s, r.y + y, r.z, r.w, wishes[y], samples);
+        violated[y] = border_violated(s, r.y + y, r.z, r.w, violated[y], samples);
     }
     l->rows |= lanes_nonzero(crossed_any & inner) << (BRICK_ROWS * plane);
 }
 
-inline_always void list_finish(const slab *s, wish_list *l, const long *offsets, global const BITS *samples,
-                               wish_results results) {
-    global ulong *out = results.wishes + BRICK_WORDS * (ulong)l->number;
+inline_always void list_finish(const slab *s, violated_list *l, const long *offsets, global const BITS *samples,
+                               violated_results results) {
+    global ulong *out = results.violated + BRICK_WORDS * (ulong)l->number;
     for (uint rows = l->rows; rows; rows &= rows - 1) {
         const uint row = lowest_bit(rows), y = l->p.y + row % BRICK_ROWS, z = l->p.z + row / BRICK_ROWS;
         const uint odd = (s->parity + y + z) & 1;
@@ -53,20 +54,20 @@ inline_always void list_finish(const slab *s, wish_list *l, const long *offsets,
         for (ulong rest = l->crossed[row]; rest; rest = bits_after16(rest)) {
             const uint bit = lowest_bit(rest);
             const samples16 here = samples16_of(s, first + bit, odd ^ (bit & 1));
-            found |= (ulong)wishes16(s, &here, offsets) << bit;
+            found |= (ulong)violated16(s, &here, offsets) << bit;
         }
-        l->wishes[row] |= found & l->crossed[row];
+        l->violated[row] |= found & l->crossed[row];
     }
     lanes any = 0;
     for (uint plane = 0; plane < BRICK_PLANES; plane++) {
-        const lanes of_plane = vload8(plane, l->wishes);
+        const lanes of_plane = vload8(plane, l->violated);
         any |= of_plane;
         vstore8(of_plane, plane, out);
     }
-    if (lanes_any(any)) wishing_enter(l->number, results);
+    if (lanes_any(any)) violated_brick_enter(l->number, results);
 }
 
-inline_always void wishes_begin(const slab *s, wish_room *room) {
+inline_always void violated_begin(const slab *s, violated_room *room) {
     link_offsets(s, room->offsets);
     room->brick_count = 0;
 }
@@ -91,10 +92,10 @@ inline_always bool uniform_crossed(const brick_around *a, ulong uniform) {
     return differs || lanes_any(differ);
 }
 
-inline_always void wishes_make(const slab *s, const brick_around *a, brick_place p, uint number,
-                               global const BITS *samples, global const ulong *cells, wish_results results,
-                               wish_room *room) {
-    wish_list *l = &room->lists[room->brick_count & 1];
+inline_always void violated_find(const slab *s, const brick_around *a, brick_place p, uint number,
+                                 global const BITS *samples, global const ulong *cells, violated_results results,
+                                 violated_room *room) {
+    violated_list *l = &room->lists[room->brick_count & 1];
     const uint sign = results.bricks[number].sign;
     if (sign != SIGN_MIXED && !uniform_crossed(a, sign_word(sign))) return;
     l->p = p, l->number = number, l->rows = 0;
@@ -107,7 +108,8 @@ inline_always void wishes_make(const slab *s, const brick_around *a, brick_place
     if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, results);
 }
 
-inline_always void wishes_end(const slab *s, global const BITS *samples, wish_results results, wish_room *room) {
+inline_always void violated_end(const slab *s, global const BITS *samples, violated_results results,
+                                violated_room *room) {
     if (room->brick_count) list_finish(s, &room->lists[(room->brick_count - 1) & 1], room->offsets, samples, results);
 }
 

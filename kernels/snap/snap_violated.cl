@@ -1,0 +1,22 @@
+/*
+ * snap_violated.cl - method snap: the list of bricks that have violated samples
+ */
+#ifndef SNAP_VIOLATED_CL
+#define SNAP_VIOLATED_CL
+
+#include "../base/common.cl"
+
+/* A word for each row, and a list of the bricks that have any. */
+typedef struct violated_results {
+    global ulong *violated;
+    global brick_state *bricks;
+    global uint *violated_bricks, *violated_brick_count;
+} violated_results;
+
+/* Lists a brick, the first time that it is called for it. */
+inline_always void violated_brick_enter(uint number, violated_results results) {
+    if (atomic_inc(&results.bricks[number].rows) == 0)
+        results.violated_bricks[atomic_inc(results.violated_brick_count)] = number;
+}
+
+#endif
