@@ -62,8 +62,9 @@ inline_always uint row_tetrahedra_count(const slab *s, const interval_rows *r, u
 
 /* Counts brick `number`; of bricks behind those that are emitted only samples. rows: for each row, tetrahedra before it
  * in the brick in the upper half, and samples in the lower half. */
-inline_always interval_brick brick_count(const slab *s, const bound *low, const bound *high, global const ulong *cells,
-                                         uint number, bool is_own, global const uint *counts, global uint *rows) {
+inline_always interval_brick volume_brick_count(const slab *s, const bound *low, const bound *high,
+                                                global const ulong *cells, uint number, bool is_own,
+                                                global const uint *counts, global uint *rows) {
     const corner c = brick_corner(s, number);
     const bool within = brick_is(s, low, number, SIGN_INSIDE) && brick_is(s, high, number, SIGN_OUTSIDE);
     interval_brick sum = {0, 0};
@@ -93,7 +94,7 @@ kernel void interval_count(slab s, interval_job job, global const ulong *cells, 
     const bound low = bound_of(low_words, 0, low_bricks, job.has_low, ~0ul);
     const bound high = bound_of(high_words, 0, high_bricks, job.has_high, 0);
     for (uint n = (uint)get_global_id(0); n < job.all_bricks; n += (uint)get_global_size(0))
-        bricks[n] = brick_count(&s, &low, &high, cells, n, n < job.own_bricks, counts, rows + BRICK_WORDS * n);
+        bricks[n] = volume_brick_count(&s, &low, &high, cells, n, n < job.own_bricks, counts, rows + BRICK_WORDS * n);
 }
 
 #endif

@@ -75,7 +75,7 @@ inline_always global uint *cube_store(const places_row *at, const row_places *p,
 #pragma unroll 1
     for (uint n = 5 * odd; n < 5 * odd + 5; n++) {
         const uint index = (uint)cases[256 * n + low] + cases[256 * n + high];
-        out = entry_store(at, p, interval_entry(cases, n, index), bit, out);
+        out = tetrahedra_store(at, p, interval_entry(cases, n, index), bit, out);
     }
     return out;
 }

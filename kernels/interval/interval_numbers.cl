@@ -6,8 +6,8 @@
  * of cubes a work-item alone makes a table of words and first numbers. Work-items of groups make the word when a
  * tetrahedron names the vertex, as a table with a variable index would lie in slow memory.
  */
-#ifndef INTERVAL_PLACES_CL
-#define INTERVAL_PLACES_CL
+#ifndef INTERVAL_NUMBERS_CL
+#define INTERVAL_NUMBERS_CL
 
 #include "interval_rows.cl"
 
@@ -170,8 +170,8 @@ inline_always uint place_number(const places_row *r, const row_places *p, uint v
 }
 
 /* The tetrahedra of an entry, for the cube at a bit. */
-inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
-                                       global uint *out) {
+inline_always global uint *tetrahedra_store(const places_row *r, const row_places *p, global const uchar *entry,
+                                            uint bit, global uint *out) {
     uint numbers[INTERVAL_VERTICES_MOST];
     const uint count = entry[0], vertices = entry[1];
     for (uint n = 0; n < vertices; n++) numbers[n] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
@@ -213,8 +213,8 @@ inline_always uint place_number(const places_row *r, const row_places *p, uint v
     return place_first(r, place, r->w) + (uint)popcount(place_word(r, place) & ((1ul << x) - 1));
 }
 
-inline_always global uint *entry_store(const places_row *r, const row_places *p, global const uchar *entry, uint bit,
-                                       global uint *out) {
+inline_always global uint *tetrahedra_store(const places_row *r, const row_places *p, global const uchar *entry,
+                                            uint bit, global uint *out) {
     const uint corners = 4 * (uint)entry[0];
     for (uint m = 0; m < corners; m++)
         out[m] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m]], bit);
