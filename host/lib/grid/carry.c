@@ -33,6 +33,10 @@ static void gather_f64(tc_type type, const void *values, int stride, int n, cons
 }
 #undef REAL
 
+void carry_samples(const tc_grid *grid, const int64_t *samples, uint32_t count, double *values) {
+    gather_f64(grid->type, grid->samples, 1, 0, samples, count, values);
+}
+
 /* Where the difference of two samples overflows, all numbers are halved first. */
 static void crossings_f32(const float *a, const float *b, float iso, uint32_t count, float *t) {
     for (uint32_t n = 0; n < count; n++) {

@@ -27,6 +27,9 @@ typedef struct edge_batch {
     int64_t low[BATCH_EDGES], high[BATCH_EDGES]; /* the samples at the ends, the lower number first */
 } edge_batch;
 
+/* The values of a grid's samples. */
+void carry_samples(const tc_grid *grid, const int64_t *samples, uint32_t count, double *values);
+
 /* Where the isovalue lies on each edge of the batch. */
 void carry_crossings(const tc_grid *grid, double isovalue, const edge_batch *batch, float t[BATCH_EDGES]);
 

@@ -4,8 +4,8 @@
  * bricks, and no kernel runs.
  *
  * Where the workspace holds these results no longer, the surface is counted again first. Of grids in slabs they are
- * kept on the host from the first field that is carried on (device_grid: carries). In method snap the reference
- * carries: it knows on which edges the vertices of snapped samples lie.
+ * kept on the host from the first field that is carried on (device_grid: carries). The vertices of snapped samples are
+ * those of words of zeros; on which edges they lie follows from the samples (snapped_edge.h).
  */
 #include "structured/structured.h"
 
@@ -13,7 +13,7 @@
 #include "grid/carry.h"
 #include "tables/method.h"
 #include "parallel.h"
-#include "reference/reference.h"
+#include "structured/snapped_edge.h"
 #include "structured/structured_run.h"
 
 #include <stdatomic.h>
@@ -23,7 +23,7 @@ enum { SHARE_BRICKS = 32, STEP_BRICKS = 1 << 16 };
 
 /* Results of kernel 1 for all slabs, in the host's memory. */
 typedef struct results {
-    const uint64_t *words, *offsets;
+    const uint64_t *words, *zeros, *offsets; /* zeros: NULL where the method has none */
     const brick_state *bricks;
     const uint32_t *active;
 } results;
@@ -35,10 +35,13 @@ typedef struct carry_job {
     const carry *carry;
     double isovalue;
     results k1;
-    int edge_types, vertex_types; /* the latter one more where the surface is closed: vertices at samples */
-    int64_t from[VERTEX_TYPES_MOST][2],
-        to[VERTEX_TYPES_MOST][2]; /* samples from an edge's owner to its ends, by parity */
-    uint64_t slab_brick;          /* the slab's first, and those before its end */
+    bool is_closed;
+    snapped_edges snapped;
+    int edge_types;
+    int64_t from[EDGES_PER_SAMPLE][2],
+        to[EDGES_PER_SAMPLE][2]; /* samples from an edge's owner to its ends, by parity */
+    uint64_t window_brick;       /* the first of the slab's window of words, from which its list counts */
+    uint64_t slab_brick;         /* the slab's first, and those before its end */
     uint64_t brick_end;
     uint64_t slab_vertex;
     _Atomic uint64_t next;
@@ -50,18 +53,24 @@ typedef struct carry_job {
 /* ------------------------------------------------------------------------------------------------------- sign words */
 
 /* Words of the brick [0] and of the brick at higher x [1]: in the brick's planes and the plane after, of its rows and
- * the row after. */
+ * the row after. Zeros count as outside. */
 typedef struct brick_words {
     uint64_t word[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
+    uint64_t zero[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
 } brick_words;
 
+static const uint64_t outside[BRICK_WORDS];
+
 static const uint64_t *words_of(const carry_job *j, uint64_t brick) {
-    static const uint64_t outside[BRICK_WORDS];
     static const uint64_t inside[BRICK_WORDS] = {
         [0 ... BRICK_WORDS - 1] = UINT64_MAX,
     };
     const uint32_t sign = j->k1.bricks[brick].sign;
     return sign == SIGN_MIXED ? j->k1.words + BRICK_WORDS * brick : sign == SIGN_INSIDE ? inside : outside;
+}
+
+static const uint64_t *zeros_of(const carry_job *j, uint64_t brick) {
+    return j->k1.zeros && j->k1.bricks[brick].sign == SIGN_MIXED ? j->k1.zeros + BRICK_WORDS * brick : outside;
 }
 
 /* Words of rows and planes outside the grid are undefined. */
@@ -71,18 +80,21 @@ static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t 
     for (int n = 0; n < 8; n++) {
         const int side[3] = {n & 1, n >> 1 & 1, n >> 2};
         const int rows = side[1] ? 1 : BRICK_ROWS, planes = side[2] ? 1 : BRICK_PLANES;
-        static const uint64_t none[BRICK_WORDS];
-        const uint64_t *words = none;
+        const uint64_t *words = outside, *zeros = outside;
         uint64_t other = brick;
         bool exists = true;
         for (int axis = 0; axis < 3; axis++) {
             exists = exists && at[axis] + (uint32_t)side[axis] < count[axis];
             other += side[axis] ? beside[axis] : 0;
         }
-        if (exists) words = words_of(j, other);
+        if (exists) words = words_of(j, other), zeros = zeros_of(j, other);
         for (int z = 0; z < planes; z++)
-            memcpy(&w->word[side[0]][side[2] ? BRICK_PLANES : z][side[1] ? BRICK_ROWS : 0], words + BRICK_ROWS * z,
-                   (size_t)rows * sizeof *words);
+            for (int y = 0; y < rows; y++) {
+                const int plane = side[2] ? BRICK_PLANES : z, row = side[1] ? BRICK_ROWS : y;
+                const uint64_t zero = zeros[BRICK_ROWS * z + y];
+                w->word[side[0]][plane][row] = words[BRICK_ROWS * z + y] & ~zero;
+                w->zero[side[0]][plane][row] = zero;
+            }
     }
 }
 
@@ -90,12 +102,17 @@ static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t 
 
 /* Rows of samples of a cube, and the same shifted to x + 1. */
 typedef struct row_pair {
-    uint64_t at, next;
+    uint64_t at, next, zero_at, zero_next;
 } row_pair;
 
 static row_pair row_of(const brick_words *w, int y, int z, uint64_t valid) {
-    const uint64_t at = w->word[0][z][y] & valid;
-    return (row_pair){at, at >> 1 | w->word[1][z][y] << 63};
+    const uint64_t at = w->word[0][z][y] & valid, zero = w->zero[0][z][y];
+    return (row_pair){at, at >> 1 | w->word[1][z][y] << 63, zero, zero >> 1 | w->zero[1][z][y] << 63};
+}
+
+/* Where the samples at the ends of an edge are on different sides. */
+static uint64_t crossed_at(uint64_t p, uint64_t q, uint64_t zero_p, uint64_t zero_q) {
+    return (p ^ q) & ~(zero_p | zero_q);
 }
 
 /* Samples of a word that exist. */
@@ -106,7 +123,7 @@ static uint64_t row_valid(const carry_job *j, uint32_t x) {
 
 /* As crossings_owned in kernels/structured/tetrahedra.cl: crossed edges that the samples of a row own. */
 static void crossings_of(const carry_job *j, const brick_words *w, int row, int plane, const uint32_t first[3],
-                         uint64_t crossed[VERTEX_TYPES_MOST]) {
+                         uint64_t crossed[EDGES_PER_SAMPLE]) {
     const int64_t *dims = j->grid->dims;
     const uint32_t left = (uint32_t)dims[0] - first[0], y = first[1] + (uint32_t)row, z = first[2] + (uint32_t)plane;
     const uint64_t valid = row_valid(j, first[0]), has_x = left > 64 ? valid : valid >> 1;
@@ -115,12 +132,17 @@ static void crossings_of(const carry_job *j, const brick_words *w, int row, int 
         (grid_parity(j->grid) + y + z) & 1 ? UINT64_C(0xaaaaaaaaaaaaaaaa) : UINT64_C(0x5555555555555555);
     const row_pair a = row_of(w, row, plane, valid), b = row_of(w, row + 1, plane, valid);
     const row_pair c = row_of(w, row, plane + 1, valid), d = row_of(w, row + 1, plane + 1, valid);
-    crossed[EDGE_X] = (a.at ^ a.next) & has_x;
-    crossed[EDGE_Y] = (a.at ^ b.at) & valid & has_y;
-    crossed[EDGE_Z] = (a.at ^ c.at) & valid & has_z;
-    crossed[EDGE_XY] = ((even & (a.at ^ b.next)) | (~even & (a.next ^ b.at))) & has_x & has_y;
-    crossed[EDGE_XZ] = ((even & (a.at ^ c.next)) | (~even & (a.next ^ c.at))) & has_x & has_z;
-    crossed[EDGE_YZ] = ((even & (a.at ^ d.at)) | (~even & (b.at ^ c.at))) & valid & has_y & has_z;
+    const uint64_t xy = crossed_at(a.at, b.next, a.zero_at, b.zero_next),
+                   yx = crossed_at(a.next, b.at, a.zero_next, b.zero_at);
+    const uint64_t xz = crossed_at(a.at, c.next, a.zero_at, c.zero_next),
+                   zx = crossed_at(a.next, c.at, a.zero_next, c.zero_at);
+    const uint64_t yz = crossed_at(a.at, d.at, a.zero_at, d.zero_at), zy = crossed_at(b.at, c.at, b.zero_at, c.zero_at);
+    crossed[EDGE_X] = crossed_at(a.at, a.next, a.zero_at, a.zero_next) & has_x;
+    crossed[EDGE_Y] = crossed_at(a.at, b.at, a.zero_at, b.zero_at) & valid & has_y;
+    crossed[EDGE_Z] = crossed_at(a.at, c.at, a.zero_at, c.zero_at) & valid & has_z;
+    crossed[EDGE_XY] = ((even & xy) | (~even & yx)) & has_x & has_y;
+    crossed[EDGE_XZ] = ((even & xz) | (~even & zx)) & has_x & has_z;
+    crossed[EDGE_YZ] = ((even & yz) | (~even & zy)) & valid & has_y & has_z;
 }
 
 static bool cube_present(const tc_grid *grid, const int64_t p[3]) {
@@ -183,7 +205,7 @@ static uint32_t type_end(uint64_t packed, int type) {
 
 /* Cells are looked at only where kernel 1 has counted fewer vertices than edges are crossed, and for the last type. */
 static void crossings_keep(const carry_job *j, uint64_t packed, const int64_t first[3],
-                           uint64_t crossed[VERTEX_TYPES_MOST]) {
+                           uint64_t crossed[EDGES_PER_SAMPLE]) {
     uint32_t begin = 0;
     for (int type = 0; type < j->edge_types; type++) {
         const uint32_t end = type == EDGE_YZ ? begin : type_end(packed, type);
@@ -205,11 +227,13 @@ static inline void edge_put(const carry_job *j, uint64_t bits, int type, int64_t
 }
 
 /* Adds the crossed edges of a row in the order of their vertices. */
-static void row_add(const carry_job *j, const uint64_t crossed[VERTEX_TYPES_MOST], int64_t owner, unsigned odd,
+static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE], const int64_t p[3],
                     edge_batch *batch) {
+    const int64_t owner = (p[2] * j->grid->dims[1] + p[1]) * j->grid->dims[0] + p[0];
+    const unsigned odd = (grid_parity(j->grid) + (unsigned)(p[1] + p[2])) & 1;
     if (batch->count + VERTEX_TYPES_MOST * 64 > BATCH_EDGES) carry_batch(j->carry, j->grid, j->isovalue, batch);
     uint32_t count = batch->count;
-    for (int type = 0; type < j->vertex_types; type++) {
+    for (int type = 0; type < j->edge_types; type++) {
         uint64_t rest = crossed[type];
         edge_put(j, rest, type, owner, odd, count, batch);
         count += rest != 0, rest &= rest - 1;
@@ -218,6 +242,18 @@ static void row_add(const carry_job *j, const uint64_t crossed[VERTEX_TYPES_MOST
         for (; rest; rest &= rest - 1) edge_put(j, rest, type, owner, odd, count++, batch);
     }
     batch->count = count;
+}
+
+/* Adds the samples of a row that are vertices: snapped ones with the edges on which they lie, others in their places.
+ */
+static void places_add(const carry_job *j, uint64_t zeros, uint64_t others, const int64_t p[3], edge_batch *batch) {
+    const int64_t owner = (p[2] * j->grid->dims[1] + p[1]) * j->grid->dims[0] + p[0];
+    for (uint64_t rest = zeros | others; rest; rest &= rest - 1, batch->count++) {
+        const int bit = __builtin_ctzll(rest);
+        int64_t *low = &batch->low[batch->count], *high = &batch->high[batch->count];
+        *low = *high = owner + bit;
+        if (zeros >> bit & 1) snapped_edge_find(&j->snapped, (int64_t[3]){p[0] + bit, p[1], p[2]}, low, high);
+    }
 }
 
 /* Prefetches a row of `count` items, each of `bytes`. */
@@ -267,30 +303,29 @@ static void brick_carry(carry_job *j, uint64_t brick, edge_batch *batch) {
         const int brick_row = __builtin_ctz(rows), row = brick_row % BRICK_ROWS, plane = brick_row / BRICK_ROWS;
         const int64_t p[3] = {first[0], first[1] + (uint32_t)row, first[2] + (uint32_t)plane};
         const uint64_t packed = j->k1.offsets[BRICK_WORDS * brick + (uint64_t)brick_row];
-        uint64_t crossed[VERTEX_TYPES_MOST];
+        uint64_t crossed[EDGES_PER_SAMPLE];
         if (p[1] >= dims[1] || p[2] >= dims[2] || batch->vertex + batch->count != vertex + (packed & 0x3fff)) {
             j->wrong = true;
             return;
         }
         crossings_of(j, &words, row, plane, first, crossed);
         if (j->grid->device->missing) crossings_keep(j, packed, p, crossed);
-        if (j->vertex_types > j->edge_types)
-            crossed[j->edge_types] = border_only(j, row_of(&words, row, plane, row_valid(j, first[0])).at, p);
-        row_add(j, crossed, (p[2] * dims[1] + p[1]) * dims[0] + p[0],
-                (grid_parity(j->grid) + (unsigned)(p[1] + p[2])) & 1, batch);
+        row_add(j, crossed, p, batch);
+        const row_pair own = row_of(&words, row, plane, row_valid(j, first[0]));
+        places_add(j, own.zero_at, j->is_closed ? border_only(j, own.at, p) : 0, p, batch);
     }
     j->vertices += batch->vertex + batch->count - vertex;
 }
 
 /* Brick n of the list; UINT64_MAX where the entry is no brick of the slab. */
 static uint64_t active_brick(const carry_job *j, uint64_t n) {
-    const uint64_t brick = j->k1.active[n] + (j->plan->words_whole ? 0 : j->slab_brick);
+    const uint64_t brick = j->k1.active[n] + j->window_brick;
     return brick >= j->slab_brick && brick < j->brick_end ? brick : UINT64_MAX;
 }
 
 static void bricks_carry(void *shared) {
     carry_job *j = shared;
-    edge_batch batch = {.has_places = j->vertex_types > j->edge_types};
+    edge_batch batch = {.has_places = j->is_closed};
     uint64_t n;
     while ((n = atomic_fetch_add(&j->next, SHARE_BRICKS)) < j->end && !j->wrong) {
         const uint64_t end = n + SHARE_BRICKS < j->end ? n + SHARE_BRICKS : j->end;
@@ -311,6 +346,7 @@ static void bricks_carry(void *shared) {
 static tc_status slab_carry(carry_job *j, uint32_t slab_index, uint32_t brick_count) {
     const slab_plan *plan = j->plan;
     const uint64_t layer = plan_bricks_per_layer(plan);
+    j->window_brick = slab_words_begin(plan, slab_index) / BRICK_PLANES * layer;
     j->slab_brick = slab_begin(plan, slab_index) / BRICK_PLANES * layer;
     j->brick_end = (slab_end(plan, j->grid, slab_index) + BRICK_PLANES - 1ull) / BRICK_PLANES * layer;
     const uint64_t end = j->slab_brick + brick_count; /* of its part of the list */
@@ -350,8 +386,6 @@ static void ends_fill(carry_job *j) {
             j->from[type][parity] = turned;
             j->to[type][parity] = across - turned;
         }
-    for (int parity = 0; parity < 2 && j->vertex_types > j->edge_types; parity++)
-        j->from[j->edge_types][parity] = j->to[j->edge_types][parity] = 0;
 }
 
 /* Buffers of the workspace, mapped while threads read them. */
@@ -373,8 +407,9 @@ static tc_status mapping_close(tc_context *context, mapping *m, tc_status status
 static tc_status mapping_open(tc_context *context, const slab_plan *plan, mapping *m) {
     const word_buffers *w = &context->work.words[0];
     const uint64_t bricks = plan->layer_count * plan_bricks_per_layer(plan), words = BRICK_WORDS * bricks;
-    const uint64_t bytes[4] = {8 * (UNIFORM_BRICKS * BRICK_WORDS + words), 8 * words, sizeof(brick_state) * bricks,
-                               4 * bricks};
+    const uint64_t zeros = BRICK_WORDS * (uint64_t)plan_zero_bricks(plan);
+    const uint64_t bytes[4] = {8 * (UNIFORM_BRICKS * BRICK_WORDS + words + zeros), 8 * words,
+                               sizeof(brick_state) * bricks, 4 * bricks};
     *m = (mapping){.buffers = {&w->words, &w->offsets, &w->bricks, &w->active}};
     tc_status status = TC_OK;
     for (int n = 0; n < 4 && !status; n++) status = buffer_map(context, m->buffers[n], bytes[n], &m->memory[n]);
@@ -386,9 +421,10 @@ void structured_keep_results(tc_grid *grid) { grid->device->carries = true; }
 bool structured_is_classified(const tc_grid *grid, const tc_extract_options *options) {
     struct device_grid *device = grid->device;
     const inside_range inside = inside_range_of(grid->type, options->isovalue);
-    if (!inside_has_surface(inside, options->closed) || method_has_zeros(options->method)) return true;
+    if (!inside_has_surface(inside, options->closed)) return true;
     return grid->context->classified_grid == grid && device->classified_options.isovalue == options->isovalue &&
            device->classified_options.method == options->method &&
+           (!method_has_zeros(options->method) || device->classified_options.snap == options->snap) &&
            !device->classified_options.closed == !options->closed &&
            (plan_of(device, options)->words_whole || device->store.words != NULL);
 }
@@ -396,26 +432,31 @@ bool structured_is_classified(const tc_grid *grid, const tc_extract_options *opt
 tc_status structured_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                            uint64_t *vertex_count) {
     struct device_grid *device = grid->device;
-    carry_job j = {.grid = grid, .plan = plan_of(device, options), .carry = c, .isovalue = options->isovalue};
+    carry_job j = {.grid = grid,
+                   .plan = plan_of(device, options),
+                   .carry = c,
+                   .isovalue = options->isovalue,
+                   .is_closed = options->closed,
+                   .snapped = snapped_edges_of(grid, options)};
+    const bool zeros = method_has_zeros(options->method);
     mapping m;
-    if (method_has_zeros(options->method)) return reference_carry(grid, options, c, vertex_count);
     *vertex_count = 0;
     if (!device->heads || !inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed))
         return TC_OK;
     for (uint32_t n = 0; n < j.plan->own_slabs; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
     if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
-    j.edge_types = methods[options->method].vertex_types;
-    j.vertex_types = j.edge_types + (options->closed ? 1 : 0);
+    j.edge_types = methods[options->method].vertex_types - (zeros ? 1 : 0);
     ends_fill(&j);
     if (!j.plan->words_whole) {
         const slab_store *s = &device->store;
-        j.k1 = (results){(const uint64_t *)s->words, (const uint64_t *)s->offsets, (const brick_state *)s->bricks,
-                         (const uint32_t *)s->active};
+        j.k1 = (results){(const uint64_t *)s->words, (const uint64_t *)s->zeros, (const uint64_t *)s->offsets,
+                         (const brick_state *)s->bricks, (const uint32_t *)s->active};
         return slabs_carry(&j);
     }
     tc_status status = mapping_open(grid->context, j.plan, &m);
     if (status) return status;
-    j.k1 =
-        (results){(const uint64_t *)m.memory[0] + UNIFORM_BRICKS * BRICK_WORDS, m.memory[1], m.memory[2], m.memory[3]};
+    const uint64_t *words = (const uint64_t *)m.memory[0] + UNIFORM_BRICKS * BRICK_WORDS;
+    j.k1 = (results){words, zeros ? words + BRICK_WORDS * (uint64_t)plan_zero_bricks(j.plan) : NULL, m.memory[1],
+                     m.memory[2], m.memory[3]};
     return mapping_close(grid->context, &m, slabs_carry(&j));
 }
