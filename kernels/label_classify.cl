@@ -54,6 +54,7 @@ inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, gl
         active |= label_cells_any(c);
         sums.y += label_cell_triangles(c);
     }
+    if (!(sums.x | sums.y)) return sums;
 #pragma unroll
     for (uint n = 0; n < LABEL_WORDS; n++)
         if (store) out.words[LABEL_WORDS * at + n] = e[n];
