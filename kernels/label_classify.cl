@@ -31,6 +31,14 @@ inline_always uint label_tile_end(const label_job *s, uint tile) {
     return min(label_tile_first(s, tile) + s->tile_bricks, tile < s->own_tiles ? s->own_bricks : s->brick_count);
 }
 
+/* Marks a row that emits something. Others of its brick may be marked by other work-items. */
+inline_always void label_row_mark(global uint *rows, uint row) {
+    if (WORK_ITEMS == 1)
+        *rows |= 1u << row;
+    else
+        atomic_or(rows, 1u << row);
+}
+
 /* Counts a row: vertices and triangles. store: its words and offsets are kept. */
 inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, global const BITS *samples,
                                     label_arrays out, bool store, uint *cells) {
@@ -58,7 +66,7 @@ inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, gl
 #pragma unroll
     for (uint n = 0; n < LABEL_WORDS; n++)
         if (store) out.words[LABEL_WORDS * at + n] = e[n];
-    if (store) atomic_or(&out.rows[brick], 1u << row);
+    if (store) label_row_mark(&out.rows[brick], row);
     *cells += (uint)popcount(active);
     return sums;
 }
@@ -72,6 +80,9 @@ inline_always uint2 label_tile_count(const label_job *s, tile_scan scan, uint nu
         const uint item = n + (uint)get_local_id(0), brick = first + item / BRICK_WORDS, row = item % BRICK_WORDS;
         uint found = 0;
         if (WORK_ITEMS == 1 && brick >= end) break;
+#if WORK_ITEMS == 1
+        if (row == 0 && brick + 1 < end) label_samples_prefetch(s, brick + 1, samples);
+#endif
         if (WORK_ITEMS == 1 && row == 0 && label_brick_uniform(s, brick, samples)) {
             n += BRICK_WORDS - 1;
             continue;

@@ -250,25 +250,24 @@ inline_always void label_row_emit(const label_job *s, label_place p, uint own, l
     }
 }
 
-/* Prefetches what kernel 1 has left of a brick's rows and of those behind it, and the samples. */
-inline_always void label_row_prefetch(uint row, label_arrays in) {
-    line_prefetch(in.words + (ulong)LABEL_WORDS * row);
-    line_prefetch(in.words + (ulong)LABEL_WORDS * row + LABEL_WORDS - 1);
-    line_prefetch(in.offsets + (ulong)LABEL_OFFSETS * row);
-    line_prefetch(in.bases + row);
+inline_always void label_row_prefetch(uint brick, uint row, label_arrays in) {
+    const ulong at = (ulong)BRICK_WORDS * brick + row;
+    line_prefetch(in.words + LABEL_WORDS * at);
+    line_prefetch(in.words + LABEL_WORDS * at + LABEL_WORDS - 1);
+    line_prefetch(in.offsets + LABEL_OFFSETS * at);
+    line_prefetch(in.bases + at);
 }
 
+/* Prefetches what kernel 1 has left of a brick's rows and of those behind it in y and z, and the samples. */
 inline_always void label_brick_prefetch(const label_job *s, uint brick, label_arrays in, global const BITS *samples) {
     const label_place p = label_place_of(s, brick, 0);
-    const uint behind = p.z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
-    for (uint rows = in.rows[brick]; rows; rows &= rows - 1)
-        label_row_prefetch(BRICK_WORDS * brick + lowest_bit(rows), in);
-    for (uint row = 0; row < BRICK_ROWS; row++) label_row_prefetch(BRICK_WORDS * (brick + behind) + row, in);
-    for (uint z = p.z; z < min(p.z + BRICK_PLANES + 1, s->nz); z++)
-        for (uint y = p.y; y < min(p.y + BRICK_ROWS + 1, s->ny); y++) {
-            global const BITS *row = samples + label_start(s, y, z, p.w);
-            for (uint n = 0; n < 64; n += 64 / sizeof(BITS)) line_prefetch(row + n);
-        }
+    const uint up = p.y + BRICK_ROWS < s->ny ? s->words_x : 0;
+    const uint deep = p.z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
+    label_row_prefetch(brick + up + deep, 0, in);
+    for (uint rows = in.rows[brick]; rows; rows &= rows - 1) label_row_prefetch(brick, lowest_bit(rows), in);
+    for (uint z = 0; z < BRICK_PLANES; z++) label_row_prefetch(brick + up, BRICK_ROWS * z, in);
+    for (uint y = 0; y < BRICK_ROWS; y++) label_row_prefetch(brick + deep, y, in);
+    label_samples_prefetch(s, brick, samples);
 }
 
 /* Numbers of the first vertices of the tiles of a brick and of those that lie 0 or 1 bricks further in x, y and z. */

@@ -50,6 +50,7 @@ inline_always uint label_interface_emit(const label_job *s, label_numbers v, uin
     const uint inner = label_pick(l, interface >> 16 & 3), outer = label_pick(l, interface >> 18 & 3);
     const uint count = interface >> 20;
     const bool turned = outer - 1 < inner - 1; /* the lower label comes first, and the background last */
+    const uint2 labels = turned ? (uint2)(outer, inner) : (uint2)(inner, outer);
     const uint v0 = label_vertex(v, map[interface & 15]);
     const uint v1 = label_vertex(v, map[interface >> 4 & 15]), v2 = label_vertex(v, map[interface >> 8 & 15]);
     const uint v3 = count > 1 ? label_vertex(v, map[interface >> 12 & 15]) : v2;
@@ -58,10 +59,10 @@ inline_always uint label_interface_emit(const label_job *s, label_numbers v, uin
     LABEL_OUT uint *to = out.triangles, *sides = out.labels;
     const uint second = count > 1 ? b : turned ? v1 : v2;
     to[0] = v0, to[1] = s->mirrored ? second : a, to[2] = s->mirrored ? a : second;
-    sides[0] = turned ? outer : inner, sides[1] = turned ? inner : outer;
+    vstore2(labels, 0, sides);
     if (count > 1) {
         to[3] = v0, to[4] = s->mirrored ? c : b, to[5] = s->mirrored ? b : c;
-        sides[2] = sides[0], sides[3] = sides[1];
+        vstore2(labels, 1, sides);
     }
     return count;
 }
