@@ -109,9 +109,7 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
     context->options.cl_context = NULL;
     context->options.cl_queue = NULL;
     context->options.expert = NULL;
-    if (!o.max_memory_bytes && !(context->spares = host_spares_create()))
-        status = (tc_status)fail(TC_ERROR_MEMORY, "no memory for a context");
-    if (!status && o.engine == TC_ENGINE_OPENCL) status = opencl_begin(context, &o);
+    if (o.engine == TC_ENGINE_OPENCL) status = opencl_begin(context, &o);
     if (status) {
         tc_context_destroy(context);
         return status;
@@ -148,8 +146,6 @@ void tc_context_destroy(tc_context *context) {
     }
     whole_cases_release(context->whole_cases);
     for (int n = 0; n < SMOOTHING_BLOCKS; n++) host_block_release(&context->smoothing[n]);
-    host_spares_close(context->spares);
-    host_spares_leave(context->spares);
     free(context);
 }
 

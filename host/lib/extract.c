@@ -124,7 +124,7 @@ tc_status tc_extract(tc_grid *grid, const tc_extract_options *options, tc_mesh *
     tc_extract_options o;
     if (out && *out) mesh_clear(*out);
     if (!grid || !out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract needs a grid and a place for the mesh");
-    tc_mesh *mesh = *out ? *out : mesh_create(grid->context->spares);
+    tc_mesh *mesh = *out ? *out : calloc(1, sizeof *mesh);
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
     mesh_clear(mesh);
     tc_status status = extract_options_take(&o, options);

@@ -138,7 +138,7 @@ tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options,
     tc_interval_options o;
     if (out && *out) interval_clear(*out);
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract_interval needs a place for the interval volume");
-    tc_interval *interval = *out ? *out : interval_create(grid ? grid->context->spares : NULL);
+    tc_interval *interval = *out ? *out : calloc(1, sizeof *interval);
     if (!interval) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for an interval volume");
     interval_clear(interval);
     tc_status status = interval_begin(grid, options, &o, "tc_extract_interval");

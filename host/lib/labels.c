@@ -70,7 +70,7 @@ tc_status tc_extract_labels(tc_grid *grid, const tc_labels_options *options, tc_
     if (out && *out) mesh_clear(*out);
     if (!grid || !out)
         return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_extract_labels needs a grid and a place for the mesh");
-    tc_mesh *mesh = *out ? *out : mesh_create(grid->context->spares);
+    tc_mesh *mesh = *out ? *out : calloc(1, sizeof *mesh);
     if (!mesh) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a mesh");
     mesh_clear(mesh);
     tc_status status = options_take(grid, &o, options);

@@ -29,14 +29,6 @@ uint64_t interval_bytes(const interval_size *size) {
     return 3 * sizeof(float) * interval_first(size, BLOCK_COUNT) + TETRAHEDRON_BYTES * size->tetrahedra;
 }
 
-tc_interval *interval_create(host_spares *spares) {
-    tc_interval *interval = calloc(1, sizeof *interval);
-    if (!interval) return NULL;
-    interval->positions.spares = interval->tetrahedra.spares = spares;
-    interval->spares = host_spares_share(spares);
-    return interval;
-}
-
 tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
     const uint64_t vertices = interval_first(size, BLOCK_COUNT);
     if (vertices > UINT32_MAX)
@@ -91,6 +83,5 @@ void tc_interval_destroy(tc_interval *interval) {
     if (!interval) return;
     host_block_release(&interval->positions);
     host_block_release(&interval->tetrahedra);
-    host_spares_leave(interval->spares);
     free(interval);
 }

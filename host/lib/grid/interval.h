@@ -24,7 +24,6 @@ struct tc_interval {
     interval_size size;
     double origin[3]; /* that positions are relative to */
     host_block positions, tetrahedra;
-    host_spares *spares;
     uint32_t slab_count;
     tc_timings timings;
 };
@@ -38,9 +37,6 @@ uint64_t interval_first(const interval_size *size, int block);
 
 /* Bytes of positions and tetrahedra. */
 uint64_t interval_bytes(const interval_size *size);
-
-/* An empty one, whose memory comes from spares and goes back to them; NULL: none. Returns NULL without memory. */
-tc_interval *interval_create(host_spares *spares);
 
 /* Sets the size and reserves the memory; checks that indices fit 32 bits. */
 tc_status interval_allocate(tc_interval *interval, const interval_size *size);

@@ -7,15 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-tc_mesh *mesh_create(host_spares *spares) {
-    tc_mesh *mesh = calloc(1, sizeof *mesh);
-    if (!mesh) return NULL;
-    for (int channel = 0; channel < CHANNEL_COUNT; channel++) mesh->channels[channel].spares = spares;
-    mesh->triangles.spares = mesh->boundary_labels.spares = spares;
-    mesh->spares = host_spares_share(spares);
-    return mesh;
-}
-
 tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, channel_set made) {
     if (vertex_count > UINT32_MAX)
         return (tc_status)fail(TC_ERROR_LIMIT,
@@ -77,6 +68,5 @@ void tc_mesh_destroy(tc_mesh *mesh) {
     for (int channel = 0; channel < CHANNEL_COUNT; channel++) host_block_release(&mesh->channels[channel]);
     host_block_release(&mesh->triangles);
     host_block_release(&mesh->boundary_labels);
-    host_spares_leave(mesh->spares);
     free(mesh);
 }

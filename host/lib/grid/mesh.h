@@ -12,7 +12,6 @@ struct tc_mesh {
     uint64_t vertex_count;
     uint64_t triangle_count;
     uint64_t active_cell_count;
-    host_spares *spares;
     double origin[3]; /* that positions are relative to */
     channel_set made;
     host_block channels[CHANNEL_COUNT];
@@ -22,9 +21,6 @@ struct tc_mesh {
     uint32_t slab_count;
     tc_timings timings;
 };
-
-/* An empty mesh, whose memory comes from spares and goes back to them; NULL: none. Returns NULL without memory. */
-tc_mesh *mesh_create(host_spares *spares);
 
 /* Sets the counts and reserves the memory; checks that indices fit 32 bits. */
 tc_status mesh_allocate(tc_mesh *mesh, uint64_t vertex_count, uint64_t triangle_count, channel_set made);

@@ -102,7 +102,6 @@ struct tc_context {
     tc_device_info info;
     pid_t process;                          /* that made it */
     host_block smoothing[SMOOTHING_BLOCKS]; /* of label maps: kept between extractions */
-    host_spares *spares;                    /* memory of meshes that were destroyed; NULL where memory is bounded */
     bool in_place;                          /* the device works in the host's memory: nothing is copied */
     cl_device_id device;
     cl_context context;
