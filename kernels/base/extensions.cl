@@ -158,4 +158,19 @@ inline_always uint16 words_with(uint16 a, uint slots, uint16 b) {
 
 #endif
 
+/* ---------------------------------------------------------------------------------------------------------- stores */
+
+/* Copies words of 4 bytes. Whole cache lines bypass the caches, which saves reading lines that are overwritten. */
+inline_always void lines_store(const void *words, uint count, global void *out) {
+    const uint *from = (const uint *)words;
+    global uint *to = (global uint *)out;
+    uint n = 0, ahead = min(count, (uint)(-(size_t)to / 4 % 16));
+    loop_short for (; n < ahead; n++) to[n] = from[n];
+    for (; n + 16 <= count; n += 16) {
+        uint16 line = *(const words16 *)(from + n);
+        line_store(line, (global uint16 *)(to + n));
+    }
+    loop_short for (; n < count; n++) to[n] = from[n];
+}
+
 #endif

@@ -31,33 +31,54 @@ inline_always uint label_tile_end(const label_job *s, uint tile) {
     return min(label_tile_first(s, tile) + s->tile_bricks, tile < s->own_tiles ? s->own_bricks : s->brick_count);
 }
 
+/* Marks a row that emits something. Others of its brick may be marked by other work-items. */
+inline_always void label_row_mark(global uint *rows, uint row) {
+    if (WORK_ITEMS == 1)
+        *rows |= 1u << row;
+    else
+        atomic_or(rows, 1u << row);
+}
+
 /* Counts a row: vertices and triangles. store: its words and offsets are kept. */
 inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, global const BITS *samples,
                                     label_arrays out, bool store, uint *cells) {
     const label_place p = label_place_of(s, brick, row);
-    ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES], active = 0;
+    ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES], active = 0, more = 0;
     uint2 sums = 0;
     if (p.y >= s->ny || p.z >= s->z1) return sums;
     label_edges_make(s, p, samples, e);
     if (!label_edges_any(e)) return sums;
     const ulong even = label_even(s, p.y, p.z), cubes = label_cubes(s, p);
     const ulong at = (ulong)BRICK_WORDS * brick + row;
-    label_types(even, e, t);
-#pragma unroll
-    for (uint n = 0; n < LABEL_ROW_TYPES; n++) { /* all unrolled: a variable index would need a stack */
-        if (store && n < LABEL_SHARED_TYPES) out.offsets[LABEL_OFFSETS * at + n] = (ushort)sums.x;
-        sums.x += (uint)popcount(t[n]);
-    }
 #pragma unroll
     for (uint n = 0; n < 5; n++) {
-        const label_cells c = label_cells_in(label_tetrahedra(even, e, n), cubes);
-        active |= label_cells_any(c);
-        sums.y += label_cell_triangles(c);
+        const label_sums c = label_tetrahedra(even, e, n);
+        active |= (c.ones | c.fours) & cubes;
+        more |= c.fours & (c.ones | c.twos) & cubes;
+        sums.y += (uint)popcount(c.ones & cubes) + 2 * (uint)popcount(c.fours & cubes);
     }
+    if (more) { /* cells with three labels, and with four */
+#pragma unroll
+        for (uint n = 0; n < 5; n++) {
+            const label_sums c = label_tetrahedra(even, e, n);
+            sums.y += 2 * (uint)popcount(c.fours & c.ones & cubes) + 10 * (uint)popcount(c.fours & c.twos & cubes);
+        }
+    }
+    label_types(even, e, t);
+#pragma unroll
+    for (uint n = 0; n < LABEL_SHARED_TYPES; n++) { /* unrolled: a variable index would need a stack */
+        if (store) out.offsets[LABEL_OFFSETS * at + n] = (ushort)sums.x;
+        sums.x += (uint)popcount(t[n]);
+    }
+    if (more) { /* vertices within such cubes */
+#pragma unroll
+        for (uint n = LABEL_SHARED_TYPES; n < LABEL_ROW_TYPES; n++) sums.x += (uint)popcount(t[n]);
+    }
+    if (!(sums.x | sums.y)) return sums;
 #pragma unroll
     for (uint n = 0; n < LABEL_WORDS; n++)
         if (store) out.words[LABEL_WORDS * at + n] = e[n];
-    if (store) atomic_or(&out.rows[brick], 1u << row);
+    if (store) label_row_mark(&out.rows[brick], row);
     *cells += (uint)popcount(active);
     return sums;
 }
@@ -71,6 +92,9 @@ inline_always uint2 label_tile_count(const label_job *s, tile_scan scan, uint nu
         const uint item = n + (uint)get_local_id(0), brick = first + item / BRICK_WORDS, row = item % BRICK_WORDS;
         uint found = 0;
         if (WORK_ITEMS == 1 && brick >= end) break;
+#if WORK_ITEMS == 1
+        if (row == 0 && brick + 1 < end) label_samples_prefetch(s, brick + 1, samples);
+#endif
         if (WORK_ITEMS == 1 && row == 0 && label_brick_uniform(s, brick, samples)) {
             n += BRICK_WORDS - 1;
             continue;

@@ -1,8 +1,6 @@
 /*
- * label_emit.cl - kernel 2 of label maps: vertices and triangles of the bricks that emit something
- *
- * Groups take bricks by ticket; each team, of 32 work-items or one, a row of them at a time. One of the team makes the
- * words and numbers that the row's cubes need, then each work-item has cubes of its own.
+ * label_emit.cl - kernel 2 of label maps: vertices and triangles of the bricks that emit something, which groups take
+ * by ticket
  */
 #ifndef LABEL_EMIT_CL
 #define LABEL_EMIT_CL
@@ -13,6 +11,12 @@
 #include "label_emit_groups.cl"
 #endif
 
+/* Active bricks that a group takes at once: many where there are many. Groups then write to different pages, and seldom
+ * wait for an atomic operation, which comes after all stores that bypass the caches. */
+#define LABEL_RUN_LEAST      8
+#define LABEL_RUN_MOST       512
+#define LABEL_RUNS_PER_GROUP 16
+
 kernel void label_emit(label_job s, global const BITS *samples, global ulong *words, global ushort *offsets,
                        global label_row_base *bases, global uint *rows, global const uint *active, global uint *state,
                        global const uint *tables, global float *positions, global uint *triangles,
@@ -22,20 +26,16 @@ kernel void label_emit(label_job s, global const BITS *samples, global ulong *wo
     const label_arrays in = {words, offsets, bases, rows};
     const label_mesh out = {positions, triangles, labels};
     global const uint *tiles = state + LABEL_HEAD_WORDS;
-    const uint count = state[LABEL_ACTIVE_BRICKS], team = (uint)get_local_id(0) / LABEL_TEAM;
-    const uint lane = (uint)get_local_id(0) % LABEL_TEAM;
-    uint number = 0;
-    while (number < count) {
-        number = ticket_take(&state[LABEL_EMIT_TICKET], shared);
-        const uint brick = number < count ? active[number] : 0;
-        const label_near near = label_near_of(&s, brick, tiles);
-        for (uint first = 0; first < BRICK_WORDS; first += LABEL_TEAMS) {
-            const uint row = first + team;
-            const bool is_there = number < count && row < BRICK_WORDS && (rows[brick] >> row & 1);
-            if (is_there && lane == 0) label_row_make(&s, label_place_of(&s, brick, row), near, in, tiles, &made[team]);
-            group_barrier();
-            if (is_there) label_row_emit(&s, &made[team], lane, samples, tables, out);
-            group_barrier();
+    const uint count = state[LABEL_ACTIVE_BRICKS];
+    const uint run_bricks =
+        clamp(count / (LABEL_RUNS_PER_GROUP * (uint)get_num_groups(0)), (uint)LABEL_RUN_LEAST, (uint)LABEL_RUN_MOST);
+    label_work work;
+    uint first = 0;
+    while (first < count) {
+        first = run_bricks * ticket_take(&state[LABEL_EMIT_TICKET], shared);
+        for (uint n = first; n < min(first + run_bricks, count); n++) {
+            if (n + 1 < count) label_brick_prefetch(&s, active[n + 1], in, samples);
+            label_brick_emit(&s, active[n], in, tiles, samples, tables, out, made, &work);
         }
     }
 }

@@ -1,5 +1,8 @@
 /*
- * label_emit_groups.cl - a row of a label map where 32 work-items share it: each has cubes of its own
+ * label_emit_groups.cl - kernel 2 of label maps where work-items share bricks
+ *
+ * Each team, of 32 work-items, takes a row of the brick at a time. One of the team makes the words and numbers that the
+ * row's cubes need, then each work-item has cubes of its own.
  */
 #ifndef LABEL_EMIT_GROUPS_CL
 #define LABEL_EMIT_GROUPS_CL
@@ -21,7 +24,9 @@ inline_always void label_cube_emit(const label_job *s, local const label_row *r,
     const uint odd = (s->parity + 64 * p.w + x + p.y + p.z) & 1;
     const ulong plane = (ulong)s->nx * s->ny;
     global const BITS *first = samples + label_start(s, p.y, p.z, p.w) + x;
-    uint n = r->triangles + label_triangles_before(r, x);
+    const ulong n = r->triangles + label_triangles_before(r, x);
+    const label_triangles mesh = {out.triangles + s->triangle_offset + 3 * n, out.labels + s->label_offset + 2 * n};
+    uint count = 0;
     for (uint t = 0; t < 5; t++) {
         if (!(label_cells_any(r->cells[t]) >> x & 1)) continue;
         const uint corners = tables[LABEL_MAPS + (5 * odd + t) * LABEL_MAP_WORDS + LABEL_MAP_CORNERS];
@@ -29,7 +34,7 @@ inline_always void label_cube_emit(const label_job *s, local const label_row *r,
     first[(corners >> 4 * (n)&1) + (corners >> (4 * (n) + 1) & 1) * s->nx + (corners >> (4 * (n) + 2) & 1) * plane]
         const uint4 own = (uint4)(LABEL_CORNER(0), LABEL_CORNER(1), LABEL_CORNER(2), LABEL_CORNER(3));
 #undef LABEL_CORNER
-        n += label_cell_emit(s, v, own, t, odd, n, tables, out);
+        count += label_cell_emit(s, v, own, t, odd, tables, label_triangles_after(mesh, count));
     }
 }
 
@@ -46,6 +51,28 @@ inline_always void label_row_emit(const label_job *s, local const label_row *r, 
                 label_vertex_emit(s, label_line_of(s, p, type, odd, tables), index,
                                   label_vertex(v, LABEL_VERTEX(type, 0)), out);
         if (cubes >> x & 1) label_cube_emit(s, r, x, samples, tables, out);
+    }
+}
+
+/* Nothing is needed of private memory, and work-items hide the time that memory takes. */
+typedef struct label_work {
+    uint none;
+} label_work;
+
+inline_always void label_brick_prefetch(const label_job *s, uint brick, label_arrays in, global const BITS *samples) {}
+
+inline_always void label_brick_emit(const label_job *s, uint brick, label_arrays in, global const uint *tiles,
+                                    global const BITS *samples, global const uint *tables, label_mesh out,
+                                    local label_row *made, label_work *work) {
+    const uint team = (uint)get_local_id(0) / LABEL_TEAM, lane = (uint)get_local_id(0) % LABEL_TEAM;
+    const label_near near = label_near_of(s, brick, tiles);
+    for (uint first = 0; first < BRICK_WORDS; first += LABEL_TEAMS) {
+        const uint row = first + team;
+        const bool is_there = row < BRICK_WORDS && (in.rows[brick] >> row & 1);
+        if (is_there && lane == 0) label_row_make(s, label_place_of(s, brick, row), near, in, tiles, &made[team]);
+        group_barrier();
+        if (is_there) label_row_emit(s, &made[team], lane, samples, tables, out);
+        group_barrier();
     }
 }
 

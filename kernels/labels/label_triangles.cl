@@ -28,37 +28,55 @@ inline_always uint label_pattern(uint4 l) {
            (uint)(l.y != l.w) << 4 | (uint)(l.z != l.w) << 5;
 }
 
-/* The two triangles of an interface, or the one; returns how many. n: the first one's index. */
+/* Where the next triangle and its labels go: to the mesh, or where a work-item is alone to memory of its own first. */
+#if WORK_ITEMS == 1
+#define LABEL_OUT private
+#else
+#define LABEL_OUT global
+#endif
+
+typedef struct label_triangles {
+    LABEL_OUT uint *triangles, *labels;
+} label_triangles;
+
+inline_always label_triangles label_triangles_after(label_triangles to, uint count) {
+    label_triangles after = {to.triangles + 3 * count, to.labels + 2 * count};
+    return after;
+}
+
+/* The two triangles of an interface, or the one; returns how many. */
 inline_always uint label_interface_emit(const label_job *s, label_numbers v, uint interface, uint4 l,
-                                        global const uint *map, uint n, label_mesh out) {
+                                        global const uint *map, label_triangles out) {
     const uint inner = label_pick(l, interface >> 16 & 3), outer = label_pick(l, interface >> 18 & 3);
     const uint count = interface >> 20;
     const bool turned = outer - 1 < inner - 1; /* the lower label comes first, and the background last */
+    const uint2 labels = turned ? (uint2)(outer, inner) : (uint2)(inner, outer);
     const uint v0 = label_vertex(v, map[interface & 15]);
     const uint v1 = label_vertex(v, map[interface >> 4 & 15]), v2 = label_vertex(v, map[interface >> 8 & 15]);
     const uint v3 = count > 1 ? label_vertex(v, map[interface >> 12 & 15]) : v2;
     /* a fan of v0, the others in this order or the reverse; mirrored: each triangle is turned over by itself */
     const uint a = turned ? v3 : v1, b = v2, c = turned ? v1 : v3;
-    global uint *to = out.triangles + s->triangle_offset + 3ul * n, *sides = out.labels + s->label_offset + 2ul * n;
+    LABEL_OUT uint *to = out.triangles, *sides = out.labels;
     const uint second = count > 1 ? b : turned ? v1 : v2;
     to[0] = v0, to[1] = s->mirrored ? second : a, to[2] = s->mirrored ? a : second;
-    sides[0] = turned ? outer : inner, sides[1] = turned ? inner : outer;
+    vstore2(labels, 0, sides);
     if (count > 1) {
         to[3] = v0, to[4] = s->mirrored ? c : b, to[5] = s->mirrored ? b : c;
-        sides[2] = sides[0], sides[3] = sides[1];
+        vstore2(labels, 1, sides);
     }
     return count;
 }
 
-/* Triangles of tetrahedron t of a cube of that parity; labels: of its corners. n: the first one's index. Returns how
- * many. */
-inline_always uint label_cell_emit(const label_job *s, label_numbers v, uint4 labels, uint t, uint odd, uint n,
-                                   global const uint *tables, label_mesh out) {
+/* Triangles of tetrahedron t of a cube of that parity; labels: of its corners. Returns how many. */
+inline_always uint label_cell_emit(const label_job *s, label_numbers v, uint4 labels, uint t, uint odd,
+                                   global const uint *tables, label_triangles out) {
     global const uint *map = tables + LABEL_MAPS + (5 * odd + t) * LABEL_MAP_WORDS;
     global const uint *interfaces = tables + LABEL_CASE_WORDS * label_pattern(labels);
-    const uint count = interfaces[0], first = n;
-    for (uint m = 1; m <= count; m++) n += label_interface_emit(s, v, interfaces[m], labels, map, n, out);
-    return n - first;
+    const uint count = interfaces[0];
+    uint n = 0;
+    for (uint m = 1; m <= count; m++)
+        n += label_interface_emit(s, v, interfaces[m], labels, map, label_triangles_after(out, n));
+    return n;
 }
 
 #endif

@@ -54,6 +54,16 @@ inline_always void label_edges_make(const label_job *s, label_place p, global co
     e[EY_XZ1] = e[EY_Z1] >> 1 | (c1[63] != d1[63] ? yz1 : 0);
 }
 
+/* Prefetches the samples of a brick and of the next row and plane. */
+inline_always void label_samples_prefetch(const label_job *s, uint brick, global const BITS *samples) {
+    const label_place p = label_place_of(s, brick, 0);
+    for (uint z = p.z; z < min(p.z + BRICK_PLANES + 1, s->nz); z++)
+        for (uint y = p.y; y < min(p.y + BRICK_ROWS + 1, s->ny); y++) {
+            global const BITS *row = samples + label_start(s, y, z, p.w);
+            for (uint n = 0; n < 64; n += 64 / sizeof(BITS)) line_prefetch(row + n);
+        }
+}
+
 /* Whether a brick, with the next row, plane and column, has one label: it then emits nothing. */
 inline_always bool label_brick_uniform(const label_job *s, uint brick, global const BITS *samples) {
     const label_place p = label_place_of(s, brick, 0);

@@ -32,19 +32,6 @@ inline_always uint pattern_at(ulong8 corners, uint bit) {
     return (uint)(((as_ulong(inside) & 0x8040201008040201ul) * 0x0101010101010101ul) >> 56);
 }
 
-/* Copies words of 4 bytes. Whole cache lines bypass the caches, which saves reading lines that are overwritten. */
-inline_always void lines_store(const void *words, uint count, global void *out) {
-    const uint *from = (const uint *)words;
-    global uint *to = (global uint *)out;
-    uint n = 0, ahead = min(count, (uint)(-(size_t)to / 4 % 16));
-    loop_short for (; n < ahead; n++) to[n] = from[n];
-    for (; n + 16 <= count; n += 16) {
-        uint16 line = *(const words16 *)(from + n);
-        line_store(line, (global uint16 *)(to + n));
-    }
-    loop_short for (; n < count; n++) to[n] = from[n];
-}
-
 /* --------------------------------------------------------------------------------------------------------- vertices */
 
 #ifdef REAL

@@ -190,6 +190,15 @@ inline_always void bound_prefetch(const complex_job *c, bound_slots b, uint n, u
     for (uint m = 0; m < 4 * active; m++) line_prefetch(b.table + slots[m]);
 }
 
+/* The same of its tetrahedra, and of the slots themselves. */
+inline_always void tetrahedra_prefetch(uint n, const volume_emit *e) {
+    if (n >= e->low->cluster_count) return;
+    const volume_cluster c = e->clusters[n];
+    for (uint m = 0; m < CLUSTER_POINTS && c.low; m += 16) line_prefetch(e->tetrahedra + (ulong)CLUSTER_POINTS * n + m);
+    if (nibbles_mixed(c.low)) line_prefetch(slots_of(e->low, e->low_slots, n, 0));
+    if (nibbles_mixed(c.high)) line_prefetch(slots_of(e->high, e->high_slots, n, 0));
+}
+
 inline_always void slots_prefetch(uint n, const volume_emit *e) {
     if (n >= e->low->cluster_count) return;
     bound_prefetch(e->low, e->low_slots, n, e->clusters[n].low);
@@ -226,6 +235,7 @@ inline_always void item_store(uint n, const volume_emit *e) {
 inline_always void volume_tile_emit(uint number, const volume_emit *e) {
     const uint items = 1u << e->v->tile_shift;
     for (uint m = 0; m < items; m++) {
+        tetrahedra_prefetch(number * items + m + 2 * CLUSTERS_AHEAD, e);
         slots_prefetch(number * items + m + CLUSTERS_AHEAD, e);
         item_store(number * items + m, e);
     }

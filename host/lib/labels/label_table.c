@@ -14,6 +14,14 @@ static uint32_t vertex_word(owned_edge v) {
     return LABEL_VERTEX(first + v.type, (uint32_t)v.dx);
 }
 
+/* The slot of an edge of a cube: that of the same edge at the cube's own x, or so many more. */
+static uint8_t edge_slot(unsigned edge) {
+    const owned_edge *e = &cube_edges[edge];
+    unsigned same = 0;
+    while (cube_edges[same].dy != e->dy || cube_edges[same].dz != e->dz || cube_edges[same].type != e->type) same++;
+    return (uint8_t)(same + (e->dx ? LABEL_SLOT_NEXT : 0));
+}
+
 static uint32_t interface_word(const label_interface *i) {
     uint32_t vertices = 0;
     for (unsigned n = 0; n < 4; n++) vertices |= (uint32_t)i->vertices[n] << 4 * n;
@@ -28,7 +36,7 @@ static void cubes_make(bool mirrored, uint32_t *words) {
     for (unsigned n = 0; n < 2 * CASES_TWO_SIGNS; n++) {
         cube_case *c = &cases[n];
         for (unsigned at = 0; at < 3u * c->triangle_count; at++)
-            c->edges[at / 3][at % 3] = (uint8_t)vertex_word(cube_edges[c->edges[at / 3][at % 3]]);
+            c->edges[at / 3][at % 3] = edge_slot(c->edges[at / 3][at % 3]);
     }
     memcpy(words, cases, sizeof cases);
 }

@@ -172,7 +172,7 @@ static bool lists_reserve(neighbour_lists *lists, host_block *block) {
         if (lists->ranges[n].room > UINT32_MAX) return false;
         room += lists->ranges[n].room;
     }
-    if (host_block_reserve(block, (room + 1) * sizeof(uint32_t))) return false;
+    if (host_block_reserve(block, (room + NEIGHBOURS_AHEAD + UINT8_MAX) * sizeof(uint32_t))) return false;
     uint32_t *vertices = block->memory;
     for (uint32_t n = 0; n < lists->range_count; n++) {
         lists->ranges[n].vertices = vertices;

@@ -27,8 +27,9 @@ typedef struct neighbour_lists {
 
 /* Vertices on a border have the neighbours along it; else those where more than two triangles meet in an edge have the
  * neighbours along such edges; all others have all. They lie in `arrays` and `lists`, which are made as large as is
- * needed; states: NEIGHBOUR_STATE_BYTES per vertex, whose content is lost. */
-enum { NEIGHBOUR_STATE_BYTES = 16 };
+ * needed; states: NEIGHBOUR_STATE_BYTES per vertex, whose content is lost. NEIGHBOURS_AHEAD entries behind the
+ * lists, and some more, may be read and mean nothing. */
+enum { NEIGHBOUR_STATE_BYTES = 16, NEIGHBOURS_AHEAD = 512 };
 tc_status neighbours_find(const tc_mesh *mesh, void *states, host_block *arrays, host_block *lists,
                           neighbour_lists *out);
 

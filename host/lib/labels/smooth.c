@@ -21,6 +21,10 @@ typedef int32_t bits __attribute__((vector_size(16)));
 
 enum { PAST = 4 }; /* floats behind an array, of which the last vertex's read takes one */
 
+/* A vertex of the next layer of bricks lies far away in memory. Neighbours are prefetched NEIGHBOURS_AHEAD entries of
+ * the lists before they are read, as many for each vertex as most have. */
+enum { PREFETCHED = 6 };
+
 static const float reach = 0.45f; /* cells, along each axis: surfaces on either side of a sample keep apart */
 static const float pull = 0.75f;  /* of the way to the mean of the neighbours */
 
@@ -128,6 +132,8 @@ static void range_move(const smoothing *s, const neighbour_range *r) {
         const uint32_t *neighbours = vertices + starts[n], count = counts[n];
         const vector old = vector_load(from, vertex), place = vector_load(places, vertex);
         vector sum = {0, 0, 0, 0};
+        for (uint32_t m = 0; m < PREFETCHED; m++)
+            __builtin_prefetch(from + 3 * (uint64_t)neighbours[NEIGHBOURS_AHEAD + m]);
         for (uint32_t m = 0; m < count; m++) sum += vector_load(from, neighbours[m]) - old;
         vector at = old + shares[count] * sum;
         at = is_straight && !fixed[n] ? constrain_straight(most, place, at) : constrain(s, fixed[n], place, at);
