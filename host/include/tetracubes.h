@@ -29,7 +29,7 @@
  * Errors. Calls that can fail return a tc_status; tc_message() then says, for the calling thread, what was wrong and
  * what to do. Any of them may return TC_ERROR_ARGUMENT or TC_ERROR_MEMORY; those that use a context with OpenCL also
  * TC_ERROR_DEVICE; those that call a progress callback also TC_ERROR_CANCELLED. Further errors are named at the call.
- * On failure outputs are zero, except the arrays that tc_interpolate_field, tc_interpolate_interval, tc_emit and
+ * On failure outputs are zero, except the arrays that tc_interpolate_field, tc_interpolate_interval_volume, tc_emit and
  * tc_count_piece fill, whose content is then undefined. The library never prints, exits or aborts on data.
  *
  * Mistakes of the caller end in TC_ERROR_ARGUMENT, not in a crash, where they can be seen: NULL, and numbers, sizes,
@@ -539,23 +539,23 @@ TC_API tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *o
  * within in a tetrahedron is a convex polyhedron. It is cut by cones from its first vertex over the faces without it,
  * and faces likewise, in one order of all vertices: samples by number; then crossings of low, then those of high, by
  * the lower and the higher sample of their edge. So neighbours agree on every face, and no points are added. */
-typedef struct tc_interval_options {
-    size_t struct_size; /* set by tc_interval_options_init */
+typedef struct tc_interval_volume_options {
+    size_t struct_size; /* set by tc_interval_volume_options_init */
     double low, high;   /* low < high; -INFINITY or INFINITY, not both: there is no such bound */
-} tc_interval_options;
+} tc_interval_volume_options;
 
 /* The sizes of an interval volume. Vertices are in three blocks: samples, crossings of low, crossings of high. */
-typedef struct tc_interval_counts {
-    size_t struct_size;                           /* set by the caller: sizeof(tc_interval_counts) */
+typedef struct tc_interval_volume_counts {
+    size_t struct_size;                           /* set by the caller: sizeof(tc_interval_volume_counts) */
     uint64_t sample_count, low_count, high_count; /* vertices in each block */
     uint64_t tetrahedron_count;
     uint64_t interval_bytes; /* of positions and tetrahedra */
     double classify_ms;
-} tc_interval_counts;
+} tc_interval_volume_counts;
 
-/* An interval volume in host memory. The arrays belong to the tc_interval. */
-typedef struct tc_interval_data {
-    size_t struct_size;    /* set by the caller: sizeof(tc_interval_data) */
+/* An interval volume in host memory. The arrays belong to the tc_interval_volume. */
+typedef struct tc_interval_volume_data {
+    size_t struct_size;    /* set by the caller: sizeof(tc_interval_volume_data) */
     uint64_t vertex_count; /* sum of the three blocks */
     uint64_t sample_count, low_count, high_count;
     uint64_t tetrahedron_count;
@@ -566,15 +566,16 @@ typedef struct tc_interval_data {
     uint32_t reserved;          /* 0 */
     tc_timings timings;
     double origin[3]; /* as tc_grid_origin tells it */
-} tc_interval_data;
+} tc_interval_volume_data;
 
-typedef struct tc_interval tc_interval;
+typedef struct tc_interval_volume tc_interval_volume;
 
 /* Defaults: no bounds, which is not enough: set low, high or both. */
-TC_API void tc_interval_options_init(tc_interval_options *options);
+TC_API void tc_interval_volume_options_init(tc_interval_volume_options *options);
 
-/* Counts only. Errors as of tc_extract_interval. */
-TC_API tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *options, tc_interval_counts *counts);
+/* Counts only. Errors as of tc_extract_interval_volume. */
+TC_API tc_status tc_count_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                          tc_interval_volume_counts *counts);
 
 /* Makes an interval volume, of structured grids and of grids of tetrahedra. *interval NULL: a new one is made, the
  * caller's to destroy before the context. Else *interval, of the same context, is overwritten and its memory used
@@ -584,24 +585,25 @@ TC_API tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *opt
  * vertices and triangles of surfaces; tetrahedra of a cube by its five, then by case. Grids of tetrahedra: samples by
  * point number, of points that a tetrahedron without missing samples has; tetrahedra by that which they are a part of.
  *
- * TC_ERROR_MEMORY, with the bytes that it takes, where the host has not so much: tc_count_interval tells them before.
- * TC_ERROR_LIMIT for more than 2^32 - 1 vertices, and where eight planes of samples are too large for the kernels.
- * TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the OpenCL engine for u32, i32 and f64 samples on a
- * device without fp64: use the reference engine. */
-TC_API tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options, tc_interval **interval);
+ * TC_ERROR_MEMORY, with the bytes that it takes, where the host has not so much: tc_count_interval_volume tells them
+ * before. TC_ERROR_LIMIT for more than 2^32 - 1 vertices, and where eight planes of samples are too large for the
+ * kernels. TC_ERROR_ARGUMENT for pieces of a grid. TC_ERROR_DEVICE under the OpenCL engine for u32, i32 and f64 samples
+ * on a device without fp64: use the reference engine. */
+TC_API tc_status tc_extract_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                            tc_interval_volume **interval);
 
 /* Fills *data. Its pointers stay valid until the interval volume is made anew or destroyed. */
-TC_API tc_status tc_interval_get(const tc_interval *interval, tc_interval_data *data);
+TC_API tc_status tc_interval_volume_get(const tc_interval_volume *interval, tc_interval_volume_data *data);
 
 /* As tc_mesh_destroy. */
-TC_API void tc_interval_destroy(tc_interval *interval);
+TC_API void tc_interval_volume_destroy(tc_interval_volume *interval);
 
-/* Another field at the vertices of the interval volume that tc_extract_interval makes of the same grid and options: at
- * samples its own value, rounded to float32; on the two surfaces as tc_interpolate_field. value_count: the floats that
- * values has room for, which has to be vertices times components (TC_ERROR_ARGUMENT otherwise). Not for grids with
- * cl_samples. */
-TC_API tc_status tc_interpolate_interval(tc_grid *grid, const tc_interval_options *options, const tc_field *field,
-                                         float *values, uint64_t value_count);
+/* Another field at the vertices of the interval volume that tc_extract_interval_volume makes of the same grid and
+ * options: at samples its own value, rounded to float32; on the two surfaces as tc_interpolate_field. value_count: the
+ * floats that values has room for, which has to be vertices times components (TC_ERROR_ARGUMENT otherwise). Not for
+ * grids with cl_samples. */
+TC_API tc_status tc_interpolate_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                                const tc_field *field, float *values, uint64_t value_count);
 
 /* ---------------------------------------------------------------------------------------------- unstructured grids */
 

@@ -18,12 +18,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-void tc_interval_options_init(tc_interval_options *options) {
+void tc_interval_volume_options_init(tc_interval_volume_options *options) {
     if (!options) return;
-    *options = (tc_interval_options){.struct_size = sizeof *options, .low = -INFINITY, .high = INFINITY};
+    *options = (tc_interval_volume_options){.struct_size = sizeof *options, .low = -INFINITY, .high = INFINITY};
 }
 
-static tc_status bounds_check(const tc_interval_options *o) {
+static tc_status bounds_check(const tc_interval_volume_options *o) {
     if (isnan(o->low) || isnan(o->high) || o->low == INFINITY || o->high == -INFINITY)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
                                "interval %g to %g: bounds are numbers, low may be -infinity and high "
@@ -37,9 +37,9 @@ static tc_status bounds_check(const tc_interval_options *o) {
 }
 
 /* The caller's options, complete and checked, and the grid. */
-static tc_status interval_begin(const tc_grid *grid, const tc_interval_options *options, tc_interval_options *o,
-                                const char *call) {
-    tc_interval_options_init(o);
+static tc_status interval_begin(const tc_grid *grid, const tc_interval_volume_options *options,
+                                tc_interval_volume_options *o, const char *call) {
+    tc_interval_volume_options_init(o);
     if (!grid) return (tc_status)fail(TC_ERROR_ARGUMENT, "%s needs a grid", call);
     tc_status status = struct_copy_in(o, sizeof *o, options, "interval options");
     if (!status) status = bounds_check(o);
@@ -63,8 +63,8 @@ static kernel_kind interval_kind(const tc_grid *grid) {
     return grid->complex ? complex_interval_kind(grid) : structured_interval_kind(grid);
 }
 
-static tc_status kernels_run(tc_grid *grid, const tc_interval_options *options, interval_size *size,
-                             double *classify_ms, tc_interval *interval) {
+static tc_status kernels_run(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
+                             double *classify_ms, tc_interval_volume *interval) {
     if (grid->complex)
         return interval ? complex_interval_extract(grid, options, interval)
                         : complex_interval_count(grid, options, size, classify_ms);
@@ -74,8 +74,8 @@ static tc_status kernels_run(tc_grid *grid, const tc_interval_options *options, 
 
 /* By kernels that are vetted and tried first; again if vetting has switched to the other variant. interval NULL:
  * counts. */
-static tc_status device_make(tc_grid *grid, const tc_interval_options *options, interval_size *size,
-                             double *classify_ms, tc_interval *interval) {
+static tc_status device_make(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
+                             double *classify_ms, tc_interval_volume *interval) {
     tc_status status;
     do {
         status = call_vet(grid->context, interval_kind(grid));
@@ -91,7 +91,7 @@ static tc_status device_make(tc_grid *grid, const tc_interval_options *options, 
 /* Without tetrahedra there is nothing within. */
 static bool grid_is_empty(const tc_grid *grid) { return grid->complex && !grid->complex->tetrahedron_count; }
 
-static tc_status size_find(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+static tc_status size_find(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
                            double *classify_ms) {
     const double start = clock_ms();
     tc_status status = engine_check(grid);
@@ -105,7 +105,7 @@ static tc_status size_find(tc_grid *grid, const tc_interval_options *options, in
     return status;
 }
 
-static tc_status interval_make(tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
+static tc_status interval_make(tc_grid *grid, const tc_interval_volume_options *options, tc_interval_volume *interval) {
     tc_status status = engine_check(grid);
     if (status || grid_is_empty(grid)) return status;
     if (has_kernels(grid)) return device_make(grid, options, NULL, NULL, interval);
@@ -113,41 +113,43 @@ static tc_status interval_make(tc_grid *grid, const tc_interval_options *options
                          : reference_interval_extract(grid, options, interval);
 }
 
-tc_status tc_count_interval(tc_grid *grid, const tc_interval_options *options, tc_interval_counts *counts) {
+tc_status tc_count_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                   tc_interval_volume_counts *counts) {
     FLOAT_ENVIRONMENT_DEFAULT;
-    tc_interval_options o;
+    tc_interval_volume_options o;
     interval_size size = {{0}, 0};
-    tc_status status = struct_clear(counts, sizeof *counts, "tc_count_interval: counts");
+    tc_status status = struct_clear(counts, sizeof *counts, "tc_count_interval_volume: counts");
     double classify_ms = 0;
-    if (!status) status = interval_begin(grid, options, &o, "tc_count_interval");
+    if (!status) status = interval_begin(grid, options, &o, "tc_count_interval_volume");
     if (!status) status = size_find(grid, &o, &size, &classify_ms);
     if (status) return status;
-    const tc_interval_counts found = {.struct_size = sizeof found,
-                                      .sample_count = size.vertices[BLOCK_SAMPLES],
-                                      .low_count = size.vertices[BLOCK_LOW],
-                                      .high_count = size.vertices[BLOCK_HIGH],
-                                      .tetrahedron_count = size.tetrahedra,
-                                      .interval_bytes = interval_bytes(&size),
-                                      .classify_ms = classify_ms};
+    const tc_interval_volume_counts found = {.struct_size = sizeof found,
+                                             .sample_count = size.vertices[BLOCK_SAMPLES],
+                                             .low_count = size.vertices[BLOCK_LOW],
+                                             .high_count = size.vertices[BLOCK_HIGH],
+                                             .tetrahedron_count = size.tetrahedra,
+                                             .interval_bytes = interval_bytes(&size),
+                                             .classify_ms = classify_ms};
     struct_copy_out(counts, &found);
     return TC_OK;
 }
 
-tc_status tc_extract_interval(tc_grid *grid, const tc_interval_options *options, tc_interval **out) {
+tc_status tc_extract_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                     tc_interval_volume **out) {
     FLOAT_ENVIRONMENT_DEFAULT;
-    tc_interval_options o;
+    tc_interval_volume_options o;
     if (out && *out) interval_clear(*out);
     if (!grid || !out)
         return (tc_status)fail(TC_ERROR_ARGUMENT,
-                               "tc_extract_interval needs a grid and a place for the interval volume");
-    tc_interval *interval = *out ? *out : interval_create(grid->context->spare);
+                               "tc_extract_interval_volume needs a grid and a place for the interval volume");
+    tc_interval_volume *interval = *out ? *out : interval_create(grid->context->spare);
     if (!interval) return TC_ERROR_MEMORY;
-    tc_status status = interval_begin(grid, options, &o, "tc_extract_interval");
+    tc_status status = interval_begin(grid, options, &o, "tc_extract_interval_volume");
     if (!status) status = interval_make(grid, &o, interval);
     if (!status) memcpy(interval->origin, grid->origin, sizeof interval->origin);
     if (status) interval_clear(interval);
     if (status && !*out) {
-        tc_interval_destroy(interval);
+        tc_interval_volume_destroy(interval);
         interval = NULL;
     }
     *out = interval;
@@ -181,14 +183,14 @@ static tc_status surface_interpolate(tc_grid *grid, double isovalue, const tc_fi
     return tc_interpolate_field(grid, &surface, field, values, *taken);
 }
 
-tc_status tc_interpolate_interval(tc_grid *grid, const tc_interval_options *options, const tc_field *field,
-                                  float *values, uint64_t value_count) {
+tc_status tc_interpolate_interval_volume(tc_grid *grid, const tc_interval_volume_options *options,
+                                         const tc_field *field, float *values, uint64_t value_count) {
     FLOAT_ENVIRONMENT_DEFAULT;
-    tc_interval_options o;
+    tc_interval_volume_options o;
     tc_field f = {0};
     uint64_t samples = 0, taken = 0, used = 0;
-    tc_status status = struct_copy_in(&f, sizeof f, field, "tc_interpolate_interval: field");
-    if (!status) status = interval_begin(grid, options, &o, "tc_interpolate_interval");
+    tc_status status = struct_copy_in(&f, sizeof f, field, "tc_interpolate_interval_volume: field");
+    if (!status) status = interval_begin(grid, options, &o, "tc_interpolate_interval_volume");
     if (!status) status = field_check(grid, &f, values, value_count);
     if (status) return status;
     const carry c = {&f, values, value_count / (uint64_t)f.components};

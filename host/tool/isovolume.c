@@ -150,7 +150,8 @@ static int write_volume(volume_job *j, const joined_volume *v, volume_report *r)
     return status;
 }
 
-static int finish_volume(volume_job *j, const tc_interval_options *how, const joined_volume *v, volume_report *r) {
+static int finish_volume(volume_job *j, const tc_interval_volume_options *how, const joined_volume *v,
+                         volume_report *r) {
     int is_good = 1, status = joined_volume_measure(v, &j->carried, r);
     if (!status && j->o->verify) status = joined_volume_verify(&j->reference, how, v, &r->verified);
     r->has_verdict = j->o->verify;
@@ -163,9 +164,9 @@ static int finish_volume(volume_job *j, const tc_interval_options *how, const jo
 }
 
 static int make_volume(volume_job *j, volume_report *r) {
-    tc_interval_options how;
+    tc_interval_volume_options how;
     joined_volume v = {0};
-    tc_interval_options_init(&how);
+    tc_interval_volume_options_init(&how);
     how.low = r->range->low, how.high = r->range->high;
     int status =
         j->o->count ? joined_volume_count(&j->main, &how, r) : joined_volume_make(&j->main, &how, &j->carried, &v);

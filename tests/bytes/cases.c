@@ -169,7 +169,7 @@ static void how_fill(const bytes_case *c, case_data *data) {
     tc_labels_options_init(&data->labels);
     data->labels.closed = how->closed;
     if (c->kind != CASE_UNIFORM) data->labels.smoothing = 0;
-    tc_interval_options_init(&data->interval);
+    tc_interval_volume_options_init(&data->interval);
     data->interval.low = how->isovalue;
     data->interval.high = how->isovalue + 7.5;
 }

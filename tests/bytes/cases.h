@@ -45,7 +45,7 @@ typedef struct case_data {
     tc_tetrahedra_grid_options complex;
     tc_extract_options how; /* of surfaces */
     tc_labels_options labels;
-    tc_interval_options interval;
+    tc_interval_volume_options interval;
     tc_tetrahedra split; /* what complex borrows from, as from the next two */
     cell_list list;
     tc_cells cells;

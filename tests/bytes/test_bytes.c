@@ -75,7 +75,7 @@ static struct {
 /* What a grid gives, whichever it is. */
 typedef struct product {
     tc_mesh *mesh;
-    tc_interval *interval;
+    tc_interval_volume *interval;
     uint32_t slabs;
     uint64_t hash; /* of all its arrays; 0 where there is nothing */
 } product;
@@ -107,12 +107,12 @@ static tc_status labels_make(tc_grid *grid, const case_data *data, bool again, p
 }
 
 static tc_status interval_make(tc_grid *grid, const case_data *data, bool again, product *p) {
-    tc_interval_data made = {.struct_size = sizeof made};
-    tc_interval_options other = data->interval;
+    tc_interval_volume_data made = {.struct_size = sizeof made};
+    tc_interval_volume_options other = data->interval;
     other.low += 2.5;
-    tc_status status = again ? tc_extract_interval(grid, &other, &p->interval) : TC_OK;
-    if (!status) status = tc_extract_interval(grid, &data->interval, &p->interval);
-    if (!status) status = tc_interval_get(p->interval, &made);
+    tc_status status = again ? tc_extract_interval_volume(grid, &other, &p->interval) : TC_OK;
+    if (!status) status = tc_extract_interval_volume(grid, &data->interval, &p->interval);
+    if (!status) status = tc_interval_volume_get(p->interval, &made);
     p->slabs = made.slab_count;
     p->hash = made.tetrahedron_count ? interval_bytes_hash(&made) : 0;
     return status;
@@ -133,7 +133,7 @@ static uint64_t hash_of(tc_context *context, const bytes_case *c, const case_dat
     if (slabs) *slabs = p.slabs;
     EXPECT(status || p.hash, "%s: nothing comes out", what);
     tc_mesh_destroy(p.mesh);
-    tc_interval_destroy(p.interval);
+    tc_interval_volume_destroy(p.interval);
     tc_grid_destroy(grid);
     return status ? 0 : p.hash;
 }

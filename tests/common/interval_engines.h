@@ -15,8 +15,8 @@ enum { REFERENCE, DEVICE, COPYING, CONTEXTS };
 typedef struct engine {
     tc_context *context;
     tc_grid *grid;
-    tc_interval *interval;
-    tc_interval_data data;
+    tc_interval_volume *interval;
+    tc_interval_volume_data data;
 } engine;
 
 static engine engines[CONTEXTS];
@@ -40,40 +40,40 @@ static inline void engines_open(bool groups, tc_context_options *copying, tc_exp
 
 static inline void engines_close(void) {
     for (int n = 0; n < CONTEXTS; n++) {
-        tc_interval_destroy(engines[n].interval);
+        tc_interval_volume_destroy(engines[n].interval);
         tc_context_destroy(engines[n].context);
     }
 }
 
 /* Bounds about the values of random fields, with ties, none, or beyond what a type has. */
-static inline void range_choose(tc_interval_options *o) {
+static inline void range_choose(tc_interval_volume_options *o) {
     static const double far[] = {-5, -1e30, -1e300, 300, 1e30, 1e300};
-    tc_interval_options_init(o);
+    tc_interval_volume_options_init(o);
     const uint32_t kind = random_below(8);
     if (kind) o->low = kind == 1 ? far[random_below(3)] : 58 + 0.5 * (double)random_below(8);
     if (kind != 2) o->high = kind == 3 ? far[3 + random_below(3)] : 60 + 0.5 * (double)(1 + random_below(8));
     if (!(o->low < o->high)) o->high = o->low + 0.5;
 }
 
-static inline bool interval_make(engine *e, const tc_interval_options *how, const char *name) {
-    e->data = (tc_interval_data){.struct_size = sizeof e->data};
-    tc_status status = tc_extract_interval(e->grid, how, &e->interval);
-    if (!status) status = tc_interval_get(e->interval, &e->data);
+static inline bool interval_make(engine *e, const tc_interval_volume_options *how, const char *name) {
+    e->data = (tc_interval_volume_data){.struct_size = sizeof e->data};
+    tc_status status = tc_extract_interval_volume(e->grid, how, &e->interval);
+    if (!status) status = tc_interval_volume_get(e->interval, &e->data);
     EXPECT(!status, "%s: %s", name, tc_message());
     return !status;
 }
 
-static inline void expect_count(engine *e, const tc_interval_options *how, const tc_interval_data *d,
+static inline void expect_count(engine *e, const tc_interval_volume_options *how, const tc_interval_volume_data *d,
                                 const char *name) {
-    tc_interval_counts c = {.struct_size = sizeof c};
-    EXPECT(!tc_count_interval(e->grid, how, &c), "%s: %s", name, tc_message());
+    tc_interval_volume_counts c = {.struct_size = sizeof c};
+    EXPECT(!tc_count_interval_volume(e->grid, how, &c), "%s: %s", name, tc_message());
     EXPECT(c.sample_count == d->sample_count && c.low_count == d->low_count && c.high_count == d->high_count &&
                c.tetrahedron_count == d->tetrahedron_count,
            "%s: counted %" PRIu64 " + %" PRIu64 " + %" PRIu64 " vertices, %" PRIu64 " tetrahedra", name, c.sample_count,
            c.low_count, c.high_count, c.tetrahedron_count);
 }
 
-static inline void expect_same(const tc_interval_data *a, const tc_interval_data *b, const char *name,
+static inline void expect_same(const tc_interval_volume_data *a, const tc_interval_volume_data *b, const char *name,
                                const char *how) {
     EXPECT(a->sample_count == b->sample_count && a->low_count == b->low_count && a->high_count == b->high_count &&
                a->tetrahedron_count == b->tetrahedron_count,
@@ -106,7 +106,8 @@ static inline void grids_close(void) {
 
 /* With hardly enough memory: the same bytes, by buffers that fit. What a refusal advises is enough, at the latest. */
 static inline void expect_bounded(const tc_context_options *usual, grid_maker *make, const void *grid_options,
-                                  const tc_interval_options *how, const tc_interval_data *expected, const char *name) {
+                                  const tc_interval_volume_options *how, const tc_interval_volume_data *expected,
+                                  const char *name) {
     tc_context_options options = *usual;
     uint64_t budget = 40000;
     for (int attempt = 0; attempt < 20; attempt++) {
@@ -114,10 +115,10 @@ static inline void expect_bounded(const tc_context_options *usual, grid_maker *m
         options.max_memory_bytes = budget;
         e.context = context_open(&options);
         tc_status status = make(e.context, grid_options, &e.grid);
-        if (!status) status = tc_extract_interval(e.grid, how, &e.interval);
+        if (!status) status = tc_extract_interval_volume(e.grid, how, &e.interval);
         if (!status) {
             e.data.struct_size = sizeof e.data;
-            tc_interval_get(e.interval, &e.data);
+            tc_interval_volume_get(e.interval, &e.data);
             expect_same(expected, &e.data, name, "bounded");
             expect_within(e.context, budget, name);
             engine_tally.slabs += e.data.slab_count > 1, engine_tally.bounded++;
@@ -128,7 +129,7 @@ static inline void expect_bounded(const tc_context_options *usual, grid_maker *m
                    advised);
             budget += budget / 3 < advised - budget ? budget / 3 : advised - budget;
         }
-        tc_interval_destroy(e.interval);
+        tc_interval_volume_destroy(e.interval);
         tc_grid_destroy(e.grid);
         tc_context_destroy(e.context);
         if (!status) return;
@@ -137,8 +138,8 @@ static inline void expect_bounded(const tc_context_options *usual, grid_maker *m
 }
 
 /* A volume that the reference has made, by the contexts with kernels; counted first, if asked for. */
-static inline void expect_engines(const tc_interval_options *how, bool count, const char *name) {
-    const tc_interval_data *expected = &engines[REFERENCE].data;
+static inline void expect_engines(const tc_interval_volume_options *how, bool count, const char *name) {
+    const tc_interval_volume_data *expected = &engines[REFERENCE].data;
     if (count) expect_count(&engines[DEVICE], how, expected, name);
     for (int m = DEVICE; m < CONTEXTS; m++)
         if (interval_make(&engines[m], how, name))

@@ -378,7 +378,7 @@ uint64_t mesh_bytes_hash(const tc_mesh_data *mesh) {
     return mesh->boundary_labels ? words_hash(hash, mesh->boundary_labels, 2 * mesh->triangle_count) : hash;
 }
 
-uint64_t interval_bytes_hash(const tc_interval_data *interval) {
+uint64_t interval_bytes_hash(const tc_interval_volume_data *interval) {
     const uint64_t hash = words_hash(0xcbf29ce484222325u, interval->positions, 3 * interval->vertex_count);
     return words_hash(hash, interval->tetrahedra, 4 * interval->tetrahedron_count);
 }

@@ -30,6 +30,6 @@ bool grid_is_mirrored(const struct signs *s, const tc_mesh_data *mesh);
 /* FNV-1a, by words of 32 bits, over positions, normals where there are any, triangles, and their labels where they have
  * some; over positions and tetrahedra. */
 uint64_t mesh_bytes_hash(const tc_mesh_data *mesh);
-uint64_t interval_bytes_hash(const tc_interval_data *interval);
+uint64_t interval_bytes_hash(const tc_interval_volume_data *interval);
 
 #endif

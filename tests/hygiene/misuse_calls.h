@@ -17,7 +17,7 @@ typedef struct arguments {
     tc_context *context;
     tc_grid *grid;
     tc_mesh *mesh;
-    tc_interval *interval;
+    tc_interval_volume *interval;
     tc_context_options context_options, *context_options_at;
     tc_expert_options expert_options, *expert_options_at;       /* which context_options point to */
     bool context_place, grid_place, mesh_place, interval_place; /* false: no place for what is made */
@@ -27,9 +27,9 @@ typedef struct arguments {
     tc_tetrahedra_grid_options tetrahedra_grid_options, *tetrahedra_grid_options_at;
     tc_cells cells, *cells_at;
     tc_field field, *field_at;
-    tc_interval_options interval_options, *interval_options_at;
-    tc_interval_counts interval_counts, *interval_counts_at;
-    tc_interval_data interval_data, *interval_data_at;
+    tc_interval_volume_options interval_volume_options, *interval_volume_options_at;
+    tc_interval_volume_counts interval_volume_counts, *interval_volume_counts_at;
+    tc_interval_volume_data interval_volume_data, *interval_volume_data_at;
     tc_device_mesh device_mesh, *device_mesh_at;
     tc_counts counts, *counts_at;
     tc_mesh_data mesh_data, *mesh_data_at;
@@ -52,7 +52,7 @@ typedef struct world {
     tc_grid *grid, *complex_grid;
     tc_mesh *mesh, *kept;
     tc_mesh_data expected;
-    tc_interval *interval;
+    tc_interval_volume *interval;
     uint64_t interval_vertices;
 } world;
 
@@ -123,10 +123,12 @@ static void arguments_fill(const world *w, arguments *a) {
                           .face_offsets = face_offsets,
                           .face_connectivity = face_connectivity};
     a->field = (tc_field){sizeof a->field, TC_F32, 1, field_values};
-    tc_interval_options_init(a->interval_options_at = &a->interval_options);
-    a->interval_options.low = 100, a->interval_options.high = 127.5;
-    a->interval_counts.struct_size = sizeof a->interval_counts, a->interval_counts_at = &a->interval_counts;
-    a->interval_data.struct_size = sizeof a->interval_data, a->interval_data_at = &a->interval_data;
+    tc_interval_volume_options_init(a->interval_volume_options_at = &a->interval_volume_options);
+    a->interval_volume_options.low = 100, a->interval_volume_options.high = 127.5;
+    a->interval_volume_counts.struct_size = sizeof a->interval_volume_counts,
+    a->interval_volume_counts_at = &a->interval_volume_counts;
+    a->interval_volume_data.struct_size = sizeof a->interval_volume_data,
+    a->interval_volume_data_at = &a->interval_volume_data;
     a->device_mesh = (tc_device_mesh){.struct_size = sizeof a->device_mesh};
     a->counts.struct_size = sizeof a->counts;
     a->mesh_data.struct_size = sizeof a->mesh_data;
@@ -158,7 +160,7 @@ static void defaults_fill(arguments *a) {
     tc_labels_options_init(&a->labels_options);
     tc_tetrahedra_grid_options_init(&a->tetrahedra_grid_options);
     tc_stream_options_init(&a->stream_options);
-    tc_interval_options_init(&a->interval_options);
+    tc_interval_volume_options_init(&a->interval_volume_options);
     a->cells = (tc_cells){0};
     a->field = (tc_field){0};
     a->device_mesh = (tc_device_mesh){0};
@@ -311,30 +313,33 @@ static tc_status call_tc_interpolate_field(arguments *a, bool *zero) {
     return tc_interpolate_field(a->grid, a->extract_options_at, a->field_at, a->values, a->value_count);
 }
 
-static tc_status call_tc_count_interval(arguments *a, bool *zero) {
-    tc_status status = tc_count_interval(a->grid, a->interval_options_at, a->interval_counts_at);
-    if (!status && a->interval_counts.struct_size == sizeof a->interval_counts) a->interval_counts.classify_ms = 0;
-    *zero = RESULT_ZERO(a->interval_counts, a->interval_counts_at);
+static tc_status call_tc_count_interval_volume(arguments *a, bool *zero) {
+    tc_status status = tc_count_interval_volume(a->grid, a->interval_volume_options_at, a->interval_volume_counts_at);
+    if (!status && a->interval_volume_counts.struct_size == sizeof a->interval_volume_counts)
+        a->interval_volume_counts.classify_ms = 0;
+    *zero = RESULT_ZERO(a->interval_volume_counts, a->interval_volume_counts_at);
     return status;
 }
 
-static tc_status call_tc_extract_interval(arguments *a, bool *zero) {
-    tc_interval *interval = NULL;
-    tc_status status = tc_extract_interval(a->grid, a->interval_options_at, a->interval_place ? &interval : NULL);
+static tc_status call_tc_extract_interval_volume(arguments *a, bool *zero) {
+    tc_interval_volume *interval = NULL;
+    tc_status status =
+        tc_extract_interval_volume(a->grid, a->interval_volume_options_at, a->interval_place ? &interval : NULL);
     *zero = !interval;
-    tc_interval_destroy(interval);
+    tc_interval_volume_destroy(interval);
     return status;
 }
 
-static tc_status call_tc_interval_get(arguments *a, bool *zero) {
-    tc_status status = tc_interval_get(a->interval, a->interval_data_at);
-    *zero = RESULT_ZERO(a->interval_data, a->interval_data_at);
+static tc_status call_tc_interval_volume_get(arguments *a, bool *zero) {
+    tc_status status = tc_interval_volume_get(a->interval, a->interval_volume_data_at);
+    *zero = RESULT_ZERO(a->interval_volume_data, a->interval_volume_data_at);
     return status;
 }
 
-static tc_status call_tc_interpolate_interval(arguments *a, bool *zero) {
+static tc_status call_tc_interpolate_interval_volume(arguments *a, bool *zero) {
     *zero = true;
-    return tc_interpolate_interval(a->grid, a->interval_options_at, a->field_at, a->values, a->interval_value_count);
+    return tc_interpolate_interval_volume(a->grid, a->interval_volume_options_at, a->field_at, a->values,
+                                          a->interval_value_count);
 }
 
 static tc_status call_tc_tetrahedralize(arguments *a, bool *zero) {

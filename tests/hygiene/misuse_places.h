@@ -109,8 +109,8 @@ typedef struct place {
         AT(call, extract_options.reserved, LISTED({1, ARGUMENT}, {I64(-1), ARGUMENT}))
 
 #define OPTIONS_OF_INTERVALS(call)                                                                                     \
-    AT(call, grid, null), AT(call, interval_options_at, null), AT(call, interval_options.low, bounds),                 \
-        AT(call, interval_options.high, bounds)
+    AT(call, grid, null), AT(call, interval_volume_options_at, null), AT(call, interval_volume_options.low, bounds),   \
+        AT(call, interval_volume_options.high, bounds)
 
 static const place places[] = {
     AT(tc_device_count, count_at, null),
@@ -216,19 +216,21 @@ static const place places[] = {
     AT(tc_interpolate_field, values, null),
     AT(tc_interpolate_field, values, NULL),
     AT(tc_interpolate_field, value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
-    OPTIONS_OF_INTERVALS(tc_count_interval),
-    AT(tc_count_interval, interval_counts_at, null),
-    OPTIONS_OF_INTERVALS(tc_extract_interval),
-    AT(tc_extract_interval, interval_place, null),
-    AT(tc_interval_get, interval, null),
-    AT(tc_interval_get, interval_data_at, null),
-    OPTIONS_OF_INTERVALS(tc_interpolate_interval),
-    AT(tc_interpolate_interval, field_at, null),
-    AT(tc_interpolate_interval, field.type, no_enumerator),
-    AT(tc_interpolate_interval, field.components, LISTED({0, ARGUMENT}, {I64(-1), ARGUMENT}, {0x7fffffff, ARGUMENT})),
-    AT(tc_interpolate_interval, field.values, null),
-    AT(tc_interpolate_interval, values, null),
-    AT(tc_interpolate_interval, interval_value_count, LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
+    OPTIONS_OF_INTERVALS(tc_count_interval_volume),
+    AT(tc_count_interval_volume, interval_volume_counts_at, null),
+    OPTIONS_OF_INTERVALS(tc_extract_interval_volume),
+    AT(tc_extract_interval_volume, interval_place, null),
+    AT(tc_interval_volume_get, interval, null),
+    AT(tc_interval_volume_get, interval_volume_data_at, null),
+    OPTIONS_OF_INTERVALS(tc_interpolate_interval_volume),
+    AT(tc_interpolate_interval_volume, field_at, null),
+    AT(tc_interpolate_interval_volume, field.type, no_enumerator),
+    AT(tc_interpolate_interval_volume, field.components,
+       LISTED({0, ARGUMENT}, {I64(-1), ARGUMENT}, {0x7fffffff, ARGUMENT})),
+    AT(tc_interpolate_interval_volume, field.values, null),
+    AT(tc_interpolate_interval_volume, values, null),
+    AT(tc_interpolate_interval_volume, interval_value_count,
+       LISTED({0, ARGUMENT}, {1, ARGUMENT}, {UINT64_MAX, ARGUMENT})),
     AT(tc_tetrahedralize, tetrahedra_at, null),
     AT(tc_tetrahedralize, cells_at, null),
     AT(tc_tetrahedralize, cells.point_count, LISTED({0, DATA}, {POINTS - 1, DATA})),

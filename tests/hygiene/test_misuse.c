@@ -89,10 +89,10 @@ static const sized sizes[] = {
     SIZED(tc_stream, stream_options, false),
     SIZED(tc_mesh_get, mesh_data, true),
     SIZED(tc_interpolate_field, field, false),
-    SIZED(tc_count_interval, interval_options, false),
-    SIZED(tc_count_interval, interval_counts, true),
-    SIZED(tc_interval_get, interval_data, true),
-    SIZED(tc_interpolate_interval, field, false),
+    SIZED(tc_count_interval_volume, interval_volume_options, false),
+    SIZED(tc_count_interval_volume, interval_volume_counts, true),
+    SIZED(tc_interval_volume_get, interval_volume_data, true),
+    SIZED(tc_interpolate_interval_volume, field, false),
     SIZED(tc_tetrahedralize, cells, false),
     SIZED(tc_tetrahedralize, tetrahedra, true),
     SIZED(tc_tetrahedralize_grid, tetrahedra, true),
@@ -262,8 +262,8 @@ static void test_others(const world *w) {
     tc_extract_options_init(NULL);
     tc_tetrahedra_grid_options_init(NULL);
     tc_stream_options_init(NULL);
-    tc_interval_options_init(NULL);
-    tc_interval_destroy(NULL);
+    tc_interval_volume_options_init(NULL);
+    tc_interval_volume_destroy(NULL);
     tc_context_destroy(NULL);
     tc_grid_destroy(NULL);
     tc_mesh_destroy(NULL);
@@ -305,9 +305,9 @@ static void world_open(world *w, tc_engine engine) {
                tc_extract(w->grid, &a.extract_options, &w->kept) == TC_OK &&
                tc_mesh_get(w->mesh, &w->expected) == TC_OK,
            "%s", tc_message());
-    tc_interval_data d = {.struct_size = sizeof d};
-    EXPECT(tc_extract_interval(w->grid, &a.interval_options, &w->interval) == TC_OK &&
-               tc_interval_get(w->interval, &d) == TC_OK && d.vertex_count < CARRIED_MOST,
+    tc_interval_volume_data d = {.struct_size = sizeof d};
+    EXPECT(tc_extract_interval_volume(w->grid, &a.interval_volume_options, &w->interval) == TC_OK &&
+               tc_interval_volume_get(w->interval, &d) == TC_OK && d.vertex_count < CARRIED_MOST,
            "%s", tc_message());
     w->interval_vertices = d.vertex_count;
     if (!w->expected.vertex_count || w->expected.vertex_count > CARRIED_MOST - 1) exit(EXIT_FAILURE);
@@ -315,7 +315,7 @@ static void world_open(world *w, tc_engine engine) {
 
 static void world_close(world *w) {
     tc_mesh_destroy(w->kept);
-    tc_interval_destroy(w->interval);
+    tc_interval_volume_destroy(w->interval);
     tc_mesh_destroy(w->mesh);
     tc_grid_destroy(w->grid);
     tc_context_destroy(w->context);

@@ -96,7 +96,7 @@ static uint64_t budgets[SCENARIOS];                             /* of memory, fo
 static tc_tetrahedra complex, of_cells;
 static tc_cells cells; /* of method hybrid */
 static tc_mesh *expected[SCENARIOS][2];
-static tc_interval *expected_intervals[SCENARIOS][2];
+static tc_interval_volume *expected_intervals[SCENARIOS][2];
 static cl_context theirs; /* a caller's own context */
 static cl_command_queue their_queue;
 static cl_mem their_samples, their_positions, their_triangles;
@@ -194,9 +194,9 @@ static tc_labels_options labels_describe(int index) {
     return o;
 }
 
-static tc_interval_options interval_describe(int index) {
-    tc_interval_options o;
-    tc_interval_options_init(&o);
+static tc_interval_volume_options interval_describe(int index) {
+    tc_interval_volume_options o;
+    tc_interval_volume_options_init(&o);
     o.low = isovalues[index];
     if (index == 0) o.high = o.low + 30.5;
     return o;
@@ -247,9 +247,10 @@ static tc_status surfaces_run(int index, trial *t, tc_grid *grid) {
     return status;
 }
 
-static bool interval_is_right(int index, int n, const tc_interval *interval) {
-    tc_interval_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
-    if (tc_interval_get(interval, &found) || tc_interval_get(expected_intervals[index][n], &wanted)) return false;
+static bool interval_is_right(int index, int n, const tc_interval_volume *interval) {
+    tc_interval_volume_data found = {.struct_size = sizeof found}, wanted = {.struct_size = sizeof wanted};
+    if (tc_interval_volume_get(interval, &found) || tc_interval_volume_get(expected_intervals[index][n], &wanted))
+        return false;
     const bool sizes = found.vertex_count == wanted.vertex_count && found.tetrahedron_count == wanted.tetrahedron_count;
     const char *difference =
         !sizes                                                                               ? "sizes differ"
@@ -264,25 +265,25 @@ static bool interval_is_right(int index, int n, const tc_interval *interval) {
 /* Interval volumes as surfaces_run does surfaces, with a field carried to the first. */
 static tc_status intervals_run(int index, trial *t, tc_grid *grid) {
     const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 1, .values = values};
-    tc_interval *interval = NULL;
+    tc_interval_volume *interval = NULL;
     tc_status status = TC_OK;
     bool fine = true;
     for (int n = 0; n < 3 && fine; n++) {
-        const tc_interval_options how = interval_describe(n % 2);
-        tc_interval_counts counts = {.struct_size = sizeof counts};
-        if (n < 2) fine = TRIED(t, tc_count_interval(grid, &how, &counts));
-        fine =
-            fine && TRIED(t, tc_extract_interval(grid, &how, &interval)) && interval_is_right(index, n % 2, interval);
+        const tc_interval_volume_options how = interval_describe(n % 2);
+        tc_interval_volume_counts counts = {.struct_size = sizeof counts};
+        if (n < 2) fine = TRIED(t, tc_count_interval_volume(grid, &how, &counts));
+        fine = fine && TRIED(t, tc_extract_interval_volume(grid, &how, &interval)) &&
+               interval_is_right(index, n % 2, interval);
     }
     if (fine) {
-        const tc_interval_options how = interval_describe(0);
-        tc_interval_data d = {.struct_size = sizeof d};
-        tc_interval_get(interval, &d);
+        const tc_interval_volume_options how = interval_describe(0);
+        tc_interval_volume_data d = {.struct_size = sizeof d};
+        tc_interval_volume_get(interval, &d);
         float *carried = calloc((size_t)d.vertex_count, sizeof *carried);
-        (void)TRIED(t, tc_interpolate_interval(grid, &how, &field, carried, d.vertex_count));
+        (void)TRIED(t, tc_interpolate_interval_volume(grid, &how, &field, carried, d.vertex_count));
         free(carried);
     }
-    tc_interval_destroy(interval);
+    tc_interval_volume_destroy(interval);
     return status;
 }
 
@@ -495,9 +496,9 @@ static tc_status reference_make(int index, int n, tc_grid *grid) {
     const scenario *s = &scenarios[index];
     const tc_extract_options surface = surface_describe(s, n);
     const tc_labels_options all = labels_describe(n);
-    const tc_interval_options interval = interval_describe(n);
+    const tc_interval_volume_options interval = interval_describe(n);
     if (s->flow == FLOW_LABELS) return tc_extract_labels(grid, &all, &expected[index][n]);
-    if (s->interval) return tc_extract_interval(grid, &interval, &expected_intervals[index][n]);
+    if (s->interval) return tc_extract_interval_volume(grid, &interval, &expected_intervals[index][n]);
     return tc_extract(grid, &surface, &expected[index][n]);
 }
 
@@ -561,7 +562,7 @@ void scenarios_release(void) {
     cl_mem buffers[] = {their_samples, their_positions, their_triangles};
     for (int index = 0; index < SCENARIOS; index++)
         for (int n = 0; n < 2; n++)
-            tc_mesh_destroy(expected[index][n]), tc_interval_destroy(expected_intervals[index][n]);
+            tc_mesh_destroy(expected[index][n]), tc_interval_volume_destroy(expected_intervals[index][n]);
     tc_tetrahedra_release(&complex);
     tc_tetrahedra_release(&of_cells);
     folder_remove();

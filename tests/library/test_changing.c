@@ -168,21 +168,21 @@ static void extract_while_changing(tc_context *context, size_t change, int kind,
 }
 
 static void interval_while_changing(tc_context *context, size_t change, int kind, moment *m, int at) {
-    tc_interval_options how;
-    tc_interval *interval = NULL;
-    tc_interval_data data = {.struct_size = sizeof data};
-    tc_interval_options_init(&how);
+    tc_interval_volume_options how;
+    tc_interval_volume *interval = NULL;
+    tc_interval_volume_data data = {.struct_size = sizeof data};
+    tc_interval_volume_options_init(&how);
     how.low = -0.3, how.high = 0.4;
     noise_fill();
     tc_grid *grid = grid_open(context, changes[change].complex, kind);
     *m = (moment){0, at, changes[change].make};
-    tc_status status = tc_extract_interval(grid, &how, &interval);
+    tc_status status = tc_extract_interval_volume(grid, &how, &interval);
     EXPECT(status == TC_OK || (status == TC_ERROR_DATA && *tc_message()), "%s, interval: status %d: %s",
            changes[change].name, (int)status, tc_message());
-    if (!status) tc_interval_get(interval, &data);
+    if (!status) tc_interval_volume_get(interval, &data);
     expect_within_vertices(data.tetrahedra, 4 * data.tetrahedron_count, data.vertex_count, "interval", change, kind,
                            at);
-    tc_interval_destroy(interval);
+    tc_interval_volume_destroy(interval);
     tc_grid_destroy(grid);
 }
 

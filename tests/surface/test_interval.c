@@ -53,11 +53,11 @@ typedef struct expected {
     uint64_t samples;
 } expected;
 
-static double within(const double *values, int count, const tc_interval_options *o) {
+static double within(const double *values, int count, const tc_interval_volume_options *o) {
     return part_above(values, count, o->low) - part_above(values, count, o->high);
 }
 
-static expected expected_of(const subject *s, const tc_interval_options *o) {
+static expected expected_of(const subject *s, const tc_interval_volume_options *o) {
     expected e = {0, 0, 0};
     interval_facts whole = interval_facts_of(s->points, s->point_count, s->tetrahedra, s->tetrahedron_count);
     uint8_t *used = calloc(s->point_count + 1, 1);
@@ -103,8 +103,8 @@ static uint64_t faces_take(const interval_facts *f, uint64_t first, uint64_t cou
 
 /* The surface of a bound: its vertices are those of the block from `first` on, and its triangles the faces there.
  * Returns how many. Triangles of the high one face the other way. */
-static uint64_t expect_surface(const subject *s, double isovalue, const tc_interval_data *d, const interval_facts *f,
-                               uint64_t first, uint64_t count, bool is_high) {
+static uint64_t expect_surface(const subject *s, double isovalue, const tc_interval_volume_data *d,
+                               const interval_facts *f, uint64_t first, uint64_t count, bool is_high) {
     tc_mesh *mesh = NULL;
     tc_mesh_data m = {.struct_size = sizeof m};
     tc_extract_options how;
@@ -131,27 +131,29 @@ static uint64_t expect_surface(const subject *s, double isovalue, const tc_inter
 }
 
 /* Vertices at samples are where the points are, in their order but for bricks. */
-static void expect_fields(const subject *s, const tc_interval_options *o, const tc_interval_data *d, double step) {
+static void expect_fields(const subject *s, const tc_interval_volume_options *o, const tc_interval_volume_data *d,
+                          double step) {
     const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 3, .values = s->points};
     float *carried = malloc(12 * d->vertex_count + 4);
     if (!carried) exit(EXIT_FAILURE);
-    EXPECT(!tc_interpolate_interval(s->grid, o, &field, carried, 3 * d->vertex_count), "%s: %s", s->name, tc_message());
+    EXPECT(!tc_interpolate_interval_volume(s->grid, o, &field, carried, 3 * d->vertex_count), "%s: %s", s->name,
+           tc_message());
     double most = 0;
     for (uint64_t n = 0; n < 3 * d->vertex_count; n++)
         most = fmax(most, fabs((double)carried[n] - (double)d->positions[n]));
     EXPECT(most <= step, "%s: points that are carried are not the vertices, by %g", s->name, most);
-    EXPECT(tc_interpolate_interval(s->grid, o, &field, carried, 3 * d->vertex_count + 3) == TC_ERROR_ARGUMENT,
+    EXPECT(tc_interpolate_interval_volume(s->grid, o, &field, carried, 3 * d->vertex_count + 3) == TC_ERROR_ARGUMENT,
            "%s: too much room for a field is taken", s->name);
     free(carried);
 }
 
 /* step: by how much float32 may move a vertex. */
-static void expect_interval(const subject *s, const tc_interval_options *o, double step) {
-    tc_interval *interval = NULL;
-    tc_interval_data d = {.struct_size = sizeof d};
-    tc_interval_counts counts = {.struct_size = sizeof counts};
-    const bool made = !tc_extract_interval(s->grid, o, &interval) && !tc_interval_get(interval, &d) &&
-                      !tc_count_interval(s->grid, o, &counts);
+static void expect_interval(const subject *s, const tc_interval_volume_options *o, double step) {
+    tc_interval_volume *interval = NULL;
+    tc_interval_volume_data d = {.struct_size = sizeof d};
+    tc_interval_volume_counts counts = {.struct_size = sizeof counts};
+    const bool made = !tc_extract_interval_volume(s->grid, o, &interval) && !tc_interval_volume_get(interval, &d) &&
+                      !tc_count_interval_volume(s->grid, o, &counts);
     EXPECT(made, "%s: %s", s->name, tc_message());
     EXPECT(counts.sample_count == d.sample_count && counts.low_count == d.low_count &&
                counts.high_count == d.high_count && counts.tetrahedron_count == d.tetrahedron_count,
@@ -183,7 +185,7 @@ static void expect_interval(const subject *s, const tc_interval_options *o, doub
     expect_fields(s, o, &d, step);
     tally.tetrahedra += d.tetrahedron_count, tally.empty += !d.tetrahedron_count;
     free(f.outer);
-    tc_interval_destroy(interval);
+    tc_interval_volume_destroy(interval);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ cases */
@@ -197,9 +199,9 @@ static void pair_try(const uint32_t order[5], int digits) {
     const uint32_t tetrahedra[8] = {order[0], order[1], order[2], order[3], order[0], order[2], order[1], order[4]};
     float at[15], samples[5];
     tc_tetrahedra_grid_options o;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     char name[64];
-    tc_interval_options_init(&how);
+    tc_interval_volume_options_init(&how);
     how.low = 0, how.high = 1;
     snprintf(name, sizeof name, "pair, order %u%u%u%u%u, case %d", order[0], order[1], order[2], order[3], order[4],
              digits);
@@ -286,8 +288,8 @@ static void grid_choose(tc_grid_options *g) {
     parts_remove(g);
 }
 
-static void interval_choose(tc_interval_options *o) {
-    tc_interval_options_init(o);
+static void interval_choose(tc_interval_volume_options *o) {
+    tc_interval_volume_options_init(o);
     const double low = 40 + 0.5 * (double)random_below(60), width = 0.5 * (double)(1 + random_below(40));
     const uint32_t sides = random_below(6);
     if (sides) o->low = random_below(3) ? 59 + 0.5 * (double)random_below(4) : low;
@@ -310,7 +312,7 @@ static uint32_t *without_point(subject *s, uint32_t point) {
 }
 
 /* Of real types with a sample that is missing. */
-static void complex_try(const subject *structured, const tc_interval_options *how, double step) {
+static void complex_try(const subject *structured, const tc_interval_volume_options *how, double step) {
     tc_tetrahedra_grid_options o;
     subject s = *structured;
     uint32_t *kept = NULL;
@@ -330,7 +332,7 @@ static void complex_try(const subject *structured, const tc_interval_options *ho
 
 static void run(uint64_t seed) {
     tc_grid_options g;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     tc_tetrahedra t = {.struct_size = sizeof t};
     char name[160];
     random_state = seed * 0x2545f4914f6cdd1du;
@@ -358,16 +360,16 @@ static void test_refused(void) {
     static const double bounds[][2] = {{1, 1}, {2, 1}, {(double)NAN, 1}, {-INFINITY, INFINITY}, {INFINITY, INFINITY}};
     tc_grid_options g;
     tc_grid *grid = NULL;
-    tc_interval *interval = NULL;
-    tc_interval_options o;
+    tc_interval_volume *interval = NULL;
+    tc_interval_volume_options o;
     tc_grid_options_init(&g);
-    tc_interval_options_init(&o);
+    tc_interval_volume_options_init(&o);
     g.dims[0] = g.dims[1] = g.dims[2] = 2, g.samples = memory;
     EXPECT(!tc_grid_create(context, &g, &grid), "%s", tc_message());
     for (size_t n = 0; n < sizeof bounds / sizeof *bounds; n++) {
         o.low = bounds[n][0], o.high = bounds[n][1];
-        EXPECT(tc_extract_interval(grid, &o, &interval) == TC_ERROR_ARGUMENT && !interval, "%g to %g is taken", o.low,
-               o.high);
+        EXPECT(tc_extract_interval_volume(grid, &o, &interval) == TC_ERROR_ARGUMENT && !interval, "%g to %g is taken",
+               o.low, o.high);
     }
     tc_grid_destroy(grid);
 }

@@ -128,20 +128,21 @@ static void subject_free(subject *s) {
 /* --------------------------------------------------------------------------------------------------------- volumes */
 
 /* Points and numbers as a field, by both engines. */
-static void expect_carried(const subject *s, const tc_interval_options *how, const char *name) {
+static void expect_carried(const subject *s, const tc_interval_volume_options *how, const char *name) {
     const uint64_t count = 3 * engines[REFERENCE].data.vertex_count;
     const tc_field field = {.struct_size = sizeof field, .type = TC_F32, .components = 3, .values = s->points};
     float *values[2] = {calloc((size_t)count + 1, sizeof(float)), calloc((size_t)count + 1, sizeof(float))};
     if (!values[0] || !values[1]) exit(EXIT_FAILURE);
     for (int n = 0; n < 2; n++)
-        EXPECT(!tc_interpolate_interval(engines[n].grid, how, &field, values[n], count), "%s: %s", name, tc_message());
+        EXPECT(!tc_interpolate_interval_volume(engines[n].grid, how, &field, values[n], count), "%s: %s", name,
+               tc_message());
     EXPECT(!memcmp(values[0], values[1], sizeof(float) * count), "%s: fields differ", name);
     free(values[0]);
     free(values[1]);
 }
 
 /* A surface between two volumes is not theirs. */
-static void expect_surface(const tc_interval_options *how, const char *name) {
+static void expect_surface(const tc_interval_volume_options *how, const char *name) {
     tc_extract_options surface;
     tc_mesh *meshes[2] = {NULL, NULL};
     tc_mesh_data data[2] = {{.struct_size = sizeof *data}, {.struct_size = sizeof *data}};
@@ -157,7 +158,7 @@ static void expect_surface(const tc_interval_options *how, const char *name) {
 
 static void run(uint64_t seed, const tc_context_options *copying) {
     subject s;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     char name[200];
     random_state = seed * 0x2545f4914f6cdd1du;
     subject_choose(&s);
@@ -207,8 +208,8 @@ static void large_make(subject *s, tc_type type) {
 
 /* Many budgets, from little to plenty: whole, in few slabs and in many, with points whole and gathered. */
 static void test_slabs(const tc_context_options *copying) {
-    tc_interval_options how;
-    tc_interval_options_init(&how);
+    tc_interval_volume_options how;
+    tc_interval_volume_options_init(&how);
     how.low = 45, how.high = 60;
     for (int kind = 0; kind < 2; kind++) {
         const char *name = kind ? "slabs of f32" : "slabs of u8";
@@ -225,16 +226,16 @@ static void test_slabs(const tc_context_options *copying) {
             options.max_memory_bytes = budget;
             e.context = context_open(&options);
             tc_status status = grid_make(e.context, &s.options, &e.grid);
-            for (int n = 0; n < 2 && !status; n++) status = tc_extract_interval(e.grid, &how, &e.interval);
+            for (int n = 0; n < 2 && !status; n++) status = tc_extract_interval_volume(e.grid, &how, &e.interval);
             EXPECT(!status || status == TC_ERROR_MEMORY, "%s: %s", name, tc_message());
             if (!status) {
-                tc_interval_get(e.interval, &e.data);
+                tc_interval_volume_get(e.interval, &e.data);
                 expect_same(&engines[REFERENCE].data, &e.data, name, "budgets");
                 expect_within(e.context, budget, name);
                 if (e.data.slab_count > slabs) slabs = e.data.slab_count;
                 whole += e.data.slab_count == 1;
             }
-            tc_interval_destroy(e.interval);
+            tc_interval_volume_destroy(e.interval);
             tc_grid_destroy(e.grid);
             tc_context_destroy(e.context);
         }
@@ -259,11 +260,11 @@ static int cancel(void *user, const char *stage, double fraction) {
 /* At every call of the callback in turn; what follows is right all the same. */
 static void test_cancelled(const tc_context_options *usual, uint64_t budget, const char *name) {
     tc_context_options options = *usual;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     subject s;
     random_state = 11;
     large_make(&s, TC_U8);
-    tc_interval_options_init(&how);
+    tc_interval_volume_options_init(&how);
     how.low = 45, how.high = 60;
     options.max_memory_bytes = budget, options.progress = cancel;
     engine e = {.context = context_open(&options)};
@@ -271,17 +272,17 @@ static void test_cancelled(const tc_context_options *usual, uint64_t budget, con
     EXPECT(!grid_make(e.context, &s.options, &e.grid), "%s: %s", name, tc_message());
     for (cancel_at = 0;; cancel_at++) {
         cancel_calls = 0, cancel_fraction = 0;
-        tc_status status = tc_extract_interval(e.grid, &how, &e.interval);
+        tc_status status = tc_extract_interval_volume(e.grid, &how, &e.interval);
         if (cancel_calls <= cancel_at) break;
         EXPECT(status == TC_ERROR_CANCELLED, "%s: not cancelled: %s", name, tc_message());
     }
     EXPECT(cancel_at > 3, "%s: %d calls of the callback", name, cancel_at);
     cancel_fraction = 0;
     e.data.struct_size = sizeof e.data;
-    tc_interval_get(e.interval, &e.data);
+    tc_interval_volume_get(e.interval, &e.data);
     if (interval_make(&engines[REFERENCE], &how, name))
         expect_same(&engines[REFERENCE].data, &e.data, name, "after cancelling");
-    tc_interval_destroy(e.interval);
+    tc_interval_volume_destroy(e.interval);
     tc_grid_destroy(e.grid);
     tc_context_destroy(e.context);
     grids_close();
@@ -290,19 +291,20 @@ static void test_cancelled(const tc_context_options *usual, uint64_t budget, con
 
 /* A point that is not there. */
 static void test_refused(void) {
-    tc_interval_options how;
+    tc_interval_volume_options how;
     subject s;
     random_state = 13;
     large_make(&s, TC_U8);
-    tc_interval_options_init(&how);
+    tc_interval_volume_options_init(&how);
     how.low = 45;
     s.tetrahedra[4 * s.options.tetrahedron_count - 2] = (uint32_t)s.options.point_count;
     grids_open(grid_make, &s.options, "refused");
     for (int n = 0; n < CONTEXTS; n++) {
-        tc_interval_counts counts = {.struct_size = sizeof counts};
-        EXPECT_REFUSED(tc_extract_interval(engines[n].grid, &how, &engines[n].interval), TC_ERROR_DATA,
+        tc_interval_volume_counts counts = {.struct_size = sizeof counts};
+        EXPECT_REFUSED(tc_extract_interval_volume(engines[n].grid, &how, &engines[n].interval), TC_ERROR_DATA,
                        "a point that is not there");
-        EXPECT_REFUSED(tc_count_interval(engines[n].grid, &how, &counts), TC_ERROR_DATA, "a point that is not there");
+        EXPECT_REFUSED(tc_count_interval_volume(engines[n].grid, &how, &counts), TC_ERROR_DATA,
+                       "a point that is not there");
         EXPECT(strstr(tc_message(), "has point"), "not told which: %s", tc_message());
     }
     grids_close();

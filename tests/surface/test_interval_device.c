@@ -103,7 +103,7 @@ static tc_status grid_make(tc_context *context, const void *options, tc_grid **g
 
 static void run(uint64_t seed, const tc_context_options *copying) {
     tc_grid_options g;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     char name[200];
     random_state = seed * 0x2545f4914f6cdd1du;
     grid_choose(&g);
@@ -114,7 +114,7 @@ static void run(uint64_t seed, const tc_context_options *copying) {
         range_choose(&how);
         snprintf(name, sizeof name, "seed %" PRIu64 ": %lldx%lldx%lld %s, %g to %g", seed, (long long)g.dims[0],
                  (long long)g.dims[1], (long long)g.dims[2], tc_type_name(g.type), how.low, how.high);
-        const tc_interval_data *expected = &engines[REFERENCE].data;
+        const tc_interval_volume_data *expected = &engines[REFERENCE].data;
         if (!interval_make(&engines[REFERENCE], &how, name)) continue;
         expect_engines(&how, random_below(2), name);
         if (n == 0 && seed % 4 == 0) expect_bounded(copying, grid_make, &g, &how, expected, name);
@@ -125,12 +125,12 @@ static void run(uint64_t seed, const tc_context_options *copying) {
 /* Many layers, so that they go in slabs; nearly no samples missing, or none. */
 static void test_slabs(const tc_context_options *copying) {
     tc_grid_options g;
-    tc_interval_options how;
+    tc_interval_volume_options how;
     for (int kind = 0; kind < 2; kind++) {
         const char *name = kind ? "layers of f32, some missing" : "layers of u8";
         random_state = 5 + (uint64_t)kind;
         tc_grid_options_init(&g);
-        tc_interval_options_init(&how);
+        tc_interval_volume_options_init(&how);
         g.dims[0] = 64, g.dims[1] = 40, g.dims[2] = 360;
         g.samples = memory;
         g.type = kind ? TC_F32 : TC_U8;

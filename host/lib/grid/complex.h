@@ -116,13 +116,15 @@ bool complex_is_classified(const tc_grid *grid, const tc_extract_options *option
 tc_status complex_device_carry(const tc_grid *grid, const tc_extract_options *options, const carry *c,
                                uint64_t *vertex_count);
 
-/* Interval volumes on the device path (complex_interval.c): as tc_count_interval and tc_extract_interval, with
- * arguments checked and kernels vetted. A field carried to the vertices at points alone, as many as there is room for;
- * *count: how many there are. */
-tc_status complex_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+/* Interval volumes on the device path (complex_interval.c): as tc_count_interval_volume and tc_extract_interval_volume,
+ * with arguments checked and kernels vetted. A field carried to the vertices at points alone, as many as there is room
+ * for; *count: how many there are. */
+tc_status complex_interval_count(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
                                  double *classify_ms);
-tc_status complex_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval);
-tc_status complex_interval_carry(tc_grid *grid, const tc_interval_options *options, const carry *c, uint64_t *count);
+tc_status complex_interval_extract(tc_grid *grid, const tc_interval_volume_options *options,
+                                   tc_interval_volume *interval);
+tc_status complex_interval_carry(tc_grid *grid, const tc_interval_volume_options *options, const carry *c,
+                                 uint64_t *count);
 
 /* Surfaces by the scalar reference (reference_complex.c). */
 tc_status reference_complex_count(const tc_grid *grid, const tc_extract_options *options, tc_counts *counts);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool interval_bounds_find(tc_type type, const tc_interval_options *options, inside_range inside[BOUND_COUNT],
+bool interval_bounds_find(tc_type type, const tc_interval_volume_options *options, inside_range inside[BOUND_COUNT],
                           bool exists[BOUND_COUNT]) {
     const bool has_low = !isinf(options->low), has_high = !isinf(options->high);
     if (has_low) inside[BOUND_LOW] = inside_range_of(type, options->low);
@@ -29,8 +29,8 @@ uint64_t interval_bytes(const interval_size *size) {
     return 3 * sizeof(float) * interval_first(size, BLOCK_COUNT) + TETRAHEDRON_BYTES * size->tetrahedra;
 }
 
-tc_interval *interval_create(spare_blocks *spare) {
-    tc_interval *interval = calloc(1, sizeof *interval);
+tc_interval_volume *interval_create(spare_blocks *spare) {
+    tc_interval_volume *interval = calloc(1, sizeof *interval);
     if (!interval) {
         fail(TC_ERROR_MEMORY, "no memory for an interval volume");
         return NULL;
@@ -40,7 +40,7 @@ tc_interval *interval_create(spare_blocks *spare) {
     return interval;
 }
 
-tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
+tc_status interval_allocate(tc_interval_volume *interval, const interval_size *size) {
     const uint64_t vertices = interval_first(size, BLOCK_COUNT);
     if (vertices > UINT32_MAX)
         return (tc_status)fail(
@@ -64,35 +64,35 @@ tc_status interval_allocate(tc_interval *interval, const interval_size *size) {
     return status;
 }
 
-void interval_clear(tc_interval *interval) {
+void interval_clear(tc_interval_volume *interval) {
     interval->size = (interval_size){0};
     memset(interval->origin, 0, sizeof interval->origin);
     interval->slab_count = 1;
     interval->timings = (tc_timings){0};
 }
 
-tc_status tc_interval_get(const tc_interval *interval, tc_interval_data *data) {
-    tc_status status = struct_clear(data, sizeof *data, "tc_interval_get: data");
+tc_status tc_interval_volume_get(const tc_interval_volume *interval, tc_interval_volume_data *data) {
+    tc_status status = struct_clear(data, sizeof *data, "tc_interval_volume_get: data");
     if (status) return status;
-    if (!interval) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_interval_get needs an interval volume");
+    if (!interval) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_interval_volume_get needs an interval volume");
     const interval_size *size = &interval->size;
     const uint64_t vertices = interval_first(size, BLOCK_COUNT);
-    const tc_interval_data found = {.struct_size = sizeof found,
-                                    .vertex_count = vertices,
-                                    .sample_count = size->vertices[BLOCK_SAMPLES],
-                                    .low_count = size->vertices[BLOCK_LOW],
-                                    .high_count = size->vertices[BLOCK_HIGH],
-                                    .tetrahedron_count = size->tetrahedra,
-                                    .positions = vertices ? interval->positions.memory : NULL,
-                                    .tetrahedra = size->tetrahedra ? interval->tetrahedra.memory : NULL,
-                                    .slab_count = interval->slab_count,
-                                    .timings = interval->timings,
-                                    .origin = {interval->origin[0], interval->origin[1], interval->origin[2]}};
+    const tc_interval_volume_data found = {.struct_size = sizeof found,
+                                           .vertex_count = vertices,
+                                           .sample_count = size->vertices[BLOCK_SAMPLES],
+                                           .low_count = size->vertices[BLOCK_LOW],
+                                           .high_count = size->vertices[BLOCK_HIGH],
+                                           .tetrahedron_count = size->tetrahedra,
+                                           .positions = vertices ? interval->positions.memory : NULL,
+                                           .tetrahedra = size->tetrahedra ? interval->tetrahedra.memory : NULL,
+                                           .slab_count = interval->slab_count,
+                                           .timings = interval->timings,
+                                           .origin = {interval->origin[0], interval->origin[1], interval->origin[2]}};
     struct_copy_out(data, &found);
     return TC_OK;
 }
 
-void tc_interval_destroy(tc_interval *interval) {
+void tc_interval_volume_destroy(tc_interval_volume *interval) {
     if (!interval) return;
     spare_block_give(interval->spare, &interval->positions);
     spare_block_give(interval->spare, &interval->tetrahedra);

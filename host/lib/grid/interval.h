@@ -20,7 +20,7 @@ typedef struct interval_size {
     uint64_t tetrahedra;
 } interval_size;
 
-struct tc_interval {
+struct tc_interval_volume {
     spare_blocks *spare; /* of the context */
     interval_size size;
     double origin[3]; /* that positions are relative to */
@@ -30,7 +30,7 @@ struct tc_interval {
 };
 
 /* Whether samples of the type can be within; and which bounds separate any, with their tests. */
-bool interval_bounds_find(tc_type type, const tc_interval_options *options, inside_range inside[BOUND_COUNT],
+bool interval_bounds_find(tc_type type, const tc_interval_volume_options *options, inside_range inside[BOUND_COUNT],
                           bool exists[BOUND_COUNT]);
 
 /* The number of a block's first vertex; of BLOCK_COUNT: of all vertices. */
@@ -40,12 +40,12 @@ uint64_t interval_first(const interval_size *size, int block);
 uint64_t interval_bytes(const interval_size *size);
 
 /* An empty one, the caller's to destroy; NULL: no memory. */
-tc_interval *interval_create(spare_blocks *spare);
+tc_interval_volume *interval_create(spare_blocks *spare);
 
 /* Sets the size and reserves the memory; checks that indices fit 32 bits. */
-tc_status interval_allocate(tc_interval *interval, const interval_size *size);
+tc_status interval_allocate(tc_interval_volume *interval, const interval_size *size);
 
 /* Nothing in it; memory is kept. */
-void interval_clear(tc_interval *interval);
+void interval_clear(tc_interval_volume *interval);
 
 #endif

@@ -17,8 +17,8 @@ typedef struct interval_run {
     tc_mesh surfaces[BOUND_COUNT]; /* their vertices' place in the interval volume */
     uint32_t first[BOUND_COUNT];   /* number of the first vertex of each */
     interval_case cases[INTERVAL_CASES];
-    uint32_t *point_numbers; /* of samples within; NO_NUMBER elsewhere */
-    tc_interval *interval;   /* NULL: count only */
+    uint32_t *point_numbers;      /* of samples within; NO_NUMBER elsewhere */
+    tc_interval_volume *interval; /* NULL: count only */
     uint64_t sample_count, tetrahedron_count;
 } interval_run;
 
@@ -118,7 +118,7 @@ static void samples_number(interval_run *v) {
         if (v->point_numbers[n] != NO_NUMBER) v->point_numbers[n] = (uint32_t)v->sample_count++;
 }
 
-static tc_status run_begin(interval_run *v, const tc_grid *grid, const tc_interval_options *options) {
+static tc_status run_begin(interval_run *v, const tc_grid *grid, const tc_interval_volume_options *options) {
     const uint64_t points = grid->complex->point_count;
     tc_status status = TC_OK;
     *v = (interval_run){.grid = grid};
@@ -148,7 +148,7 @@ static tc_status run_count(interval_run *v, double share, interval_size *size) {
     return status;
 }
 
-static void run_prepare(interval_run *v, tc_interval *interval) {
+static void run_prepare(interval_run *v, tc_interval_volume *interval) {
     float *positions = interval->positions.memory;
     v->interval = interval;
     for (int n = 0; n < BOUND_COUNT; n++) {
@@ -171,7 +171,7 @@ static tc_status run_complete(const interval_run *v) {
     return v->tetrahedron_count == size->tetrahedra ? TC_OK : reference_complex_change_fail();
 }
 
-tc_status reference_complex_interval_count(const tc_grid *grid, const tc_interval_options *options,
+tc_status reference_complex_interval_count(const tc_grid *grid, const tc_interval_volume_options *options,
                                            interval_size *size) {
     interval_run v;
     tc_status status = run_begin(&v, grid, options);
@@ -180,8 +180,8 @@ tc_status reference_complex_interval_count(const tc_grid *grid, const tc_interva
     return status;
 }
 
-tc_status reference_complex_interval_extract(const tc_grid *grid, const tc_interval_options *options,
-                                             tc_interval *interval) {
+tc_status reference_complex_interval_extract(const tc_grid *grid, const tc_interval_volume_options *options,
+                                             tc_interval_volume *interval) {
     interval_run v;
     interval_size size = {{0}, 0};
     const double start = clock_ms();
@@ -201,8 +201,8 @@ tc_status reference_complex_interval_extract(const tc_grid *grid, const tc_inter
     return status;
 }
 
-tc_status reference_complex_interval_carry(const tc_grid *grid, const tc_interval_options *options, const carry *c,
-                                           uint64_t *count) {
+tc_status reference_complex_interval_carry(const tc_grid *grid, const tc_interval_volume_options *options,
+                                           const carry *c, uint64_t *count) {
     interval_run v;
     interval_size size = {{0}, 0};
     tc_status status = run_begin(&v, grid, options);

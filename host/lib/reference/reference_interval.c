@@ -20,7 +20,7 @@ typedef struct interval_run {
     uint32_t *sample_ids[2];       /* of samples within, for even and odd layers */
     interval_case cases[INTERVAL_CASES];
     ordered_tetrahedron tetrahedra[2][TETRAHEDRA_PER_CUBE];
-    tc_interval *interval; /* NULL: count only */
+    tc_interval_volume *interval; /* NULL: count only */
     const carry *carried;
     uint64_t sample_count, tetrahedron_count;
 } interval_run;
@@ -131,7 +131,7 @@ static tc_status layers_run(interval_run *v, const char *stage, double before, d
     return status;
 }
 
-static tc_status run_begin(interval_run *v, const tc_grid *grid, const tc_interval_options *options) {
+static tc_status run_begin(interval_run *v, const tc_grid *grid, const tc_interval_volume_options *options) {
     tc_status status = TC_OK;
     *v = (interval_run){0};
     interval_cases_derive(v->cases);
@@ -159,7 +159,7 @@ static interval_size run_size(const interval_run *v) {
 }
 
 /* Room for numbers, and where vertices go. */
-static tc_status run_prepare(interval_run *v, tc_interval *interval) {
+static tc_status run_prepare(interval_run *v, tc_interval_volume *interval) {
     tc_status status = TC_OK;
     v->interval = interval;
     for (int n = 0; n < BOUND_COUNT && !status; n++) {
@@ -187,7 +187,8 @@ static tc_status run_complete(const interval_run *v) {
     return (tc_status)fail(TC_ERROR_DATA, "samples have changed while an interval volume was made of them");
 }
 
-tc_status reference_interval_count(const tc_grid *grid, const tc_interval_options *options, interval_size *size) {
+tc_status reference_interval_count(const tc_grid *grid, const tc_interval_volume_options *options,
+                                   interval_size *size) {
     interval_run v;
     tc_status status = run_begin(&v, grid, options);
     if (!status) status = layers_run(&v, "classify", 0, 1);
@@ -196,7 +197,8 @@ tc_status reference_interval_count(const tc_grid *grid, const tc_interval_option
     return status;
 }
 
-tc_status reference_interval_extract(const tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
+tc_status reference_interval_extract(const tc_grid *grid, const tc_interval_volume_options *options,
+                                     tc_interval_volume *interval) {
     interval_run v;
     const double start = clock_ms();
     tc_status status = run_begin(&v, grid, options);
@@ -214,7 +216,7 @@ tc_status reference_interval_extract(const tc_grid *grid, const tc_interval_opti
     return status;
 }
 
-tc_status reference_interval_carry(const tc_grid *grid, const tc_interval_options *options, const carry *c,
+tc_status reference_interval_carry(const tc_grid *grid, const tc_interval_volume_options *options, const carry *c,
                                    uint64_t *count) {
     interval_run v;
     tc_status status = run_begin(&v, grid, options);

@@ -262,7 +262,7 @@ static tc_status host_reserve(interval_run *r) {
     return is_there ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of bricks");
 }
 
-static tc_status interval_begin(interval_run *r, tc_grid *grid, const tc_interval_options *options,
+static tc_status interval_begin(interval_run *r, tc_grid *grid, const tc_interval_volume_options *options,
                                 const inside_range inside[BOUND_COUNT]) {
     tc_context *context = grid->context;
     tc_status status = TC_OK;
@@ -319,8 +319,8 @@ static tc_status interval_slabs_count(interval_run *r, interval_size *size) {
 
 /* As structured.c: where kernel 1 meets a NaN or infinity in a grid not known to miss samples, all is classified again,
  * with missing cells. Without any kernel 1 a type that has such values is taken to have them. */
-static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_interval_options *options, double share,
-                                    interval_size *size) {
+static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_interval_volume_options *options,
+                                    double share, interval_size *size) {
     inside_range inside[BOUND_COUNT] = {{0}};
     *r = (interval_run){.grid = grid,
                         .context = grid->context,
@@ -338,7 +338,7 @@ static tc_status interval_run_count(interval_run *r, tc_grid *grid, const tc_int
     return status ? status : interval_slabs_count(r, size);
 }
 
-tc_status structured_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+tc_status structured_interval_count(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
                                     double *classify_ms) {
     interval_run r;
     tc_status status = interval_run_count(&r, grid, options, 1, size);
@@ -347,7 +347,7 @@ tc_status structured_interval_count(tc_grid *grid, const tc_interval_options *op
     return status;
 }
 
-static tc_status interval_slabs_emit(interval_run *r, tc_interval *interval) {
+static tc_status interval_slabs_emit(interval_run *r, tc_interval_volume *interval) {
     tc_status status = TC_OK;
     for (uint32_t n = 0; n < r->plan.slab_count && !status; n++) {
         if (r->plan.slab_count > 1) status = interval_classify(r, n);
@@ -359,7 +359,8 @@ static tc_status interval_slabs_emit(interval_run *r, tc_interval *interval) {
     return status;
 }
 
-tc_status structured_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
+tc_status structured_interval_extract(tc_grid *grid, const tc_interval_volume_options *options,
+                                      tc_interval_volume *interval) {
     interval_run r;
     interval_size size;
     tc_status status = interval_run_count(&r, grid, options, 0.5, &size);

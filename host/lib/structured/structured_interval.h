@@ -63,17 +63,18 @@ const word_buffers *interval_words(const interval_run *r, int bound);
 tc_status interval_classify(interval_run *r, uint32_t n);
 
 /* Emits the slab that was classified last. */
-tc_status interval_slab_emit(interval_run *r, tc_interval *interval);
+tc_status interval_slab_emit(interval_run *r, tc_interval_volume *interval);
 
 /* When all slabs are there: brings the blocks of vertices together, which had pages of their own. */
-void interval_blocks_join(const interval_run *r, tc_interval *interval);
+void interval_blocks_join(const interval_run *r, tc_interval_volume *interval);
 
 /* The kind of the kernels. */
 kernel_kind structured_interval_kind(const tc_grid *grid);
 
-/* As tc_count_interval and tc_extract_interval, with arguments checked and kernels vetted. */
-tc_status structured_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+/* As tc_count_interval_volume and tc_extract_interval_volume, with arguments checked and kernels vetted. */
+tc_status structured_interval_count(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
                                     double *classify_ms);
-tc_status structured_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval);
+tc_status structured_interval_extract(tc_grid *grid, const tc_interval_volume_options *options,
+                                      tc_interval_volume *interval);
 
 #endif

@@ -66,13 +66,13 @@ static uint32_t step_end(const interval_run *r, const brick_sums *sums, uint32_t
 }
 
 /* The number of the slab's first vertex in a block. */
-static uint64_t block_first(const interval_run *r, const tc_interval *interval, int block) {
+static uint64_t block_first(const interval_run *r, const tc_interval_volume *interval, int block) {
     return interval_first(&interval->size, block) + r->before.vertices[block];
 }
 
 /* Where a part lies in its block of memory while it is made, in bytes. On a device that works in the host's memory no
  * page is in two buffers, which would be undefined, so each block of vertices then begins with a page of its own. */
-static uint64_t part_start(const interval_run *r, const tc_interval *interval, int part) {
+static uint64_t part_start(const interval_run *r, const tc_interval_volume *interval, int part) {
     uint64_t start = 0;
     if (part == BLOCK_COUNT) return 0;
     if (!r->context->in_place) return interval_first(&interval->size, part) * item_bytes[part];
@@ -82,23 +82,23 @@ static uint64_t part_start(const interval_run *r, const tc_interval *interval, i
 }
 
 /* Of the slab's item n. */
-static uint64_t part_byte(const interval_run *r, const tc_interval *interval, int part, uint64_t n) {
+static uint64_t part_byte(const interval_run *r, const tc_interval_volume *interval, int part, uint64_t n) {
     const uint64_t before = part == BLOCK_COUNT ? r->before.tetrahedra : r->before.vertices[part];
     return part_start(r, interval, part) + (before + n) * item_bytes[part];
 }
 
-void interval_blocks_join(const interval_run *r, tc_interval *interval) {
+void interval_blocks_join(const interval_run *r, tc_interval_volume *interval) {
     for (int n = BLOCK_LOW; n < BLOCK_COUNT && r->context->in_place; n++)
         memmove((char *)interval->positions.memory + interval_first(&interval->size, n) * item_bytes[n],
                 (char *)interval->positions.memory + part_start(r, interval, n),
                 (size_t)(interval->size.vertices[n] * item_bytes[n]));
 }
 
-static const host_block *part_block(const tc_interval *interval, int part) {
+static const host_block *part_block(const tc_interval_volume *interval, int part) {
     return part == BLOCK_COUNT ? &interval->tetrahedra : &interval->positions;
 }
 
-static tc_status step_open(interval_run *r, const tc_interval *interval, const brick_sums *first,
+static tc_status step_open(interval_run *r, const tc_interval_volume *interval, const brick_sums *first,
                            const brick_sums *end) {
     interval_job *job = &r->job;
     tc_status status = TC_OK;
@@ -152,7 +152,8 @@ static tc_status step_launch(interval_run *r) {
 }
 
 /* What the step has made is in the host's memory, when it returns. */
-static tc_status step_close(interval_run *r, tc_interval *interval, const brick_sums *first, const brick_sums *end) {
+static tc_status step_close(interval_run *r, tc_interval_volume *interval, const brick_sums *first,
+                            const brick_sums *end) {
     cl_int error = cl->Finish(r->context->queue);
     const double begin = clock_ms();
     tc_status status = error ? context_fail(r->context, "kernel interval_emit", error) : TC_OK;
@@ -164,7 +165,7 @@ static tc_status step_close(interval_run *r, tc_interval *interval, const brick_
     return status;
 }
 
-tc_status interval_slab_emit(interval_run *r, tc_interval *interval) {
+tc_status interval_slab_emit(interval_run *r, tc_interval_volume *interval) {
     brick_sums *sums = sums_make(r);
     tc_status status = sums ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "no memory for the sums of bricks");
     for (uint32_t first = 0, end; first < r->job.own_bricks && !status; first = end) {

@@ -37,8 +37,8 @@ static tc_status bound_begin(volume_run *v, int bound) {
     return complex_run_open(&v->bounds[bound], &surface);
 }
 
-tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                       bool is_cut) {
+tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_volume_options *options,
+                       const bool exists[BOUND_COUNT], bool is_cut) {
     *v = (volume_run){.grid = grid,
                       .context = grid->context,
                       .options = options,
@@ -196,7 +196,7 @@ static tc_status room_check(volume_run *v, uint64_t bytes, const char *name) {
                            name);
 }
 
-static tc_status volume_open(volume_run *v, const tc_interval *interval, uint64_t bytes[2]) {
+static tc_status volume_open(volume_run *v, const tc_interval_volume *interval, uint64_t bytes[2]) {
     volume_buffers *w = v->work;
     uint32_t offset; /* 0, as blocks begin with a page */
     bytes[0] = CHANNEL_BYTES * interval_first(&interval->size, BLOCK_COUNT);
@@ -210,7 +210,7 @@ static tc_status volume_open(volume_run *v, const tc_interval *interval, uint64_
                : mesh_part_open(v->context, &w->tetrahedra, &interval->tetrahedra, 0, bytes[1], &offset, "tetrahedra");
 }
 
-static tc_status one_piece_emit(volume_run *v, tc_interval *interval) {
+static tc_status one_piece_emit(volume_run *v, tc_interval_volume *interval) {
     uint64_t bytes[2];
     volume_buffers *w = v->work;
     v->job.point_last = v->head[VOLUME_SAMPLES] ? v->head[VOLUME_SAMPLES] - 1 : 0;
@@ -234,7 +234,7 @@ static interval_size size_of(const volume_run *v) {
 }
 
 /* share: of the whole call, for progress. */
-static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval_options *options,
+static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval_volume_options *options,
                                  const bool exists[BOUND_COUNT], double share) {
     tc_status status = volume_begin(v, grid, options, exists, false);
     for (int n = 0; n < BOUND_COUNT && !status; n++) {
@@ -246,8 +246,9 @@ static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval
 }
 
 /* In one piece; *too_large: it does not fit the device. interval NULL: counts. */
-static tc_status one_piece_make(tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                                interval_size *size, double *classify_ms, tc_interval *interval, bool *too_large) {
+static tc_status one_piece_make(tc_grid *grid, const tc_interval_volume_options *options,
+                                const bool exists[BOUND_COUNT], interval_size *size, double *classify_ms,
+                                tc_interval_volume *interval, bool *too_large) {
     volume_run v;
     tc_status status = one_piece_count(&v, grid, options, exists, interval ? 0.5 : 1);
     if (!status) *size = size_of(&v);
@@ -281,8 +282,8 @@ static tc_status slabs_provide(tc_grid *grid) {
     return TC_OK;
 }
 
-static tc_status volume_make(tc_grid *grid, const tc_interval_options *options, interval_size *size,
-                             double *classify_ms, tc_interval *interval) {
+static tc_status volume_make(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
+                             double *classify_ms, tc_interval_volume *interval) {
     complex_grid *c = grid->complex;
     inside_range inside[BOUND_COUNT];
     bool exists[BOUND_COUNT], too_large = c->slabs || c->interval_slabs || !complex_interval_sums_fit(grid);
@@ -303,18 +304,20 @@ static tc_status volume_make(tc_grid *grid, const tc_interval_options *options, 
     return status;
 }
 
-tc_status complex_interval_count(tc_grid *grid, const tc_interval_options *options, interval_size *size,
+tc_status complex_interval_count(tc_grid *grid, const tc_interval_volume_options *options, interval_size *size,
                                  double *classify_ms) {
     return volume_make(grid, options, size, classify_ms, NULL);
 }
 
-tc_status complex_interval_extract(tc_grid *grid, const tc_interval_options *options, tc_interval *interval) {
+tc_status complex_interval_extract(tc_grid *grid, const tc_interval_volume_options *options,
+                                   tc_interval_volume *interval) {
     interval_size size;
     double classify_ms;
     return volume_make(grid, options, &size, &classify_ms, interval);
 }
 
-tc_status complex_interval_carry(tc_grid *grid, const tc_interval_options *options, const carry *c, uint64_t *count) {
+tc_status complex_interval_carry(tc_grid *grid, const tc_interval_volume_options *options, const carry *c,
+                                 uint64_t *count) {
     points_within within;
     tc_status status = points_within_find(grid, options, &within);
     const uint64_t words = point_word_count(grid->complex);

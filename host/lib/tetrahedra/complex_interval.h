@@ -16,7 +16,7 @@
 typedef struct volume_run {
     tc_grid *grid;
     tc_context *context;
-    const tc_interval_options *options;
+    const tc_interval_volume_options *options;
     complex_run bounds[BOUND_COUNT];
     bool exists[BOUND_COUNT];
     bool is_cut; /* into slabs */
@@ -27,8 +27,8 @@ typedef struct volume_run {
 } volume_run;
 
 /* Kernels and workspaces; exists: which bounds separate any samples. */
-tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                       bool is_cut);
+tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_volume_options *options,
+                       const bool exists[BOUND_COUNT], bool is_cut);
 
 /* Classifies the surface of a bound in the part that is on the device, and numbers its vertices. */
 tc_status volume_bound_classify(volume_run *v, int bound);
@@ -47,7 +47,7 @@ uint8_t *volume_table_make(void);
 
 /* Slab by slab (complex_interval_slabs.c); before: the part of the call that is done before, for progress. interval
  * NULL: counts. */
-tc_status volume_slabs_make(tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                            double before, interval_size *size, double *classify_ms, tc_interval *interval);
+tc_status volume_slabs_make(tc_grid *grid, const tc_interval_volume_options *options, const bool exists[BOUND_COUNT],
+                            double before, interval_size *size, double *classify_ms, tc_interval_volume *interval);
 
 #endif

@@ -29,7 +29,7 @@ typedef struct volume_slabs {
     uint64_t tetrahedra; /* of all slabs */
 
     /* While they are emitted: */
-    tc_interval *interval;
+    tc_interval_volume *interval;
     float *positions; /* of a slab's crossings */
     uint64_t vertices_done[BOUND_COUNT], numbers_done[BOUND_COUNT], tetrahedra_done;
     double readback_ms;
@@ -194,7 +194,7 @@ static tc_status slabs_emit(volume_slabs *t, double before, const interval_size 
 
 /* ------------------------------------------------------------------------------------------------------------ calls */
 
-static tc_status slabs_begin(volume_slabs *t, tc_grid *grid, const tc_interval_options *options,
+static tc_status slabs_begin(volume_slabs *t, tc_grid *grid, const tc_interval_volume_options *options,
                              const bool exists[BOUND_COUNT]) {
     struct complex_slabs *slabs = grid->complex->interval_slabs;
     *t = (volume_slabs){.grid = grid, .slabs = slabs};
@@ -216,8 +216,8 @@ static void slabs_end(volume_slabs *t) {
     free(t->sizes);
 }
 
-tc_status volume_slabs_make(tc_grid *grid, const tc_interval_options *options, const bool exists[BOUND_COUNT],
-                            double before, interval_size *size, double *classify_ms, tc_interval *interval) {
+tc_status volume_slabs_make(tc_grid *grid, const tc_interval_volume_options *options, const bool exists[BOUND_COUNT],
+                            double before, interval_size *size, double *classify_ms, tc_interval_volume *interval) {
     const double middle = interval ? (before + 1) / 2 : 1;
     volume_slabs t;
     tc_status status = slabs_begin(&t, grid, options, exists);

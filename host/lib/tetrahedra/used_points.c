@@ -69,12 +69,12 @@ tc_status used_points_provide(tc_grid *grid) {
     return TC_OK;
 }
 
-static bool is_within(const tc_grid *grid, const tc_interval_options *options, uint64_t point) {
+static bool is_within(const tc_grid *grid, const tc_interval_volume_options *options, uint64_t point) {
     const double value = grid_value_at(grid, (int64_t)point);
     return value >= options->low && !(value >= options->high);
 }
 
-tc_status points_within_find(tc_grid *grid, const tc_interval_options *options, points_within *out) {
+tc_status points_within_find(tc_grid *grid, const tc_interval_volume_options *options, points_within *out) {
     const uint64_t count = point_word_count(grid->complex);
     *out = (points_within){0};
     tc_status status = used_points_provide(grid);

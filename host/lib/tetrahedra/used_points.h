@@ -23,7 +23,7 @@ typedef struct points_within {
 } points_within;
 
 /* To be released in any case. */
-tc_status points_within_find(tc_grid *grid, const tc_interval_options *options, points_within *out);
+tc_status points_within_find(tc_grid *grid, const tc_interval_volume_options *options, points_within *out);
 void points_within_release(points_within *p);
 
 static inline uint32_t point_within_number(const points_within *p, uint32_t point) {

@@ -135,10 +135,10 @@ static tc_status kernels_build(tc_context *context, kernel_kind kind) {
 
 /* What one interval volume has is compared, counts first. */
 static tc_status interval_compare(tc_context *context, const trial_volume *v, tc_grid *grid,
-                                  const tc_interval_options *how, const tc_interval *expected) {
+                                  const tc_interval_volume_options *how, const tc_interval_volume *expected) {
     interval_size size;
     double ms;
-    tc_interval found = {.slab_count = 1};
+    tc_interval_volume found = {.slab_count = 1};
     tc_status status = grid->complex ? complex_interval_count(grid, how, &size, &ms)
                                      : structured_interval_count(grid, how, &size, &ms);
     if (!status && memcmp(&size, &expected->size, sizeof size))
@@ -160,9 +160,9 @@ static tc_status interval_compare(tc_context *context, const trial_volume *v, tc
 static tc_status interval_try(tc_context *context, trial_volume *v) {
     tc_context host = {.options = {.struct_size = sizeof host.options, .engine = TC_ENGINE_REFERENCE}};
     tc_grid *grid = NULL;
-    tc_interval expected = {.slab_count = 1};
+    tc_interval_volume expected = {.slab_count = 1};
     tc_status status = trial_volume_make(v);
-    const tc_interval_options how = {sizeof how, v->isovalue, v->isovalue + (type_is_real(v->type) ? 0.3 : 3.3)};
+    const tc_interval_volume_options how = {sizeof how, v->isovalue, v->isovalue + (type_is_real(v->type) ? 0.3 : 3.3)};
     if (!status) status = trial_grid_create(v, &host, host.launch.scan, &grid);
     if (!status)
         status = v->unstructured ? reference_complex_interval_extract(grid, &how, &expected)

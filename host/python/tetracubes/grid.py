@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import arrays, context as contexts
 from .library import (check, options, tc, tc_counts, tc_device_mesh, tc_engine, tc_extract_options, tc_field,
-                      tc_grid_options, tc_interval_data, tc_interval_options, tc_labels_options, tc_mesh_data, tc_method)
+                      tc_grid_options, tc_interval_volume_data, tc_interval_volume_options, tc_labels_options, tc_mesh_data, tc_method)
 from .mesh import Mesh
 from .tetrahedra import Tetrahedra
 
@@ -169,19 +169,19 @@ class GridBase:
         carry: as of ``extract``.
         """
         fields = {name: self._field(name, array) for name, array in (carry or {}).items()}
-        how = options(tc_interval_options)
+        how = options(tc_interval_volume_options)
         how.low = how.low if low is None else float(low)
         how.high = how.high if high is None else float(high)
-        handle, data = ctypes.c_void_p(), tc_interval_data()
+        handle, data = ctypes.c_void_p(), tc_interval_volume_data()
         try:
-            self._call(tc.tc_extract_interval, ctypes.byref(how), ctypes.byref(handle))
+            self._call(tc.tc_extract_interval_volume, ctypes.byref(how), ctypes.byref(handle))
         finally:
-            memory = LibraryMemory(handle, tc.tc_interval_destroy)
-        check(tc.tc_interval_get(handle, ctypes.byref(data)))
+            memory = LibraryMemory(handle, tc.tc_interval_volume_destroy)
+        check(tc.tc_interval_volume_get(handle, ctypes.byref(data)))
         return Tetrahedra(arrays.owned(data.positions, (data.vertex_count, 3), np.float32, memory),
                           arrays.owned(data.tetrahedra, (data.tetrahedron_count, 4), np.uint32, memory),
                           (data.sample_count, data.low_count, data.high_count),
-                          {name: self._carried(tc.tc_interpolate_interval, how, field, data.vertex_count)
+                          {name: self._carried(tc.tc_interpolate_interval_volume, how, field, data.vertex_count)
                            for name, field in fields.items()}, np.array(data.origin), self._axes)
 
     def _field(self, name, array):

@@ -166,17 +166,17 @@ class tc_field(_Sized):
     _fields_ = [("struct_size", c_size_t), ("type", c_int), ("components", c_int), ("values", c_void_p)]
 
 
-class tc_interval_options(_Sized):
+class tc_interval_volume_options(_Sized):
     _fields_ = [("struct_size", c_size_t), ("low", c_double), ("high", c_double)]
 
 
-class tc_interval_counts(_Sized):
+class tc_interval_volume_counts(_Sized):
     _fields_ = [("struct_size", c_size_t), ("sample_count", c_uint64), ("low_count", c_uint64),
                 ("high_count", c_uint64), ("tetrahedron_count", c_uint64), ("interval_bytes", c_uint64),
                 ("classify_ms", c_double)]
 
 
-class tc_interval_data(_Sized):
+class tc_interval_volume_data(_Sized):
     _fields_ = [("struct_size", c_size_t), ("vertex_count", c_uint64), ("sample_count", c_uint64),
                 ("low_count", c_uint64), ("high_count", c_uint64), ("tetrahedron_count", c_uint64),
                 ("positions", c_void_p), ("tetrahedra", c_void_p), ("slab_count", c_uint32), ("reserved", c_uint32),
@@ -251,12 +251,12 @@ FUNCTIONS = {
     "tc_mesh_get": (_STATUS, c_void_p, POINTER(tc_mesh_data)),
     "tc_mesh_destroy": (None, c_void_p),
     "tc_interpolate_field": (_STATUS, c_void_p, POINTER(tc_extract_options), POINTER(tc_field), c_void_p, c_uint64),
-    "tc_interval_options_init": (None, POINTER(tc_interval_options)),
-    "tc_count_interval": (_STATUS, c_void_p, POINTER(tc_interval_options), POINTER(tc_interval_counts)),
-    "tc_extract_interval": (_STATUS, c_void_p, POINTER(tc_interval_options), _OUT),
-    "tc_interval_get": (_STATUS, c_void_p, POINTER(tc_interval_data)),
-    "tc_interval_destroy": (None, c_void_p),
-    "tc_interpolate_interval": (_STATUS, c_void_p, POINTER(tc_interval_options), POINTER(tc_field), c_void_p,
+    "tc_interval_volume_options_init": (None, POINTER(tc_interval_volume_options)),
+    "tc_count_interval_volume": (_STATUS, c_void_p, POINTER(tc_interval_volume_options), POINTER(tc_interval_volume_counts)),
+    "tc_extract_interval_volume": (_STATUS, c_void_p, POINTER(tc_interval_volume_options), _OUT),
+    "tc_interval_volume_get": (_STATUS, c_void_p, POINTER(tc_interval_volume_data)),
+    "tc_interval_volume_destroy": (None, c_void_p),
+    "tc_interpolate_interval_volume": (_STATUS, c_void_p, POINTER(tc_interval_volume_options), POINTER(tc_field), c_void_p,
                                 c_uint64),
     "tc_tetrahedralize": (_STATUS, POINTER(tc_cells), POINTER(tc_tetrahedra)),
     "tc_tetrahedralize_grid": (_STATUS, POINTER(tc_grid_options), POINTER(tc_tetrahedra)),

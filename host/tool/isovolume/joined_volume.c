@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-int joined_volume_count(engine *e, const tc_interval_options *how, volume_report *v) {
+int joined_volume_count(engine *e, const tc_interval_volume_options *how, volume_report *v) {
     for (int n = 0; n < e->block_count; n++) {
-        tc_interval_counts one = {.struct_size = sizeof one};
-        tc_status status = e->grids[n] ? tc_count_interval(e->grids[n], how, &one) : TC_OK;
+        tc_interval_volume_counts one = {.struct_size = sizeof one};
+        tc_status status = e->grids[n] ? tc_count_interval_volume(e->grids[n], how, &one) : TC_OK;
         if (status) return library_status(status);
         v->sample_count += one.sample_count;
         v->low_count += one.low_count;
@@ -26,7 +26,7 @@ int joined_volume_count(engine *e, const tc_interval_options *how, volume_report
 
 /* ----------------------------------------------------------------------------------------------------------- making */
 
-static void add_sizes(const tc_interval_data *one, tc_interval_data *sum) {
+static void add_sizes(const tc_interval_volume_data *one, tc_interval_volume_data *sum) {
     sum->vertex_count += one->vertex_count;
     sum->sample_count += one->sample_count;
     sum->low_count += one->low_count;
@@ -39,14 +39,14 @@ static void add_sizes(const tc_interval_data *one, tc_interval_data *sum) {
     sum->timings.total_ms += one->timings.total_ms;
 }
 
-static int block_get(const joined_volume *v, int n, tc_interval_data *one) {
-    *one = (tc_interval_data){.struct_size = sizeof *one};
-    return v->blocks[n] ? library_status(tc_interval_get(v->blocks[n], one)) : 0;
+static int block_get(const joined_volume *v, int n, tc_interval_volume_data *one) {
+    *one = (tc_interval_volume_data){.struct_size = sizeof *one};
+    return v->blocks[n] ? library_status(tc_interval_volume_get(v->blocks[n], one)) : 0;
 }
 
 /* One block's arrays are used where they are. */
 static int blocks_join(joined_volume *v) {
-    tc_interval_data one;
+    tc_interval_volume_data one;
     uint64_t vertex = 0, corner = 0;
     if (v->block_count == 1) {
         int status = block_get(v, 0, &one);
@@ -75,22 +75,24 @@ static int blocks_join(joined_volume *v) {
     return 0;
 }
 
-static int field_carry(engine *e, const tc_interval_options *how, const point_field *from, const joined_volume *v,
-                       float *values) {
+static int field_carry(engine *e, const tc_interval_volume_options *how, const point_field *from,
+                       const joined_volume *v, float *values) {
     for (int n = 0; n < v->block_count; n++) {
         const dataset_field *f = &from->blocks[n];
         const tc_field field = {sizeof field, f->type, f->components, f->values};
-        tc_interval_data one;
+        tc_interval_volume_data one;
         int status = block_get(v, n, &one);
         const uint64_t count = one.vertex_count * (uint64_t)f->components;
-        if (!status && count) status = library_status(tc_interpolate_interval(e->grids[n], how, &field, values, count));
+        if (!status && count)
+            status = library_status(tc_interpolate_interval_volume(e->grids[n], how, &field, values, count));
         if (status) return status;
         values += count;
     }
     return 0;
 }
 
-static int fields_carry(engine *e, const tc_interval_options *how, const carried_fields *carried, joined_volume *v) {
+static int fields_carry(engine *e, const tc_interval_volume_options *how, const carried_fields *carried,
+                        joined_volume *v) {
     v->values = calloc((size_t)carried->count + 1, sizeof *v->values);
     if (!v->values) return fail(STATUS_FAILED, "out of memory for the fields to carry");
     for (int n = 0; n < carried->count; n++) {
@@ -104,14 +106,15 @@ static int fields_carry(engine *e, const tc_interval_options *how, const carried
     return 0;
 }
 
-int joined_volume_make(engine *e, const tc_interval_options *how, const carried_fields *carried, joined_volume *v) {
+int joined_volume_make(engine *e, const tc_interval_volume_options *how, const carried_fields *carried,
+                       joined_volume *v) {
     *v = (joined_volume){.block_count = e->block_count, .sum = {.struct_size = sizeof v->sum}};
     v->blocks = calloc((size_t)e->block_count + 1, sizeof *v->blocks);
     if (!v->blocks) return fail(STATUS_FAILED, "out of memory for %d blocks", e->block_count);
     int status = 0;
     for (int n = 0; n < e->block_count && !status; n++) {
-        tc_interval_data one;
-        const tc_status made = e->grids[n] ? tc_extract_interval(e->grids[n], how, &v->blocks[n]) : TC_OK;
+        tc_interval_volume_data one;
+        const tc_status made = e->grids[n] ? tc_extract_interval_volume(e->grids[n], how, &v->blocks[n]) : TC_OK;
         e->fails_alike = made == TC_ERROR_LIMIT;
         status = library_status(made);
         if (!status) status = block_get(v, n, &one);
@@ -122,7 +125,7 @@ int joined_volume_make(engine *e, const tc_interval_options *how, const carried_
 }
 
 void joined_volume_release(joined_volume *v) {
-    for (int n = 0; n < v->block_count && v->blocks; n++) tc_interval_destroy(v->blocks[n]);
+    for (int n = 0; n < v->block_count && v->blocks; n++) tc_interval_volume_destroy(v->blocks[n]);
     for (int n = 0; n < v->field_count; n++) free(v->values[n]);
     free(v->blocks);
     free(v->values);
@@ -158,7 +161,8 @@ int joined_volume_measure(const joined_volume *v, const carried_fields *carried,
 
 static int same(const void *a, const void *b, uint64_t bytes) { return !bytes || memcmp(a, b, (size_t)bytes) == 0; }
 
-int joined_volume_verify(engine *reference, const tc_interval_options *how, const joined_volume *v, int *is_same) {
+int joined_volume_verify(engine *reference, const tc_interval_volume_options *how, const joined_volume *v,
+                         int *is_same) {
     static const carried_fields none;
     joined_volume r;
     int status = joined_volume_make(reference, how, &none, &r);
@@ -183,7 +187,7 @@ static double *world_points(const joined_volume *v, const engine *e, int *status
     const float *from = v->sum.positions;
     if (!points) *status = fail(STATUS_FAILED, "out of memory for coordinates in double precision");
     for (int n = 0; n < v->block_count && !*status; n++) {
-        tc_interval_data one;
+        tc_interval_volume_data one;
         *status = block_get(v, n, &one);
         for (uint64_t m = 0; m < 3 * one.vertex_count && !*status; m++)
             *to++ = e->parts[n].origin[m % 3] + (double)*from++;

@@ -42,9 +42,9 @@ typedef struct group_run {
 typedef struct trial_result {
     tc_grid *grid;
     tc_mesh *mesh;
-    tc_interval *interval;
+    tc_interval_volume *interval;
     tc_mesh_data surface;
-    tc_interval_data volume; /* of interval volumes, instead */
+    tc_interval_volume_data volume; /* of interval volumes, instead */
 } trial_result;
 
 static tc_status extract_surface(const trial *t, trial_result *r) {
@@ -65,9 +65,9 @@ static tc_status extract_labels(const trial *t, trial_result *r) {
 }
 
 static tc_status extract_interval(const trial *t, trial_result *r) {
-    const tc_interval_options how = {sizeof how, t->isovalue, t->high};
-    const tc_status status = tc_extract_interval(r->grid, &how, &r->interval);
-    return status ? status : tc_interval_get(r->interval, &r->volume);
+    const tc_interval_volume_options how = {sizeof how, t->isovalue, t->high};
+    const tc_status status = tc_extract_interval_volume(r->grid, &how, &r->interval);
+    return status ? status : tc_interval_volume_get(r->interval, &r->volume);
 }
 
 static tc_status extract_trial(const trial *t, tc_context *context, const selftest_volume *v, trial_result *r) {
@@ -82,11 +82,11 @@ static tc_status extract_trial(const trial *t, tc_context *context, const selfte
 
 static void release_trial(trial_result *r) {
     tc_mesh_destroy(r->mesh);
-    tc_interval_destroy(r->interval);
+    tc_interval_volume_destroy(r->interval);
     tc_grid_destroy(r->grid);
 }
 
-static int volumes_are_same(const tc_interval_data *device, const tc_interval_data *reference, char *text,
+static int volumes_are_same(const tc_interval_volume_data *device, const tc_interval_volume_data *reference, char *text,
                             size_t bytes) {
     const int counts = device->sample_count == reference->sample_count && device->low_count == reference->low_count &&
                        device->high_count == reference->high_count &&
