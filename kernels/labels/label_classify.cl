@@ -43,36 +43,24 @@ inline_always void label_row_mark(global uint *rows, uint row) {
 inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, global const BITS *samples,
                                     label_arrays out, bool store, uint *cells) {
     const label_place p = label_place_of(s, brick, row);
-    ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES], active = 0, more = 0;
+    ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES], active = 0;
     uint2 sums = 0;
     if (p.y >= s->ny || p.z >= s->z1) return sums;
     label_edges_make(s, p, samples, e);
     if (!label_edges_any(e)) return sums;
     const ulong even = label_even(s, p.y, p.z), cubes = label_cubes(s, p);
     const ulong at = (ulong)BRICK_WORDS * brick + row;
-#pragma unroll
-    for (uint n = 0; n < 5; n++) {
-        const label_sums c = label_tetrahedra(even, e, n);
-        active |= (c.ones | c.fours) & cubes;
-        more |= c.fours & (c.ones | c.twos) & cubes;
-        sums.y += (uint)popcount(c.ones & cubes) + 2 * (uint)popcount(c.fours & cubes);
-    }
-    if (more) { /* cells with three labels, and with four */
-#pragma unroll
-        for (uint n = 0; n < 5; n++) {
-            const label_sums c = label_tetrahedra(even, e, n);
-            sums.y += 2 * (uint)popcount(c.fours & c.ones & cubes) + 10 * (uint)popcount(c.fours & c.twos & cubes);
-        }
-    }
     label_types(even, e, t);
 #pragma unroll
-    for (uint n = 0; n < LABEL_SHARED_TYPES; n++) { /* unrolled: a variable index would need a stack */
-        if (store) out.offsets[LABEL_OFFSETS * at + n] = (ushort)sums.x;
+    for (uint n = 0; n < LABEL_ROW_TYPES; n++) { /* all unrolled: a variable index would need a stack */
+        if (store && n < LABEL_SHARED_TYPES) out.offsets[LABEL_OFFSETS * at + n] = (ushort)sums.x;
         sums.x += (uint)popcount(t[n]);
     }
-    if (more) { /* vertices within such cubes */
 #pragma unroll
-        for (uint n = LABEL_SHARED_TYPES; n < LABEL_ROW_TYPES; n++) sums.x += (uint)popcount(t[n]);
+    for (uint n = 0; n < 5; n++) {
+        const label_cells c = label_cells_in(label_tetrahedra(even, e, n), cubes);
+        active |= label_cells_any(c);
+        sums.y += label_cell_triangles(c);
     }
     if (!(sums.x | sums.y)) return sums;
 #pragma unroll

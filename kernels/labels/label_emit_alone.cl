@@ -295,9 +295,9 @@ inline_always void label_brick_emit(const label_job *s, uint brick, label_arrays
         const uint row = lowest_bit(rows);
         label_row_emit(s, label_place_of(s, brick, row), BRICK_WORDS * brick + row, near, in, tiles, samples, tables,
                        out, made, work);
-        if (work->vertex_count >= LABEL_BATCH || !(rows & (rows - 1)))
-            label_vertices_flush(s, place, tables, out, work);
+        if (work->vertex_count >= LABEL_BATCH) label_vertices_flush(s, place, tables, out, work);
     }
+    label_vertices_flush(s, place, tables, out, work);
     label_triangles_flush(s, out, work);
 }
 

@@ -124,7 +124,7 @@ inline_always void label_row_make(const label_job *s, label_place p, label_near 
     w[7] = label_second_half(~even, e[EXY_Z1], e[EX_YZ1], e[EY_Z1], e[EY_XZ1]);
     r->words[LABEL_WORD_YZ1] = e[EX_YZ1];
 #pragma unroll
-    for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_cells_of(label_tetrahedra(even, e, n)), cubes);
+    for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
     r->triangles = own == NO_ROW ? 0 : near.triangles + in.bases[own].triangles;
     r->place = p;
 }

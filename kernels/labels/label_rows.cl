@@ -45,48 +45,38 @@ inline_always void label_types(ulong even, const ulong e[LABEL_EDGES], ulong t[L
     t[20] = label_select(even, far & e[EZ_XY1] & e[EY_XZ1] & e[EX_YZ1], odd0 & e[EY_Z1] & e[EZ_Y1] & e[EX_YZ1]);
 }
 
-/* How many edges differ of each of 64 tetrahedra, at one place in their cubes: a sum in binary, a word for each digit.
- * Sums 1 and 2 do not occur, as equality is transitive, and six bits make no 7. */
-typedef struct label_sums {
-    ulong ones, twos, fours;
-} label_sums;
-
-/* Of six edges: three at a corner, and three around the face across from it. Their bits are added for all cubes at
- * once. */
-inline_always label_sums label_sums_of(ulong a, ulong b, ulong c, ulong d, ulong f, ulong g) {
-    const ulong low = a ^ b ^ c, low_carry = (a & b) | (c & (a ^ b));
-    const ulong high = d ^ f ^ g, high_carry = (d & f) | (g & (d ^ f));
-    const ulong carry = low & high, fours = (low_carry & high_carry) | (carry & (low_carry ^ high_carry));
-    label_sums sums = {low ^ high, low_carry ^ high_carry ^ carry, fours};
-    return sums;
-}
-
-/* Tetrahedron t of the cubes: the middle one, then those at corners. */
-inline_always label_sums label_tetrahedra(ulong even, const ulong e[LABEL_EDGES], uint t) {
-    const ulong a = e[EXY], b = e[EXZ], c = e[EYZ], a1 = e[EXY_Z1], b1 = e[EXZ_Y1], c1 = e[EYZ_X1];
-    if (t == 0) return label_sums_of(a, b, c, a1, b1, c1);
-    if (t == 1)
-        return label_sums_of(e[EX], label_select(even, e[EY_X1], e[EY]), label_select(even, e[EZ_X1], e[EZ]), a, b,
-                             label_select(even, c1, c));
-    if (t == 2)
-        return label_sums_of(e[EX_Y1], label_select(even, e[EY], e[EY_X1]), label_select(even, e[EZ_Y1], e[EZ_XY1]), a,
-                             b1, label_select(even, c, c1));
-    if (t == 3)
-        return label_sums_of(e[EX_Z1], label_select(even, e[EY_Z1], e[EY_XZ1]), label_select(even, e[EZ], e[EZ_X1]), a1,
-                             b, label_select(even, c, c1));
-    return label_sums_of(e[EX_YZ1], label_select(even, e[EY_XZ1], e[EY_Z1]), label_select(even, e[EZ_XY1], e[EZ_Y1]),
-                         a1, b1, label_select(even, c1, c));
-}
-
-/* Those with three, four, five and six edges that differ: one digit and its neighbour tell these sums apart. */
+/* The tetrahedra of 64 cubes at one place in the cube: those with three, four, five and six edges that differ. */
 typedef struct label_cells {
     ulong three, four, five, six;
 } label_cells;
 
-inline_always label_cells label_cells_of(label_sums s) {
-    const ulong ones = s.ones, twos = s.twos, fours = s.fours;
+/* Of six edges: three at a corner, and three around the face across from it. Their bits are added for all cubes at
+ * once. Sums 1 and 2 do not occur, as equality is transitive, and six bits make no 7: so one bit and its neighbour tell
+ * the sums 3 to 6 apart. */
+inline_always label_cells label_cells_of(ulong a, ulong b, ulong c, ulong d, ulong f, ulong g) {
+    const ulong low = a ^ b ^ c, low_carry = (a & b) | (c & (a ^ b));
+    const ulong high = d ^ f ^ g, high_carry = (d & f) | (g & (d ^ f));
+    const ulong ones = low ^ high, carry = low & high, twos = low_carry ^ high_carry ^ carry;
+    const ulong fours = (low_carry & high_carry) | (carry & (low_carry ^ high_carry));
     label_cells cells = {ones & twos & ~fours, fours & ~ones & ~twos, fours & ones, fours & twos};
     return cells;
+}
+
+/* Tetrahedron t of the cubes: the middle one, then those at corners. */
+inline_always label_cells label_tetrahedra(ulong even, const ulong e[LABEL_EDGES], uint t) {
+    const ulong a = e[EXY], b = e[EXZ], c = e[EYZ], a1 = e[EXY_Z1], b1 = e[EXZ_Y1], c1 = e[EYZ_X1];
+    if (t == 0) return label_cells_of(a, b, c, a1, b1, c1);
+    if (t == 1)
+        return label_cells_of(e[EX], label_select(even, e[EY_X1], e[EY]), label_select(even, e[EZ_X1], e[EZ]), a, b,
+                              label_select(even, c1, c));
+    if (t == 2)
+        return label_cells_of(e[EX_Y1], label_select(even, e[EY], e[EY_X1]), label_select(even, e[EZ_Y1], e[EZ_XY1]), a,
+                              b1, label_select(even, c, c1));
+    if (t == 3)
+        return label_cells_of(e[EX_Z1], label_select(even, e[EY_Z1], e[EY_XZ1]), label_select(even, e[EZ], e[EZ_X1]),
+                              a1, b, label_select(even, c, c1));
+    return label_cells_of(e[EX_YZ1], label_select(even, e[EY_XZ1], e[EY_Z1]), label_select(even, e[EZ_XY1], e[EZ_Y1]),
+                          a1, b1, label_select(even, c1, c));
 }
 
 inline_always uint label_cell_triangles(label_cells c) {
