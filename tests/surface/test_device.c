@@ -460,7 +460,8 @@ int main(int argc, char **argv) {
     test_work_shapes(0, 1);
     test_divisions();
     test_memory_budgets(&subjects[GENTLE]);
-    test_memory_budgets(&subjects[GENTLE_MISSING]);
+    /* closed ones by snap: PoCL takes ten seconds to optimise these kernels */
+    if (!tier_is_quick() || !closed || method != TC_METHOD_SNAP) test_memory_budgets(&subjects[GENTLE_MISSING]);
     if (test_chosen("world space")) test_world_space(reference, device);
     if (test_chosen("used again")) test_reuse(device);
     if (test_chosen("description")) test_description(device);
