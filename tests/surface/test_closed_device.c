@@ -276,7 +276,7 @@ static void contexts_close(void) {
 int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups");
     const uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
-    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 40 : 300;
+    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 40 : tier_count(300);
     if (!device_exists()) return SKIPPED;
     contexts_open(groups ? 64 : 1);
     const bool narrow = groups && tier_is_quick(); /* PoCL takes long to build kernels for groups */
