@@ -32,6 +32,9 @@ static inline tc_context *context_open(const tc_context_options *options) {
 /* A test of the quick tier, which takes a sample of what the long tier tries (common/test_add.cmake). */
 static inline bool tier_is_quick(void) { return getenv("TEST_PLAIN_KERNELS") != NULL; }
 
+/* How many random cases are tried where none are asked for: in the quick tier half as many. */
+static inline uint64_t tier_count(uint64_t count) { return tier_is_quick() ? count / 2 : count; }
+
 /* In the quick tier kernels for groups are not optimised: PoCL takes ten seconds for one, and no CPU gets it unless it
  * is asked for. PoCL does not go back once it was told, so groups come last. */
 static inline void groups_begin(void) {

@@ -3,14 +3,31 @@
 set(kernel_pool ${PROJECT_BINARY_DIR}/tests/kernel_pool)
 include(${CMAKE_CURRENT_LIST_DIR}/plain_kernels.cmake)
 
+# Seconds of a processor that long tests take, about, when those before them have built kernels: the longest start first,
+# so that no long one is left alone at the end. Those that others wait for (test_after) come before all.
+set(test_costs
+    test_bytes_sample 60 test_device_snap 60 test_failures 55 test_cli_devices 50 test_carry 40 test_device_closed 40
+    test_device_closed_snap 35 test_trials 35 test_budget 30 test_host_memory 30 bench 27 test_closed_groups 27
+    test_simplified 26 test_device 25 test_again 22 test_install 24 test_memory 20 test_interval_groups 20
+    test_device_snap_always_copy 20 test_closed_alone 20 test_lacks 20 test_whole 19 test_cancel 18 test_python 18
+    test_selftest 18 bench_tune 17 test_snap 17 test_endings 15 test_whole_always_copy 14 test_curvilinear 14
+    test_cli_stream 14 test_drivers 14 test_program_cache 13 test_snap_groups 12 test_grid_pieces 12
+    test_float_environment 11 test_hybrid 11 test_quiet 11 test_rusticl 11 test_labels_groups 10 test_on_device 10
+    test_device_hybrid 10 test_tool_failures 10 test_ranks 10 test_cli_join 10 test_cli_parts 10 test_cli_far 10)
+
 # test_add(NAME PROGRAM [argument...]): a test that makes no use of OpenCL. The library's own cache is off, so that nothing
 # reaches the user's; a test that wants one names its folder. Limits of time are there to end what hangs: they leave room
-# for a machine several times slower, or as many times as busy. COST, seconds of a processor about, starts long ones
-# first.
+# for a machine several times slower, or as many times as busy.
 function(test_add name)
     add_test(NAME ${name} COMMAND ${ARGN})
     set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 1200
                          ENVIRONMENT_MODIFICATION "TETRACUBES_CACHE_DIR=set:;TEST_PLAIN_KERNELS=set:${plain_kernels}")
+    list(FIND test_costs ${name} at)
+    if(NOT at EQUAL -1)
+        math(EXPR at "${at} + 1")
+        list(GET test_costs ${at} seconds)
+        set_tests_properties(${name} PROPERTIES COST ${seconds})
+    endif()
 endfunction()
 
 # The same for one that may, with kernels for one work-item per group optimised, those for groups not: in a cache of

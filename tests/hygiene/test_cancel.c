@@ -157,31 +157,41 @@ static const struct {
              {"copied buffers", TC_ENGINE_OPENCL, 0, 1},
              {"copied buffers, slabs", TC_ENGINE_OPENCL, 1, 1}};
 
-/* The most memory, of some, in which the kind is extracted in several slabs; 0: of the small ones, whose samples are
- * little beside what every slab needs. */
-static uint64_t slabs_memory(enum kind kind, int always_copy) {
-    for (uint64_t bytes = kind == KIND_COMPLEX ? 8 << 20 : 512 << 10; bytes > 1 << 10; bytes -= bytes / 64) {
-        tc_context_options options;
-        tc_expert_options expert;
-        tc_extract_options how;
-        tc_grid *grid = NULL;
-        tc_mesh *mesh = NULL;
-        options_init(&options, &expert);
-        options.max_memory_bytes = bytes;
-        expert.always_copy = always_copy;
-        tc_context *context = context_open(&options);
-        tc_mesh_data data = {.struct_size = sizeof data};
-        bool done = kind_open(context, kind, &grid) == TC_OK, in_slabs = true;
-        for (int isovalue = 0; isovalue < 2 && done; isovalue++) {
-            kind_how(kind, isovalue, &how);
-            done = tc_extract(grid, &how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK;
-            in_slabs = in_slabs && data.slab_count > 1;
-        }
-        tc_mesh_destroy(mesh);
-        tc_grid_destroy(grid);
-        tc_context_destroy(context);
-        if (done && in_slabs) return bytes;
+/* Whether both surfaces of the kind are made within so much memory; in_slabs: in several slabs each. */
+static bool made_within(enum kind kind, int always_copy, uint64_t bytes, bool *in_slabs) {
+    tc_context_options options;
+    tc_expert_options expert;
+    tc_extract_options how;
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    options_init(&options, &expert);
+    options.max_memory_bytes = bytes;
+    expert.always_copy = always_copy;
+    tc_context *context = context_open(&options);
+    tc_mesh_data data = {.struct_size = sizeof data};
+    bool done = kind_open(context, kind, &grid) == TC_OK;
+    *in_slabs = true;
+    for (int isovalue = 0; isovalue < 2 && done; isovalue++) {
+        kind_how(kind, isovalue, &how);
+        done = tc_extract(grid, &how, &mesh) == TC_OK && tc_mesh_get(mesh, &data) == TC_OK;
+        *in_slabs = *in_slabs && data.slab_count > 1;
     }
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    tc_context_destroy(context);
+    return done;
+}
+
+/* About the most memory in which the kind is extracted in several slabs, by bisection: what suffices for one slab, and
+ * what does not. 0: of the small ones, whose samples are little beside what every slab needs. */
+static uint64_t slabs_memory(enum kind kind, int always_copy) {
+    uint64_t one = kind == KIND_COMPLEX ? 8 << 20 : 512 << 10, less = 1 << 10;
+    bool in_slabs;
+    while (one - less > one / 256) {
+        const uint64_t bytes = less + (one - less) / 2;
+        *(made_within(kind, always_copy, bytes, &in_slabs) && !in_slabs ? &one : &less) = bytes;
+    }
+    if (made_within(kind, always_copy, less, &in_slabs) && in_slabs) return less;
     EXPECT(kind == KIND_U8 || kind == KIND_RECTILINEAR, "%s: is never extracted in slabs: %s", kind_names[kind],
            tc_message());
     return 0;

@@ -245,12 +245,14 @@ def cached(build, name):
 
 
 def build_other_kind(arguments, folder):
-    """The library alone, static where the build at hand is shared and the other way round."""
+    """The library alone, static where the build at hand is shared and the other way round; not optimised, as what is
+    tested is how it is linked."""
     is_shared = cached(arguments.build, "BUILD_SHARED_LIBS").upper() in ("ON", "1", "TRUE", "YES")
     build = folder / "other-build"
     parts = [f"-DTETRACUBES_{part}=OFF" for part in ("TOOL", "BENCH", "TESTS")]
     run(arguments.cmake, "-S", arguments.source, "-B", build, "-G", arguments.generator,
-        f"-DCMAKE_C_COMPILER={arguments.cc}", f"-DBUILD_SHARED_LIBS={'OFF' if is_shared else 'ON'}", *parts)
+        f"-DCMAKE_C_COMPILER={arguments.cc}", "-DCMAKE_BUILD_TYPE=Debug",
+        f"-DBUILD_SHARED_LIBS={'OFF' if is_shared else 'ON'}", *parts)
     run(arguments.cmake, "--build", build)
     return build
 
@@ -265,7 +267,7 @@ def test_within(arguments, folder, source, how, *options, shared=False):
     text = PARENT.format(include=include, source=f'"{source}"')
     (parent / "CMakeLists.txt").write_text(text, encoding="utf-8")
     run(arguments.cmake, "-S", parent, "-B", build, "-G", arguments.generator, f"-DCMAKE_C_COMPILER={arguments.cc}",
-        "-DCMAKE_C_FLAGS=-O1 -ffast-math", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", *options)
+        "-DCMAKE_C_FLAGS=-O0 -ffast-math", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", *options)
     run(arguments.cmake, "--build", build)
     output = run(build / "consumer")
     expect(output == f"{arguments.version} 6 4\n", f"{how}: printed {output!r}")

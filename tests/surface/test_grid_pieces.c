@@ -490,7 +490,7 @@ static void test_ended(void) {
 
 int main(int argc, char **argv) {
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 10) : 1,
-                   count = argc > 2 ? strtoull(argv[2], NULL, 10) : 120;
+                   count = argc > 2 ? strtoull(argv[2], NULL, 10) : tier_count(120);
     tc_context_options options;
     for (int n = 0; n < 2; n++) seams[n] = grown(NULL, AXIS_MAX, sizeof *seams[n]);
     contexts[0] = reference_open();

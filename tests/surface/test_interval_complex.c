@@ -314,7 +314,7 @@ static void test_refused(void) {
 int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups");
     const uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
-    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 40 : 150;
+    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 40 : tier_count(150);
     tc_context_options options;
     tc_expert_options expert;
     if (!device_exists()) return SKIPPED;

@@ -149,7 +149,7 @@ static void test_slabs(const tc_context_options *copying) {
 int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups");
     const uint64_t first = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
-    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 16 : 60;
+    const uint64_t count = argc > 3 ? strtoull(argv[3], NULL, 10) : groups ? 16 : tier_count(60);
     tc_context_options options;
     tc_expert_options expert;
     if (!device_exists()) return SKIPPED;

@@ -483,8 +483,8 @@ int main(int argc, char **argv) {
     const bool groups = argc > 1 && !strcmp(argv[1], "groups");
     argc -= groups, argv += groups;
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 1996;
-    const uint64_t small = argc > 2 ? strtoull(argv[2], NULL, 0) : groups ? 300 : 3000;
-    const uint64_t large = argc > 3 ? strtoull(argv[3], NULL, 0) : groups ? 10 : 40;
+    const uint64_t small = argc > 2 ? strtoull(argv[2], NULL, 0) : groups ? 300 : tier_count(3000);
+    const uint64_t large = argc > 3 ? strtoull(argv[3], NULL, 0) : groups ? 10 : tier_count(40);
     tc_context_options options;
     tc_expert_options expert;
     options_init(&options, &expert);

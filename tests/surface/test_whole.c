@@ -365,7 +365,7 @@ int main(int argc, char **argv) {
     always_copy = argc > 1 && !strcmp(argv[1], "always_copy");
     argc -= always_copy, argv += always_copy;
     const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 10) : 1,
-                   count = argc > 2 ? strtoull(argv[2], NULL, 10) : 400;
+                   count = argc > 2 ? strtoull(argv[2], NULL, 10) : tier_count(400);
     if (!device_exists()) return SKIPPED;
     reference = reference_open();
     tc_context *device = device_open(0, false);
