@@ -144,6 +144,7 @@ TESTS = {
     "test_device, 64 work-items": test("surface/test_device", "64 work-items*", device=True),
     "test_complex, 64 work-items": test("surface/test_complex", "*u8*, context 4", device=True),
 
+    "test_carry, snap": test("surface/test_carry", "*snap"),
     "test_cli_blocks, carry": test("tool/test_cli_blocks.py", "*test_carry*", ("reference",)),
     "test_cli_cells, carry": test("tool/test_cli_cells.py", "*test_carry*", ("reference",)),
     "test_results": test("tool/test_results.py", "", ("reference",)),
@@ -210,6 +211,8 @@ FILES = {
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_slab.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_snap.c": SNAPPED,
+    "host/lib/structured/structured_carry.c": ["test_carry, snap"],
+    "host/lib/structured/snapped_edge.c": ["test_carry, snap"],
     "host/lib/structured/structured_emit.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/tetrahedra/complex_surface.c": ["test_complex, u8"],
     "host/lib/tetrahedra/complex_plan.c": ["test_complex, u8", "test_complex_slabs"],

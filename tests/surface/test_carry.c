@@ -77,6 +77,7 @@ static void fill(void) {
 
 /* A grid of one of these kinds. */
 typedef enum kind { UNIFORM, RECTILINEAR, CURVILINEAR, MISSING, BLANKED, COMPLEX, KINDS } kind;
+static const char *const kind_names[KINDS] = {"uniform", "rectilinear", "curvilinear", "missing", "blanked", "complex"};
 
 static tc_grid *open_grid(tc_context *context, kind k, tc_type type) {
     tc_grid_options o;
@@ -140,12 +141,12 @@ static void compare(tc_grid *grid, tc_grid *reference, const tc_extract_options 
 
 static void test_surface(tc_context *context, tc_context *reference, kind k, tc_type type, tc_method method,
                          const char *mode) {
-    static const char *const names[KINDS] = {"uniform", "rectilinear", "curvilinear", "missing", "blanked", "complex"};
     char what[128];
     const tc_extract_options how = how_of(type, method, 127.5), other = how_of(type, method, 140);
     tc_grid *grid = open_grid(context, k, type), *slow = open_grid(reference, k, type);
     tc_grid *beside = open_grid(context, UNIFORM, TC_U8);
-    snprintf(what, sizeof what, "%s, %s, %s samples, method %d", mode, names[k], tc_type_name(type), (int)method);
+    snprintf(what, sizeof what, "%s, %s, %s samples, %s", mode, kind_names[k], tc_type_name(type),
+             tc_method_name(method));
     const uint64_t vertices = vertices_of(slow, &how, NULL), fewer = vertices_of(slow, &other, NULL);
     EXPECT(vertices > 1000 && fewer > 1000, "%s: small surfaces", what);
     compare(grid, slow, &how, TC_F32, 1, vertices, what); /* nothing was made before */
@@ -198,12 +199,19 @@ static const surface_case cases[] = {
     {UNIFORM, TC_I8, TC_METHOD_TETRA},  {UNIFORM, TC_U16, TC_METHOD_TETRA},     {MISSING, TC_F32, TC_METHOD_TETRA},
     {UNIFORM, TC_I32, TC_METHOD_TETRA}, {RECTILINEAR, TC_F32, TC_METHOD_TETRA}, {CURVILINEAR, TC_F64, TC_METHOD_TETRA}};
 
+static bool case_chosen(const surface_case *c) {
+    char name[64];
+    snprintf(name, sizeof name, "%s %s %s", kind_names[c->k], tc_type_name(c->type), tc_method_name(c->method));
+    return test_chosen(name);
+}
+
 enum { CASES = sizeof cases / sizeof *cases, CASES_IN_GROUPS = 5, CASES_IN_SLABS = 5 };
 
 static void test_mode(const tc_context_options *options, tc_context *reference, int count, const char *mode) {
     tc_context *context = context_open(options);
-    for (int n = 0; n < count; n++) test_surface(context, reference, cases[n].k, cases[n].type, cases[n].method, mode);
-    test_fields(context, reference);
+    for (int n = 0; n < count; n++)
+        if (case_chosen(&cases[n])) test_surface(context, reference, cases[n].k, cases[n].type, cases[n].method, mode);
+    if (test_chosen("fields")) test_fields(context, reference);
     tc_context_destroy(context);
 }
 
@@ -246,6 +254,7 @@ static uint64_t slabs_memory(tc_context_options options, kind k, tc_type type, c
 static void test_slabs(tc_context_options options, tc_context *reference, const char *mode) {
     for (int n = 0; n < CASES_IN_SLABS; n++) {
         const tc_extract_options how = how_of(cases[n].type, cases[n].method, 127.5);
+        if (!case_chosen(&cases[n])) continue;
         options.max_memory_bytes = slabs_memory(options, cases[n].k, cases[n].type, &how);
         tc_context *context = context_open(&options);
         test_surface(context, reference, cases[n].k, cases[n].type, cases[n].method, mode);
