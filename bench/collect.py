@@ -65,14 +65,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", required=True, metavar="DIR", help="the build folder")
     parser.add_argument("--parts", required=True, metavar="DIR",
-                        help="bench.json and, where they were measured, carry.json, peers.json, process.json, stream.json, "
-                             "table1.json")
+                        help="bench.json and, where they were measured, carry.json, interval.json, labels.json, "
+                             "peers.json, process.json, stream.json, table1.json")
     parser.add_argument("--results", required=True, metavar="DIR", help="where the file goes")
     arguments = parser.parse_args()
     bench = read(os.path.join(arguments.parts, "bench.json"))
     peers, process = optional(arguments.parts, "peers"), optional(arguments.parts, "process")
     carry, table1 = optional(arguments.parts, "carry"), optional(arguments.parts, "table1")
-    stream = optional(arguments.parts, "stream")
+    stream, interval = optional(arguments.parts, "stream"), optional(arguments.parts, "interval")
+    labels = optional(arguments.parts, "labels")
     cpu = cpu_model()
     name = file_name(cpu, bench["device"])
     result = {
@@ -98,6 +99,10 @@ def main():
         result["stream"] = stream
     if table1:
         result["table1"] = table1["rows"]
+    if interval:
+        result["interval"] = {key: interval[key] for key in ("read_gbps", "write_gbps", "vtk", "cases")}
+    if labels:
+        result["labels"] = {key: labels[key] for key in ("load_before_and_after", "versions", "cases")}
     path = os.path.join(arguments.results, name + ".json")
     os.makedirs(arguments.results, exist_ok=True)
     with open(path, "w", encoding="utf-8") as file:

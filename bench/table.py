@@ -195,6 +195,54 @@ def carry_text(result):
             "take turns:", table(head, [carry_row(case) for case in result["carry"]])]
 
 
+# ------------------------------------------------------------------------------------- interval volumes, label maps
+
+def interval_row(case):
+    low, high = case["range"].split(",")
+    return [f"{case['field']} {size(case['dims'])} f32, {case['grid']}", f"{low or '-∞'} to {high or '∞'}",
+            f"{case['tetrahedra']:,}", ms(case["ms"]), f"{case['first_ms']['median']:.1f}", f"{case['limit_ratio']:.1f}",
+            f"{case['vtk_table_ms']['median']:.0f} (**{case['times_ours']:.1f}**)"]
+
+
+def interval_text(result):
+    """The cases of interval.py."""
+    if "interval" not in result:
+        return []
+    vtk = result["interval"]["vtk"]
+    head = ["samples", "interval", "tetrahedra", "isovolume, ms", "first, ms", "× limit", "VTK, two clips, ms"]
+    return [f"Interval volumes beside two passes of vtkTableBasedClipDataSet (VTK {vtk['version']}, {vtk['threads']} "
+            "threads), in turns. VTK keeps voxels that lie within whole. In bold: its time divided by ours:",
+            table(head, [interval_row(case) for case in result["interval"]["cases"]])]
+
+
+LABEL_SIDES = [("tetracubes", "labels, ms"), ("smoothed", "smoothed, ms"), ("vtk", "vtkSurfaceNets3D, ms"),
+               ("vtk_smoothed", "smoothed, ms"), ("zmesh", "zmesh, ms")]
+
+
+def label_cell(case, side):
+    if side not in case["sides"]:
+        return ""
+    own = {"vtk": "tetracubes", "vtk_smoothed": "smoothed", "zmesh": "tetracubes"}.get(side)
+    median = case["sides"][side]["ms"]["median"]
+    return f"{median:.0f} (**{median / case['sides'][own]['ms']['median']:.1f}**)" if own else f"{median:.0f}"
+
+
+def labels_text(result):
+    """The cases of label_peers.py."""
+    if "labels" not in result:
+        return []
+    cases, versions = result["labels"]["cases"], result["labels"]["versions"]
+    rows = [[f"{case['name']}, {size(case['dims'])}", f"{case['labels']}",
+             f"{case['sides']['tetracubes']['triangles']:,}", *(label_cell(case, side) for side, _ in LABEL_SIDES)]
+            for case in cases if "tetracubes" in case["sides"]]
+    binary = next(case["sides"] for case in cases if "binary" in case["sides"])
+    ratio = binary["binary_labels"]["ms"]["median"] / binary["binary"]["ms"]["median"]
+    return [f"Label maps from a numpy array to arrays, by the Python package, VTK {versions['vtk']} with all threads and "
+            f"zmesh {versions['zmesh']}, in turns. In bold: the other's time divided by ours. Of a map with one label, "
+            f"`labels` takes {ratio:.1f} times as long as a surface:",
+            table(["segmentation", "labels", "triangles", *(title for _, title in LABEL_SIDES)], rows)]
+
+
 # -------------------------------------------------------------------------------------------------------------- stream
 
 def stream_row(case):
@@ -300,7 +348,7 @@ def headlines(result):
     return [machine_text(result), picture(result, "pictures"),
             *peers_text(result, list(filter(is_headline_peer, result.get("peers", [])))),
             *cases_text(result, list(filter(is_headline_case, result["cases"]))), *carry_text(result),
-            *table1_text(result)]
+            *interval_text(result), *labels_text(result), *table1_text(result)]
 
 
 def methods_of(peers):
@@ -337,7 +385,8 @@ def brief(results):
 def everything(result):
     return [f"## {result['name']}", machine_text(result), picture(result, "../pictures"),
             *peers_text(result, result.get("peers", [])), *cases_text(result, result["cases"]), *left_out_text(result),
-            *carry_text(result), *stream_text(result), *table1_text(result)]
+            *carry_text(result), *interval_text(result), *labels_text(result), *stream_text(result),
+            *table1_text(result)]
 
 
 def paragraphs(parts):
