@@ -144,7 +144,7 @@ TESTS = {
     "test_device, 64 work-items": test("surface/test_device", "64 work-items*", device=True),
     "test_complex, 64 work-items": test("surface/test_complex", "*u8*, context 4", device=True),
 
-    "test_carry, snap": test("surface/test_carry", "*snap"),
+    "test_carry, snap": test("surface/test_carry", "*snap", device=True),
     "test_cli_blocks, carry": test("tool/test_cli_blocks.py", "*test_carry*", ("reference",)),
     "test_cli_cells, carry": test("tool/test_cli_cells.py", "*test_carry*", ("reference",)),
     "test_results": test("tool/test_results.py", "", ("reference",)),

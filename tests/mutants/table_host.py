@@ -556,7 +556,6 @@ MUTANTS = [
            ("const bool across = to[n] >= LINK_ODD;", "const bool across = false;", "diagonals are as long as other edges"),
            ("*low = here < there ? here : there;", "*low = here;", "the sample's own end is the lower one")),
     *group("host/lib/structured/structured_carry.c",
-           ("words[BRICK_ROWS * z + y] & ~zero;", "words[BRICK_ROWS * z + y];", "snapped samples are inside"),
            ("(p ^ q) & ~(zero_p | zero_q)", "(p ^ q) & ~zero_p", "edges that end in a snapped sample have vertices"),
            ("j->window_brick = slab_words_begin(plan, slab_index)", "j->window_brick = slab_begin(plan, slab_index)",
             "lists of bricks count from the slab")),

@@ -53,7 +53,7 @@ typedef struct carry_job {
 /* ------------------------------------------------------------------------------------------------------- sign words */
 
 /* Words of the brick [0] and of the brick at higher x [1]: in the brick's planes and the plane after, of its rows and
- * the row after. Zeros count as outside. */
+ * the row after. */
 typedef struct brick_words {
     uint64_t word[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
     uint64_t zero[2][BRICK_PLANES + 1][BRICK_ROWS + 1];
@@ -88,13 +88,12 @@ static void brick_words_load(const carry_job *j, uint64_t brick, const uint32_t 
             other += side[axis] ? beside[axis] : 0;
         }
         if (exists) words = words_of(j, other), zeros = zeros_of(j, other);
-        for (int z = 0; z < planes; z++)
-            for (int y = 0; y < rows; y++) {
-                const int plane = side[2] ? BRICK_PLANES : z, row = side[1] ? BRICK_ROWS : y;
-                const uint64_t zero = zeros[BRICK_ROWS * z + y];
-                w->word[side[0]][plane][row] = words[BRICK_ROWS * z + y] & ~zero;
-                w->zero[side[0]][plane][row] = zero;
-            }
+        for (int z = 0; z < planes; z++) {
+            const int plane = side[2] ? BRICK_PLANES : z, row = side[1] ? BRICK_ROWS : 0;
+            const size_t bytes = (size_t)rows * sizeof *words;
+            memcpy(&w->word[side[0]][plane][row], words + BRICK_ROWS * z, bytes);
+            memcpy(&w->zero[side[0]][plane][row], zeros + BRICK_ROWS * z, bytes);
+        }
     }
 }
 
