@@ -11,6 +11,7 @@
 #include "extract/engine.h"
 #include "failure.h"
 #include "input/input.h"
+#include "labels/label_cells.h"
 #include "labels/label_files.h"
 #include "labels/label_report.h"
 #include "labels/label_samples.h"
@@ -70,6 +71,7 @@ static int read_input(label_job *j) {
     if (!status) status = label_files_check(j->o, &j->data);
     if (!status) status = check_block(j);
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
+    if (!status) status = label_cells_take(&j->request, &j->data);
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = label_samples_make(j->o->operands[0], &j->data, &j->field);
     if (!status) status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
@@ -192,7 +194,9 @@ static int take_labels(label_job *j) {
 
 /* Labels that were asked for and have no surface. */
 static void tell_absent(const label_job *j) {
-    if (!j->labels.count && !j->o->label_count) notice("no surface: all samples have the same label");
+    if (!j->labels.count && !j->o->label_count)
+        notice("no surface: all samples have one label, or none%s",
+               j->o->closed ? "" : "; --closed ends surfaces at the grid's border");
     for (size_t n = 0; n < j->o->label_count; n++)
         if (!mesh_labels_has(&j->labels, j->o->labels[n]))
             notice("label %" PRIu32 " has no surface: no sample has it, or all have", j->o->labels[n]);

@@ -41,7 +41,8 @@ static void print_overview(FILE *out) {
                  "the folder of built kernels (else $XDG_CACHE_HOME/tetracubes or ~/.cache/tetracubes; empty:\n"
                  "none); POCL_CACHE_DIR, that of PoCL itself.\n"
                  "\n"
-                 "Exit status: 0 done; 1 could not (device, memory, output); 2 wrong usage; 3 verification or\n"
+                 "Exit status: 0 done; 1 could not (device, memory, output;\n"
+                 "interrupted); 2 wrong usage; 3 verification or\n"
                  "check failed; 4 bad input file.\n");
 }
 

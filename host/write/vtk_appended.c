@@ -6,11 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 8, LENGTH_BYTES = 8 };
+enum { LENGTH_BYTES = 8 };
 
 static uint64_t array_bytes(const vtk_array *a) { return a->span.count * a->record_bytes; }
-
-static uint64_t padding(uint64_t bytes) { return (ALIGNMENT - bytes % ALIGNMENT) % ALIGNMENT; }
 
 /* Bytes of the UTF-8 character at s, 0 where there is none, or one that XML does not take. */
 static size_t character_bytes(const unsigned char *s) {
@@ -57,7 +55,7 @@ static void add_array(vtk_file *f, const vtk_array *array, const char *name) {
              "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
              "offset=\"%llu\"/>\n",
              stored_types[array->type].vtk_xml, name, array->components, (unsigned long long)f->appended_bytes);
-    f->appended_bytes += LENGTH_BYTES + array_bytes(array) + padding(array_bytes(array));
+    f->appended_bytes += LENGTH_BYTES + array_bytes(array); /* and no padding: meshio expects the next array there */
 }
 
 /* A string is the codes of its characters, and 0. */
@@ -106,7 +104,6 @@ static void write_array(output *o, const vtk_array *a) {
     uint64_t bytes = array_bytes(a);
     output_bytes(o, &bytes, sizeof bytes);
     output_span(o, a->span, a->record_bytes, a->encode, a->source);
-    output_bytes(o, (char[ALIGNMENT]){0}, padding(bytes));
 }
 
 void vtk_file_write(vtk_file *f, const char *grid) {
@@ -116,7 +113,6 @@ void vtk_file_write(vtk_file *f, const char *grid) {
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"LittleEndian\" "
              "header_type=\"UInt64\">\n  <%s>\n%s  </%s>\n  <AppendedData encoding=\"raw\">\n",
              grid, grid, f->text.bytes ? f->text.bytes : "", grid);
-    text_fill(&head, ' ', padding(head.length + 1));
     text_add(&head, "_");
     if (head.has_failed) {
         if (!f->o->error) f->o->error = ENOMEM;

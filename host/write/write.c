@@ -255,7 +255,7 @@ int mesh_file_check(const char *path, const mesh_write_options *options) {
     if (status) return status;
     if (!goes_in_pieces(f))
         return fail(STATUS_USAGE,
-                    "%s: %s is not written piece by piece, as a mesh has to be that does not fit memory; "
+                    "%s: %s cannot be written piece by piece, as parts, streams and what does not fit memory are; "
                     "write %s",
                     path, f->name, list_formats(goes_in_pieces, "", list));
     if (options && options->soup)

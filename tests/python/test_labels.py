@@ -30,8 +30,18 @@ def test_each_label_is_closed(engine):
 
 def test_engines_and_types_agree():
     hashes = {tetracubes.labels(blocks(dtype), engine=engine).hash
-              for dtype in ("u1", "i2", "u4", "i8") for engine in ("auto", "reference")}
+              for dtype in ("u1", "i2", "u4", "i8", "f4", "f8") for engine in ("auto", "reference")}
     assert len(hashes) == 1
+
+
+def test_floats_that_are_no_labels_are_background():
+    volume = blocks("f4")
+    volume[volume == 0] = -1.5
+    volume[0, 0, :2] = np.nan, np.inf
+    expected = tetracubes.labels(blocks()).hash
+    assert tetracubes.labels(volume).hash == expected
+    assert tetracubes.labels(np.where(volume > 0, volume, 0.25), nodata=0.25).hash == expected
+    assert tetracubes.labels(np.ma.masked_array(np.nan_to_num(blocks("f8") + 9), blocks() == 0) - 9).hash == expected
 
 
 def test_choices():
@@ -51,11 +61,13 @@ def test_files_have_labels(tmp_path):
 
 @pytest.mark.parametrize("bad, says", [(dict(labels=[0]), "above 0"), (dict(labels=[1.5]), "whole numbers"),
                                        (dict(labels=[]), "whole numbers"), (dict(smoothing=1001), "1000"),
-                                       (dict(smoothing=-1), "sweeps")])
+                                       (dict(smoothing=-1), "sweeps"), (dict(smoothing=2.5), "sweeps")])
 def test_bad_input(bad, says):
     with pytest.raises(ValueError, match=says):
         tetracubes.labels(blocks(), **bad)
-    with pytest.raises(ValueError, match="integers"):
-        tetracubes.labels(blocks("f4"))
+    with pytest.raises(ValueError, match="whole numbers below"):
+        tetracubes.labels(blocks("f4") / 2)
+    with pytest.raises(ValueError, match="whole numbers below"):
+        tetracubes.labels(blocks("i8") << 32)
     with pytest.raises(ValueError, match="no labels"):
         tetracubes.isosurface(blocks(), 5).of_label(3)

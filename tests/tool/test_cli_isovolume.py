@@ -31,11 +31,13 @@ def read_vtu(path):
         data = file.read()
     head, _, rest = data.partition(b'<AppendedData encoding="raw">')
     start = len(data) - len(rest) + rest.index(b"_") + 1
-    arrays = {}
+    arrays, end = {}, 0
     for tag in re.findall(r"<DataArray [^>]*>", head.decode()):
         name, kind, offset = (re.search(rf'{key}="([^"]*)"', tag)[1] for key in ("Name", "type", "offset"))
         at = start + int(offset)
         size = struct.unpack_from("<Q", data, at)[0]
+        assert int(offset) == end, f"{name} does not follow the array before it, as readers like meshio's expect"
+        end += 8 + size
         arrays[name] = array.array(CODES[kind])
         arrays[name].frombytes(data[at + 8:at + 8 + size])
     return arrays

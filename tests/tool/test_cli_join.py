@@ -269,7 +269,7 @@ class Refused(JoinCase):
             self.refuses(2, "extract", *how, "--cut", cut, "-o", self.path("x.ply"), says="--cut says where ranks or parts begin")
         self.refuses(2, "join", *self.good, says="needs -o")
         self.refuses(2, "join", "-o", self.path("x.ply"), says="needs the files of all parts")
-        self.refuses(2, "join", *self.good, "-o", self.path("x.obj"), says="not written piece by piece")
+        self.refuses(2, "join", *self.good, "-o", self.path("x.obj"), says="cannot be written piece by piece")
         self.refuses(2, "join", *self.good, "-o", self.good[0], "--format", "ply", says="input itself")
         self.refuses(2, "join", *self.good, "-o", "-", "--format", "ply", says="name a file")
         self.refuses(4, "join", self.path("none"), "-o", self.path("x.ply"), says="none")

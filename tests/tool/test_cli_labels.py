@@ -10,6 +10,7 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
 from meshes import READERS, read_labels
+from grid_files import data_array, structured_text, vti_text, vts_text
 from tool_case import GridCase
 
 DIMS = (14, 13, 12)
@@ -97,7 +98,7 @@ class Reports(LabelCase):
     def test_closed(self):
         whole = self.raw("whole.raw", "u8", (4, 5, 6), [9] * 120)
         self.assertEqual(self.labels(whole)["labels"], [])
-        self.expect(0, "labels", *whole, "--engine", "reference", says="all samples have the same label")
+        self.expect(0, "labels", *whole, "--engine", "reference", says="all samples have one label, or none; --closed")
         row = self.labels(whole, "--closed", "--check", "--smooth", "0")["labels"][0]
         self.assertEqual((row["label"], row["euler_characteristic"], row["boundary_edges"]), (9, 2, 0))
         self.assertAlmostEqual(row["volume"] / 120, 0.97, delta=0.03)
@@ -132,6 +133,34 @@ class Choices(LabelCase):
             self.assertEqual(self.labels(self.raw(f"{kind}.raw", kind, DIMS, blocks()))["hash"], expected, kind)
         halves = self.raw("half.raw", "f32", DIMS, [v / 2 for v in blocks()])
         self.refuses(4, "labels", *halves, says=r"1\.5 is no label")
+
+    def test_cells(self):
+        """Labels of cells belong to their centres; they are not averaged."""
+        self.needs_xml()
+        whole = self.labels(self.raw_blocks(), "--origin", "0.5,0.5,0.5", "--smooth", "0")
+        points = [n + 1 for n in DIMS]
+        cells = [("organ", "i16", blocks())]
+        at = [(x, y, z) for z in range(points[2]) for y in range(points[1]) for x in range(points[0])]
+        axes = "".join(data_array(name, "f32", range(count)) for name, count in zip("xyz", points))
+        other = [("f", "f32", [0] * len(at))]
+        for name, text in (("cells.vti", vti_text(points, [], cells)), ("cells.vts", vts_text(points, at, [], cells)),
+                           ("cells.vtr", structured_text("RectilinearGrid", points, (0, 0, 0),
+                                                         f"<Coordinates>{axes}</Coordinates>", [], cells))):
+            path = self.write(name, text)
+            how = ["--smooth", "0"] if name == "cells.vti" else []
+            report = self.labels([path], *how, says="labels belong to cells")
+            for key in ("dims", "triangles", "vertices", "bounds", "labels", *(["hash"] if how else [])):
+                self.assertEqual(report[key], whole[key], f"{name}: {key}")
+        both = self.write("both.vti", vti_text(points, other, cells))
+        self.assertEqual(self.labels([both, "--field", "organ", "--smooth", "0"])["hash"], whole["hash"])
+        self.refuses(2, "labels", path, "--roi", "0:5,:,:", says="belong to cells, of which no part is read")
+        ghosts = ("vtkGhostType", "u8", [32 * (v == 7) for v in blocks()])
+        hidden = self.write("hidden.vti", vti_text(points, [], [*cells, ghosts]))
+        bare = [0 if v == 7 else v for v in blocks()]
+        without = self.write("bare.vti", vti_text(points, [], [("organ", "i16", bare)]))
+        self.assertEqual(self.labels([hidden, "--field", "organ"])["hash"], self.labels([without])["hash"])
+        flat = self.write("flat.vti", vti_text((4, 4, 1), [], [("organ", "i16", [1] * 9)]))
+        self.refuses(4, "labels", flat, says="cells are flat")
 
     def test_part(self):
         report = self.labels(self.raw_blocks(), "--roi", "0:7,:,:", "--closed")

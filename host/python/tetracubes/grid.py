@@ -119,7 +119,7 @@ class GridBase:
         the volume's shape, or one axis more, of components.
         """
         how = extract_options(level, method, snap, normals, closed)
-        return self._extract(tc.tc_extract, how, carry or {})
+        return self._extract(tc.tc_extract, how, _fields_of(carry))
 
     def _extract(self, function, how, carry, *arguments):
         """The surface by tc_extract or tc_extract_piece, whose further arguments stand before the place of the mesh."""
@@ -156,7 +156,7 @@ class GridBase:
             wanted = wanted.astype(np.uint32)
             how.labels, how.label_count = wanted.ctypes.data, wanted.size
         if smoothing is not None:
-            if not 0 <= int(smoothing) <= 1000:
+            if int(smoothing) != smoothing or not 0 <= smoothing <= 1000:
                 raise ValueError(f"smoothing is {smoothing!r}, not a number of sweeps from 0 to 1000")
             how.smoothing = int(smoothing)
         how.closed = bool(closed)
@@ -168,7 +168,7 @@ class GridBase:
 
         carry: as of ``extract``.
         """
-        fields = {name: self._field(name, array) for name, array in (carry or {}).items()}
+        fields = {name: self._field(name, array) for name, array in _fields_of(carry).items()}
         how = options(tc_interval_volume_options)
         how.low = how.low if low is None else float(low)
         how.high = how.high if high is None else float(high)
@@ -334,6 +334,27 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
         return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)
 
 
+def _fields_of(carry):
+    if carry is not None and not isinstance(carry, Mapping):
+        raise TypeError(f"carry is a {type(carry).__name__}, not a dict of names and arrays")
+    return carry or {}
+
+
+def _labels_of(volume, nodata):
+    """Labels that are float numbers or 64-bit integers as uint32, without nodata; other volumes as they are."""
+    volume = volume if hasattr(volume, "dtype") else np.asarray(volume)
+    if volume.dtype.kind != "f" and (volume.dtype.kind not in "iu" or volume.dtype.itemsize < 8):
+        return volume, nodata
+    values = np.ma.getdata(volume)
+    above = np.isfinite(values) & (values > 0) & ~np.ma.getmaskarray(volume)
+    if nodata is not None:
+        above &= values != nodata
+    wanted = values[above]
+    if wanted.size and (np.any(wanted != np.floor(wanted)) or wanted.max() > 0xffffffff):
+        raise ValueError("labels are whole numbers below 2**32: the samples are not")
+    return np.where(above, values, 0).astype(np.uint32), None
+
+
 def labels(volume: Any, labels: npt.ArrayLike | None = None, *,  # pylint: disable=redefined-outer-name
            smoothing: int | None = None, closed: bool = False, spacing: npt.ArrayLike = 1, origin: npt.ArrayLike = 0,
            direction: npt.ArrayLike | None = None, mask: Any = None, nodata: float | None = None, axes: str = "zyx",
@@ -344,8 +365,10 @@ def labels(volume: Any, labels: npt.ArrayLike | None = None, *,  # pylint: disab
         mesh = tetracubes.labels(segmentation, spacing=(2, 1, 1))
         mesh.boundary_labels, mesh.of_label(7)
 
-    Arguments are those of Grid, and of Grid.labels. The surface of each label by itself is a manifold.
+    Arguments are those of Grid, and of Grid.labels. The surface of each label by itself is a manifold. Floating-point
+    numbers are taken where all that are above 0 are whole.
     """
+    volume, nodata = _labels_of(volume, nodata)
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
         return grid.labels(labels, smoothing=smoothing, closed=closed)

@@ -309,17 +309,24 @@ int scalar_select(dataset *d, const read_request *request, scalar *out) {
     return status;
 }
 
-int scalar_components(const dataset *d, const read_request *request, int *components) {
+int scalar_field(const dataset *d, const read_request *request, const dataset_field **out) {
     const char **names;
     int status, count = common_field_names(d, &names);
     choice chosen;
-    *components = 0;
+    *out = NULL;
     if (count < 0) return STATUS_FAILED;
     free(names);
     if (!request->field && count != 1 && !active_choice(d).name) return 0;
     if ((status = choose(d, request->path, "--field takes", request->field, &chosen))) return status;
-    *components = chosen_field(d->blocks, chosen)->components;
+    *out = chosen_field(d->blocks, chosen);
     return 0;
+}
+
+int scalar_components(const dataset *d, const read_request *request, int *components) {
+    const dataset_field *f;
+    const int status = scalar_field(d, request, &f);
+    *components = f ? f->components : 0;
+    return status;
 }
 
 const char *active_field(const dataset *d) { return active_choice(d).name; }

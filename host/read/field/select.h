@@ -48,8 +48,11 @@ int scalar_select(dataset *d, const read_request *request, scalar *out);
 /* The name of the field that is taken where several are there and none is named; NULL: none is. */
 const char *active_field(const dataset *d);
 
-/* *components: of the field that is named, active or the only one; 0 where that choice is open, or there is none.
- * Returns as scalar_select where a name is not there. */
+/* *out: of the first block, the field that is named, active or the only one; NULL where that choice is open, or there
+ * is none. Returns as scalar_select where a name is not there. */
+int scalar_field(const dataset *d, const read_request *request, const dataset_field **out);
+
+/* The number of its components, or 0. */
 int scalar_components(const dataset *d, const read_request *request, int *components);
 
 /* The field of that name with all its components. path is the input's name for messages. Returns as scalar_select;

@@ -62,8 +62,8 @@ const option option_table[] = {
      "write a file for each label, its whole surface: the label stands for % in\n"
      "FILE, or goes with _ before the ending, as in organs_7.stl"},
     {"--smooth", NULL, "N", COMMAND_LABELS, VALUE_NUMBER, IN(smooth), NULL,
-     "sweeps of smoothing (default: 8); vertices stay within their voxel, and\n"
-     "surfaces joined where they meet; 0 leaves the stairs of the voxels"},
+     "sweeps of smoothing (default: 8, at most 1000); vertices stay within their\n"
+     "voxel, and surfaces joined where they meet; 0 leaves the stairs of voxels"},
     {"--closed", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(closed), NULL,
      "close the surfaces of labels that reach the border of the volume, half a\n"
      "voxel beyond it, as if background were around"},
@@ -92,10 +92,10 @@ const option option_table[] = {
     {"--preview-size", NULL, "W,H", COMMAND_EXTRACT | COMMAND_INFO, VALUE_PIXELS, IN(preview_size), NULL,
      "of --preview: pixels, 16 to 8192 each (default: 1024,768)"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
-     "field to contour, of data with several, see 'tetracubes info' (default:\n"
-     "the file's active scalars, if it has such); values of cells are averaged\n"
-     "to the points between them; point:NAME and cell:NAME choose where both\n"
-     "have a field of that name (else that of the points)"},
+     "field to take, of data with several, see 'tetracubes info' (default:\n"
+     "the file's active scalars, if it has such); values of cells, but labels, are\n"
+     "averaged to the points between them; point:NAME and cell:NAME choose where\n"
+     "both have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_ISOVOLUME, VALUE_TEXT, IN(carry), NULL,
      "fields to have at the vertices; their means and integrals are reported"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
@@ -194,7 +194,8 @@ const option option_table[] = {
     {"--roi", NULL, "I0:I1,...", TAKES_PARTS, VALUE_INDICES, IN(part.indices), NULL,
      "only the samples of these indices along x, y and z, from I0 to before I1;\n"
      "an end left out, as in 10:,:,:50, is the grid's; regions that share a plane\n"
-     "of samples, as 0:65 and 64:129, have surfaces that fit; structured grids"},
+     "of samples, as 0:65 and 64:129, have surfaces that fit (labels: by --smooth\n"
+     "0); structured grids"},
     {"--roi-world", NULL, "X0:X1,...", TAKES_PARTS, VALUE_RANGES, IN(part.world), NULL,
      "the same by a box in the input's space: the fewest samples that cover it"},
     {"--step", NULL, "N[,N,N]", TAKES_PARTS, VALUE_STEP, IN(part.step), NULL,

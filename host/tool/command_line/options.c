@@ -33,6 +33,9 @@ static int unknown_option(enum command_bit command, const char *name, const char
     snprintf(typed, sizeof typed, "%.*s", (int)(length < sizeof typed ? length : sizeof typed - 1), argument);
     for (size_t n = 0; n < option_table_count; n++)
         names[n] = option_table[n].commands & command ? option_table[n].name : NULL;
+    if (find(~(enum command_bit)0, typed, strlen(typed)))
+        return fail(STATUS_USAGE, "%s has no option %s, as other commands have; see 'tetracubes %s --help'", name,
+                    typed, name);
     const char *meant = similar_name(typed, names, option_table_count);
     if (meant) return fail(STATUS_USAGE, "%s has no option %s; did you mean %s?", name, typed, meant);
     return fail(STATUS_USAGE, "%s has no option %s; see 'tetracubes %s --help'", name, typed, name);

@@ -91,9 +91,10 @@ static int check_reach(const surface_source *s, const double *zero) {
         cell_range_find(&s->blocks->blocks[n], 0, &cells);
         for (int axis = 0; axis < 3; axis++)
             if (reach_of(&cells, &numbers, axis) > (double)FLT_MAX)
-                return fail(STATUS_USAGE,
-                            "--origin-at: the surface is %.3g away from that point, beyond float32, which STL holds",
-                            reach_of(&cells, &numbers, axis));
+                return fail(
+                    STATUS_USAGE,
+                    "--origin-at: the surface is %.3g away from that point, beyond float32, which the file holds",
+                    reach_of(&cells, &numbers, axis));
     }
     return 0;
 }

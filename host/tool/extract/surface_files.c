@@ -110,7 +110,8 @@ static mesh_write_options write_options(const options *o, const result_mesh *mes
 }
 
 void surface_files_tell_relative(const double *origin, int is_own) {
-    static const char why[] = "STL holds float32 alone, too coarse so far from zero: coordinates in it are relative to";
+    static const char why[] =
+        "the file holds float32 alone, too coarse so far from zero: its coordinates are relative to";
     static const char what[] = "PLY, VTP and OBJ hold full coordinates";
     if (is_own)
         notice("%s each block's origin (--origin-at chooses one point; %s)", why, what);

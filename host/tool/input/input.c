@@ -13,6 +13,7 @@
 #include "used_points.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 static int check_operands(const options *o) {
@@ -30,6 +31,8 @@ int input_request(const options *o, read_request *request) {
     int status = check_operands(o), is_raw = options_given(o, "--dims");
     if (status) return status;
     if (is_raw && o->type < 0) return fail(STATUS_USAGE, "raw input needs --type beside --dims, as in --type u8");
+    if (o->mask && strcmp(o->mask, "-") == 0 && strcmp(o->operands[0], "-") == 0)
+        return fail(STATUS_USAGE, "--mask -: standard input is the volume; name a file");
     read_request_init(request, o->operands[0]);
     if (o->operand_count > 1) request->path2 = o->operands[1];
     for (int axis = 0; axis < 3; axis++) {
