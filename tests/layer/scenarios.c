@@ -22,7 +22,6 @@ struct scenario {
     coordinates coordinates;
     tc_method method;
     bool normals, always_copy, slabs, cold;
-    bool groups;   /* of work-items: a cached program of these is built sooner where samples may be missing */
     bool interval; /* interval volumes are made, from each isovalue on, in place of surfaces */
     bool is_rare;  /* other scenarios have nearly all of its calls: failures of each are for the long tier */
     tc_engine engine;
@@ -36,12 +35,11 @@ static const scenario scenarios[] = {
      .method = TC_METHOD_HYBRID,
      .normals = true,
      .always_copy = true},
-    {.name = "slabs, missing samples", .flow = FLOW_EXTRACT, .type = TC_F32, .slabs = true, .groups = true},
+    {.name = "slabs, missing samples", .flow = FLOW_EXTRACT, .type = TC_F32, .slabs = true},
     {.name = "slabs, copied buffers, missing samples",
      .flow = FLOW_EXTRACT,
      .type = TC_F32,
      .slabs = true,
-     .groups = true,
      .always_copy = true},
     {.name = "rectilinear", .flow = FLOW_EXTRACT, .coordinates = RECTILINEAR},
     {.name = "curvilinear, slabs", .flow = FLOW_EXTRACT, .coordinates = CURVILINEAR, .slabs = true},
@@ -442,7 +440,6 @@ static tc_context_options context_describe(int index) {
     options_init(&o, &expert);
     o.engine = s->engine;
     expert.always_copy = s->always_copy;
-    expert.work_items = s->groups ? 32 : 0;
     o.max_memory_bytes = budgets[index];
     if (s->flow == FLOW_EMIT) {
         o.cl_context = theirs;
