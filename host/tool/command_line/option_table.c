@@ -111,8 +111,8 @@ const option option_table[] = {
      "write three vertices of its own for every triangle, none shared"},
     {"--origin-at", NULL, "X,Y,Z", COMMAND_EXTRACT | COMMAND_JOIN | COMMAND_LABELS, VALUE_POINT, IN(origin_at), NULL,
      "write coordinates relative to this point of the input's space (default: the\n"
-     "input's own; STL, which holds float32 alone, of data far from zero relative\n"
-     "to a point near it, which is told)"},
+     "input's own; STL, GLB and HTML, which hold float32 alone, of data far from\n"
+     "zero relative to a point near it, which is told)"},
     {"--drop-degenerate", NULL, NULL, COMMAND_EXTRACT, VALUE_NONE, IN(drop_degenerate), NULL,
      "leave out triangles of zero area, as samples that equal the isovalue make:\n"
      "their edges without length are contracted, what was closed stays closed"},
