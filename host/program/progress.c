@@ -26,8 +26,8 @@
 #define PATIENCE_MS 1000.0
 #define REDRAW_MS   100.0
 
-static atomic_int cancelled;
-static sigset_t waited_for; /* blocked in all threads: SIGQUIT, SIGXCPU */
+static atomic_int cancelled; /* the signal; 0: none came */
+static sigset_t waited_for;  /* blocked in all threads: SIGQUIT, SIGXCPU */
 
 static struct {
     int shown; /* print at all */
@@ -37,10 +37,7 @@ static struct {
     uint64_t job_bytes;
 } state;
 
-static void cancel(int number) {
-    (void)number;
-    cancelled = 1;
-}
+static void cancel(int number) { cancelled = number; }
 
 double now_ms(void) {
     struct timespec now;
@@ -66,7 +63,7 @@ static void receive(int number) {
         pthread_sigmask(SIG_UNBLOCK, &one, NULL);
         raise(number);
     }
-    cancelled = 1;
+    cancelled = number;
 }
 
 static void *wait_for_signals(void *unused) {

@@ -29,7 +29,7 @@ int progress_update(void *user, const char *stage, double fraction);
 /* Clears the line, where one was printed, so that other text may follow. */
 void progress_clear(void);
 
-/* Nonzero once a signal came; from any thread. */
+/* The signal, once one came, else 0; from any thread. */
 int progress_cancelled(void);
 
 /* 0, or a status with its text: STATUS_FAILED of a cancelled run, STATUS_INPUT where an input file became shorter. */

@@ -9,6 +9,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "library_status.h"
+#include "progress.h"
 #include "selftest/child.h"
 #include "similar_name.h"
 #include "terminal/notice.h"
@@ -16,6 +17,7 @@
 #include "truncation.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -41,9 +43,8 @@ static void print_overview(FILE *out) {
                  "the folder of built kernels (else $XDG_CACHE_HOME/tetracubes or ~/.cache/tetracubes; empty:\n"
                  "none); POCL_CACHE_DIR, that of PoCL itself.\n"
                  "\n"
-                 "Exit status: 0 done; 1 could not (device, memory, output;\n"
-                 "interrupted); 2 wrong usage; 3 verification or\n"
-                 "check failed; 4 bad input file.\n");
+                 "Exit status: 0 done; 1 could not (device, memory, output); 2 wrong usage; 3 verification or\n"
+                 "check failed; 4 bad input file. Ctrl-C ends it by its signal.\n");
 }
 
 static int unknown_command(const char *name) {
@@ -87,6 +88,14 @@ static int dispatch(int argc, char **argv) {
     return 0;
 }
 
+/* After all is tidied up: a shell goes on with a loop where the tool exits by itself, and ends it where a signal ends
+ * the tool. SIGQUIT and SIGXCPU would leave a core file. */
+static void end_by_signal(int number) {
+    if (number != SIGINT && number != SIGTERM && number != SIGHUP) return;
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
 int main(int argc, char **argv) {
     truncation_watch(); /* before drivers start threads and put handlers of their own in front */
     writers_add();
@@ -100,6 +109,7 @@ int main(int argc, char **argv) {
         message("%s", failure_text());
         if (!status) status = lost;
     }
+    if (status) end_by_signal(progress_cancelled());
     if (driver_is_distrusted()) _exit(status); /* it may crash or hang once more where it tidies up */
     return status;
 }

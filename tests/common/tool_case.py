@@ -36,6 +36,11 @@ def chosen():
     return (["-k", only] if only else []) + (["-f"] if os.environ.get("TEST_STOP") else [])
 
 
+def cancelled_by(number):
+    """The status of a run that a signal has cancelled: it ends by it, unless that would leave a core file."""
+    return 1 if number in (signal.SIGQUIT, signal.SIGXCPU) else -number
+
+
 def signals_as_usual():
     """Shells and nohup have what goes on in the background ignore some: the tool would as well."""
     for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):

@@ -77,7 +77,7 @@ class Struck(EndCase):
     def test_signals_cancel(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT, signal.SIGXCPU, signal.SIGHUP):
             def check(arguments, _):
-                self.struck(1, arguments, "cancelled; no file was left unfinished",
+                self.struck(tool_case.cancelled_by(number), arguments, "cancelled; no file was left unfinished",
                             STRIKE_WRITE=f"1 signal {number.value}")
                 return []
             self.each(check)
@@ -92,7 +92,7 @@ class Struck(EndCase):
         os.unlink(self.path("out.ply"))
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGQUIT, signal.SIGXCPU, signal.SIGHUP):
             before = self.files()
-            self.struck(1, arguments, "cancelled; no file was left unfinished",
+            self.struck(tool_case.cancelled_by(number), arguments, "cancelled; no file was left unfinished",
                         STRIKE_WRITE=f"1 signal {number.value}", **cache)
             self.assertEqual(self.files(), before)
 

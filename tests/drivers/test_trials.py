@@ -264,7 +264,7 @@ class Interrupted(TrialCase):
             process = self.start()
             process.send_signal(number)
             self.assertIn("cancelled", process.communicate(timeout=240)[1])
-            self.assertEqual(process.returncode, 1)
+            self.assertEqual(process.returncode, tool_case.cancelled_by(number))
             self.assertTrue(self.gone(), "the trial goes on")
             self.assertFalse(os.path.exists(self.path("a.ply")))
 

@@ -123,8 +123,10 @@ class Faults(Case):
 
 
 class Interrupts(Case):
-    def interrupt(self, ready, *arguments, number=signal.SIGINT, before=signal.SIG_DFL, status=1, says="cancelled"):
+    def interrupt(self, ready, *arguments, number=signal.SIGINT, before=signal.SIG_DFL, status=None, says="cancelled"):
         """Starts the tool with a terminal for its messages, sends a signal once ready(text so far)."""
+        if status is None:
+            status = tool_case.cancelled_by(number)
         ours, theirs = pty.openpty()
         process = subprocess.Popen([tool_case.TOOL, *map(str, arguments)], stderr=theirs, stdout=subprocess.DEVNULL,
                                    preexec_fn=lambda: signal.signal(number, before))

@@ -9,6 +9,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -413,7 +414,7 @@ class StandardInput(GridCase):
             with self.assertRaises(subprocess.TimeoutExpired):
                 run.wait(timeout=1)
             run.terminate()
-            self.assertEqual(run.wait(timeout=60), 1)
+            self.assertEqual(run.wait(timeout=60), -signal.SIGTERM)
             self.assertRegex(run.stderr.read().decode(), "cancelled|interrupted")
 
     def test_interrupted(self):
@@ -423,7 +424,7 @@ class StandardInput(GridCase):
             with self.assertRaises(subprocess.TimeoutExpired):
                 run.wait(timeout=1)
             run.terminate()
-            self.assertEqual(run.wait(timeout=60), 1)
+            self.assertEqual(run.wait(timeout=60), -signal.SIGTERM)
             self.assertRegex(run.stderr.read().decode(), "cancelled")
 
 
