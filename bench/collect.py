@@ -100,9 +100,9 @@ def main():
     if table1:
         result["table1"] = table1["rows"]
     if interval:
-        result["interval"] = {key: interval[key] for key in ("read_gbps", "write_gbps", "vtk", "cases")}
+        result["interval"] = interval
     if labels:
-        result["labels"] = {key: labels[key] for key in ("load_before_and_after", "versions", "cases")}
+        result["labels"] = labels
     path = os.path.join(arguments.results, name + ".json")
     os.makedirs(arguments.results, exist_ok=True)
     with open(path, "w", encoding="utf-8") as file:

@@ -148,7 +148,7 @@ def main():
               f"{c['vtk_table_ms']['median']:.0f} ms, {c['times_ours']:.1f} times ours")
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
-            json.dump({"device": device["device"], "read_gbps": device["read_gbps"],
+            json.dump({"date": time.strftime("%F", time.gmtime()), "device": device["device"], "read_gbps": device["read_gbps"],
                        "write_gbps": device["write_gbps"], "vtk": vtk, "cases": cases}, file, indent=1)
             file.write("\n")
 

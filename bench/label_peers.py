@@ -180,7 +180,7 @@ def main():
     load.append(round(os.getloadavg()[0], 2))
     if arguments.json:
         devices = tetracubes.devices()
-        result = {"cores": len(os.sched_getaffinity(0)), "device": devices[0].name if devices else None,
+        result = {"date": time.strftime("%F", time.gmtime()), "cores": len(os.sched_getaffinity(0)), "device": devices[0].name if devices else None,
                   "load_before_and_after": load, "versions": {name: version(name) for name in ("numpy", "vtk", "zmesh")},
                   "cases": cases}
         with open(arguments.json, "w", encoding="utf-8") as file:

@@ -208,10 +208,10 @@ def interval_text(result):
     """The cases of interval.py."""
     if "interval" not in result:
         return []
-    vtk = result["interval"]["vtk"]
+    vtk, date = result["interval"]["vtk"], result["interval"]["date"]
     head = ["samples", "interval", "tetrahedra", "isovolume, ms", "first, ms", "× limit", "VTK, two clips, ms"]
     return [f"Interval volumes beside two passes of vtkTableBasedClipDataSet (VTK {vtk['version']}, {vtk['threads']} "
-            "threads), in turns. VTK keeps voxels that lie within whole. In bold: its time divided by ours:",
+            f"threads), in turns, {date}. VTK keeps voxels that lie within whole. In bold: its time divided by ours:",
             table(head, [interval_row(case) for case in result["interval"]["cases"]])]
 
 
@@ -231,14 +231,14 @@ def labels_text(result):
     """The cases of label_peers.py."""
     if "labels" not in result:
         return []
-    cases, versions = result["labels"]["cases"], result["labels"]["versions"]
+    cases, versions, date = (result["labels"][key] for key in ("cases", "versions", "date"))
     rows = [[f"{case['name']}, {size(case['dims'])}", f"{case['labels']}",
              f"{case['sides']['tetracubes']['triangles']:,}", *(label_cell(case, side) for side, _ in LABEL_SIDES)]
             for case in cases if "tetracubes" in case["sides"]]
     binary = next(case["sides"] for case in cases if "binary" in case["sides"])
     ratio = binary["binary_labels"]["ms"]["median"] / binary["binary"]["ms"]["median"]
     return [f"Label maps from a numpy array to arrays, by the Python package, VTK {versions['vtk']} with all threads and "
-            f"zmesh {versions['zmesh']}, in turns. In bold: the other's time divided by ours. Of a map with one label, "
+            f"zmesh {versions['zmesh']}, in turns, {date}. In bold: the other's time divided by ours. Of a map with one label, "
             f"`labels` takes {ratio:.1f} times as long as a surface:",
             table(["segmentation", "labels", "triangles", *(title for _, title in LABEL_SIDES)], rows)]
 
