@@ -216,7 +216,7 @@ def interval_text(result):
 
 
 LABEL_SIDES = [("tetracubes", "labels, ms"), ("smoothed", "smoothed, ms"), ("vtk", "vtkSurfaceNets3D, ms"),
-               ("vtk_smoothed", "smoothed, ms"), ("zmesh", "zmesh, ms")]
+               ("vtk_smoothed", "its smoothed, ms"), ("zmesh", "zmesh, ms")]
 
 
 def label_cell(case, side):
