@@ -111,9 +111,8 @@ void vtk_file_write(vtk_file *f, const char *grid) {
     file_text head = {.has_failed = f->text.has_failed};
     text_add(&head,
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"LittleEndian\" "
-             "header_type=\"UInt64\">\n  <%s>\n%s  </%s>\n  <AppendedData encoding=\"raw\">\n",
+             "header_type=\"UInt64\">\n  <%s>\n%s  </%s>\n  <AppendedData encoding=\"raw\">\n_",
              grid, grid, f->text.bytes ? f->text.bytes : "", grid);
-    text_add(&head, "_");
     if (head.has_failed) {
         if (!f->o->error) f->o->error = ENOMEM;
     } else {

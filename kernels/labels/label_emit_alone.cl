@@ -114,7 +114,7 @@ inline_always label_sides label_sides_make(const label_job *s, label_place p, gl
         two &= is_first | label_same(corners[n], other);
     }
     const samples64 turned =
-        __builtin_astype(other - (samples64)1 < first - (samples64)1, samples64); /* label_precedes */
+        __builtin_astype(other - (samples64)1 < first - (samples64)1, samples64); /* as in label_interface_emit */
     work->patterns = inside ^ __builtin_convertvector(turned, bytes64);
     work->inner = (other & turned) | (first & ~turned);
     work->outer = (first & turned) | (other & ~turned);

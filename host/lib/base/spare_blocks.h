@@ -1,8 +1,8 @@
 /*
  * spare_blocks.h - large memory of results that were destroyed, for the next ones
  *
- * New memory is cleared by the system, page by page, which takes as long as a surface's triangles do. So a context
- * keeps some of what its results had. It lies idle: the system takes its pages where memory is short.
+ * New memory is cleared by the system, page by page (host_block.h). So a context keeps some of what its results had. It
+ * lies idle: the system takes its pages where memory is short.
  *
  * All functions may be called by any thread: a binding may destroy a result while another thread extracts.
  */

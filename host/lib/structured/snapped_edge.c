@@ -1,10 +1,10 @@
 /*
- * The rules of kernels/snap/nearest.cl: nearest_of_sample and snapped_to.
+ * The rules of kernels/snap/nearest.cl and snapped.cl: nearest_of_sample and snapped_to. The arithmetic is the
+ * reference's.
  */
 #include "structured/snapped_edge.h"
 
 #include "grid/carry.h"
-#include "kernels/snap/link.h"
 
 #define REAL    float
 #define NAME(x) x##_f32

@@ -5,13 +5,14 @@
 #define SNAPPED_EDGE_H
 
 #include "grid/grid.h"
+#include "kernels/snap/link.h"
 
 /* What the samples of one surface have in common. */
 typedef struct snapped_edges {
     const tc_grid *grid;
     double isovalue;
     float threshold;
-    int64_t steps[18]; /* to the samples of a link, in the sample array */
+    int64_t steps[LINK_EVEN]; /* to the samples of a link, in the sample array */
 } snapped_edges;
 
 snapped_edges snapped_edges_of(const tc_grid *grid, const tc_extract_options *options);
