@@ -4,13 +4,12 @@
  * One formula, one direction (from the lower to the higher sample index), one order of operations, no contraction, and
  * division rounded correctly: the same bits on every device.
  *
- * From the build: REAL (float for u8 i8 u16 i16 f32, double for u32 i32 f64), FLOATING, WIDE, DIVISION (1: built in; 2:
- * through double; 3: in integers).
+ * From the build: DIVISION (1: built in; 2: through double; 3: in integers).
  */
 #ifndef CROSSING_CL
 #define CROSSING_CL
 
-#include "common.cl"
+#include "values.cl"
 
 #ifdef REAL
 
@@ -68,13 +67,11 @@ inline_always float root(float a) {
 #endif
 
 #if WIDE
-#define DIVIDE(a, b)   ((a) / (b))
-#define ROOT(a)        sqrt(a)
-#define ISOVALUE(test) as_double((test)->isovalue64)
+#define DIVIDE(a, b) ((a) / (b))
+#define ROOT(a)      sqrt(a)
 #else
-#define DIVIDE(a, b)   divide(a, b)
-#define ROOT(a)        root(a)
-#define ISOVALUE(test) ((test)->isovalue32)
+#define DIVIDE(a, b) divide(a, b)
+#define ROOT(a)      root(a)
 #endif
 
 /* Where the isovalue lies between the samples at the two ends. All three are halved where the difference overflows. */

@@ -7,7 +7,7 @@
 #ifndef NEAREST_CL
 #define NEAREST_CL
 
-#include "../base/crossing.cl"
+#include "../base/values.cl"
 #include "link_steps.cl"
 #include "../base/words.cl"
 

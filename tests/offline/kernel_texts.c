@@ -283,8 +283,9 @@ static void complex_programs(tc_context *context) {
         const kernel_kind interval = {.grid = KIND_COMPLEX, .type = (tc_type)type, .emits = true, .interval = true};
         snprintf(name, sizeof name, "complex-%s-interval", type_names[type]);
         status_check(program_get(context, PROGRAM_COMPLEX_INTERVAL, interval, &found));
+        const kernel_kind cells = {.grid = KIND_COMPLEX, .type = (tc_type)type, .method = TC_METHOD_HYBRID};
         snprintf(name, sizeof name, "whole-%s", type_names[type]);
-        status_check(program_get(context, PROGRAM_WHOLE, kind, &found));
+        status_check(program_get(context, PROGRAM_WHOLE, cells, &found));
         for (int whole = 0; whole < 2; whole++) {
             const kernel_kind closed = {.grid = KIND_COMPLEX,
                                         .type = (tc_type)type,

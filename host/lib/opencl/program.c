@@ -11,6 +11,7 @@
 #include "opencl/program_cache.h"
 #include "opencl/variant.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,74 +27,93 @@ static const type_text type_texts[SAMPLE_TYPE_COUNT] = {SAMPLE_TYPES(TYPE_TEXT)}
 /* The width in bits, as the kernels know types of floating point. */
 static unsigned floating_bits(tc_type type) { return type_is_real(type) ? 8 * (unsigned)sample_bytes(type) : 0; }
 
-/* Kernel 1 sees samples as bit patterns, so types of one width share it. */
-static void classify_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    snprintf(out, bytes, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DMISSING=%d -DWORK_ITEMS=%u -DMETHOD=%s%s",
-             type_texts[kind.type].bits, floating_bits(kind.type), kind.missing, context->launch.work_items,
-             tc_method_name(kind.method), kind.closed ? " -DCLOSED=1" : "");
+/* What a program depends on, besides the bits of samples and the work-items of a group. */
+enum {
+    ON_MISSING = 1 << 0,
+    ON_METHOD = 1 << 1,
+    ON_CLOSED = 1 << 2,
+    ON_VALUES = 1 << 3, /* else samples are bit patterns, so types of one width share the program */
+    ON_DIVISION = 1 << 4,
+    ON_CHANNELS = 1 << 5,
+    ON_GRID = 1 << 6,
+    ON_WHOLE = 1 << 7, /* cells are kept whole */
+};
+
+/* A program in both variants, its kernels in order, and the definitions that its text looks at. */
+typedef struct program_sources {
+    const char *kernels[KERNELS_MOST];
+    const char *sources[2];
+    unsigned on;
+} program_sources;
+
+#define BOTH_VARIANTS(name)                                                                                            \
+    { [VARIANT_ALONE] = kernel_##name##_alone, [VARIANT_GROUPS] = kernel_##name##_groups }
+
+static const program_sources programs[PROGRAM_COUNT] = {
+    [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"}, BOTH_VARIANTS(classify), ON_MISSING | ON_METHOD | ON_CLOSED},
+    [PROGRAM_EMIT] = {{"emit"},
+                      BOTH_VARIANTS(emit),
+                      ON_MISSING | ON_METHOD | ON_CLOSED | ON_VALUES | ON_DIVISION | ON_CHANNELS | ON_GRID},
+    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_violated", "snap_even", "snap_odd", "snap_close"},
+                      BOTH_VARIANTS(snap),
+                      ON_MISSING | ON_METHOD | ON_VALUES},
+    [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
+                         BOTH_VARIANTS(complex),
+                         ON_VALUES | ON_DIVISION | ON_WHOLE},
+    [PROGRAM_WHOLE] = {{"complex_classify", "whole_list", "complex_join", "complex_number", "complex_emit", "whole_cut",
+                        "whole_clear"},
+                       BOTH_VARIANTS(complex),
+                       ON_VALUES | ON_DIVISION | ON_WHOLE},
+    [PROGRAM_COMPLEX_CAPS] = {{"caps_count", "caps_emit"}, BOTH_VARIANTS(complex_caps), ON_WHOLE},
+    [PROGRAM_COMPLEX_INTERVAL] = {{"complex_interval_count", "complex_interval_crossings", "complex_interval_emit"},
+                                  BOTH_VARIANTS(complex_interval),
+                                  ON_VALUES | ON_DIVISION},
+    [PROGRAM_LABELS] = {{"label_classify", "label_emit"}, BOTH_VARIANTS(labels), 0},
+    [PROGRAM_INTERVAL] = {{"interval_count", "interval_emit"},
+                          {[VARIANT_ALONE] = kernel_interval_groups, [VARIANT_GROUPS] = kernel_interval_groups},
+                          ON_MISSING | ON_METHOD | ON_VALUES | ON_DIVISION | ON_GRID},
+};
+
+/* Options of the compiler, as they are put together. */
+typedef struct options_text {
+    char text[PROGRAM_OPTIONS_BYTES];
+    size_t length;
+} options_text;
+
+__attribute__((format(printf, 2, 3))) static void options_add(options_text *o, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    o->length += (size_t)vsnprintf(o->text + o->length, sizeof o->text - o->length, format, arguments);
+    va_end(arguments);
 }
 
-static void emit_options_write(const tc_context *context, kernel_kind kind, unsigned grid, char *out, size_t bytes) {
-    char common[128];
-    const bool wide = type_is_wide(kind.type), vertices = device_makes_vertices(context, kind.type);
-    const char *real = !vertices ? "" : wide ? "-DREAL=double" : "-DREAL=float";
-    classify_options_write(context, kind, common, sizeof common);
-    snprintf(out, bytes, "%s %s-DWIDE=%d %s -DSAMPLE_VALUE(b)=%s -DNORMALS=%d -DDIVISION=%d -DGRID=%u%s", common,
-             context->launch.division == TC_DIVISION_BUILT_IN ? "-cl-fp32-correctly-rounded-divide-sqrt " : "", wide,
-             real, type_texts[kind.type].value, channel_in(kind.made, CHANNEL_NORMALS), (int)context->launch.division,
-             grid, context->info.has_fp64 ? " -DFP64=1" : "");
+/* Samples as numbers. Without REAL no vertices are made. */
+static void values_add(options_text *o, const tc_context *context, tc_type type) {
+    const bool wide = type_is_wide(type);
+    options_add(o, " -DWIDE=%d -DSAMPLE_VALUE(b)=%s%s", wide, type_texts[type].value,
+                context->info.has_fp64 ? " -DFP64=1" : "");
+    if (device_makes_vertices(context, type)) options_add(o, " -DREAL=%s", wide ? "double" : "float");
 }
 
-/* Complexes are always built for missing samples: an item that has one is never active. CAPS and INTERVAL are looked at
- * by no file. */
-static void complex_options_write(const tc_context *context, program_name name, kernel_kind kind, char *out,
-                                  size_t bytes) {
-    const bool caps = name == PROGRAM_COMPLEX_CAPS, interval = name == PROGRAM_COMPLEX_INTERVAL;
-    const bool whole = name == PROGRAM_WHOLE || (caps && kind.method == TC_METHOD_HYBRID);
-    const kernel_kind built = {.type = kind.type, .missing = true};
-    char common[PROGRAM_OPTIONS_BYTES - 48];
-    emit_options_write(context, built, 0, common, sizeof common);
-    snprintf(out, bytes, "%s -DCOMPLEX=1%s%s", common, whole ? " -DWHOLE=1" : "",
-             caps       ? " -DCAPS=1"
-             : interval ? " -DINTERVAL=1"
-                        : "");
+static void division_add(options_text *o, tc_division division) {
+    options_add(o, " -DDIVISION=%d%s", (int)division,
+                division == TC_DIVISION_BUILT_IN ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
-/* A definition that no file looks at tells the program from the one of kernel 2. Closed surfaces need no other one. */
-static void snap_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    char common[PROGRAM_OPTIONS_BYTES - 16];
-    kind.closed = false;
-    emit_options_write(context, kind, 0, common, sizeof common);
-    snprintf(out, bytes, "%s -DSNAP=1", common);
-}
-
-/* Labels are compared as bit patterns. */
-static void labels_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    char common[PROGRAM_OPTIONS_BYTES - 16];
-    classify_options_write(context, kind, common, sizeof common);
-    snprintf(out, bytes, "%s -DLABELS=1", common);
-}
-
-/* A definition that no file looks at tells the program from that of kernel 2. */
-static void interval_options_write(const tc_context *context, kernel_kind kind, char *out, size_t bytes) {
-    char common[PROGRAM_OPTIONS_BYTES - 16];
-    emit_options_write(context, kind, kind.grid, common, sizeof common);
-    snprintf(out, bytes, "%s -DINTERVAL=1", common);
-}
-
-static void options_write(const tc_context *context, program_name name, kernel_kind kind, char *out, size_t bytes) {
-    if (name == PROGRAM_CLASSIFY)
-        classify_options_write(context, kind, out, bytes);
-    else if (name == PROGRAM_EMIT)
-        emit_options_write(context, kind, kind.grid, out, bytes);
-    else if (name == PROGRAM_LABELS)
-        labels_options_write(context, kind, out, bytes);
-    else if (name == PROGRAM_INTERVAL)
-        interval_options_write(context, kind, out, bytes);
-    else if (name == PROGRAM_SNAP)
-        snap_options_write(context, kind, out, bytes);
-    else
-        complex_options_write(context, name, kind, out, bytes);
+/* Nothing is defined that the text does not look at, so that calls share programs as far as can be. */
+static void options_write(const tc_context *context, program_name name, kernel_kind kind, options_text *o) {
+    const unsigned on = programs[name].on;
+    o->length = 0;
+    options_add(o, "-cl-std=CL1.2 -DBITS=%s -DFLOATING=%u -DWORK_ITEMS=%u", type_texts[kind.type].bits,
+                floating_bits(kind.type), context->launch.work_items);
+    if (on & ON_MISSING) options_add(o, " -DMISSING=%d", kind.missing);
+    if (on & ON_METHOD) options_add(o, " -DMETHOD=%s", tc_method_name(kind.method));
+    if (on & ON_CLOSED && kind.closed) options_add(o, " -DCLOSED=1");
+    if (on & ON_VALUES) values_add(o, context, kind.type);
+    if (on & ON_DIVISION) division_add(o, context->launch.division);
+    if (on & ON_CHANNELS) options_add(o, " -DNORMALS=%d", channel_in(kind.made, CHANNEL_NORMALS));
+    if (on & ON_GRID) options_add(o, " -DGRID=%u", kind.grid);
+    if (on & ON_WHOLE && kind.method == TC_METHOD_HYBRID) options_add(o, " -DWHOLE=1");
 }
 
 static tc_status build_fail(const tc_context *context, const program *p, cl_int error) {
@@ -114,35 +134,6 @@ static tc_status build_fail(const tc_context *context, const program *p, cl_int 
     return (tc_status)fail(TC_ERROR_DEVICE, "%s does not build the kernels (%d) with %s: %s", context->info.name,
                            (int)error, p->options, log);
 }
-
-/* A program in both variants, and its kernels in order. */
-typedef struct program_sources {
-    const char *kernels[KERNELS_MOST];
-    const char *sources[2];
-} program_sources;
-
-static const program_sources programs[PROGRAM_COUNT] = {
-    [PROGRAM_CLASSIFY] = {{"classify", "cells_mark"},
-                          {[VARIANT_ALONE] = kernel_classify_alone, [VARIANT_GROUPS] = kernel_classify_groups}},
-    [PROGRAM_EMIT] = {{"emit"}, {[VARIANT_ALONE] = kernel_emit_alone, [VARIANT_GROUPS] = kernel_emit_groups}},
-    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_violated", "snap_even", "snap_odd", "snap_close"},
-                      {[VARIANT_ALONE] = kernel_snap_alone, [VARIANT_GROUPS] = kernel_snap_groups}},
-    [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},
-                         {[VARIANT_ALONE] = kernel_complex_alone, [VARIANT_GROUPS] = kernel_complex_groups}},
-    [PROGRAM_WHOLE] = {{"complex_classify", "whole_list", "complex_join", "complex_number", "complex_emit", "whole_cut",
-                        "whole_clear"},
-                       {[VARIANT_ALONE] = kernel_complex_alone, [VARIANT_GROUPS] = kernel_complex_groups}},
-    [PROGRAM_COMPLEX_CAPS] =
-        {{"caps_count", "caps_emit"},
-         {[VARIANT_ALONE] = kernel_complex_caps_alone, [VARIANT_GROUPS] = kernel_complex_caps_groups}},
-    [PROGRAM_COMPLEX_INTERVAL] =
-        {{"complex_interval_count", "complex_interval_crossings", "complex_interval_emit"},
-         {[VARIANT_ALONE] = kernel_complex_interval_alone, [VARIANT_GROUPS] = kernel_complex_interval_groups}},
-    [PROGRAM_LABELS] = {{"label_classify", "label_emit"},
-                        {[VARIANT_ALONE] = kernel_labels_alone, [VARIANT_GROUPS] = kernel_labels_groups}},
-    [PROGRAM_INTERVAL] = {{"interval_count", "interval_emit"},
-                          {[VARIANT_ALONE] = kernel_interval_groups, [VARIANT_GROUPS] = kernel_interval_groups}},
-};
 
 uint64_t kernel_sources_hash(void) {
     uint64_t hash = 0xcbf29ce484222325u;
@@ -256,17 +247,18 @@ static tc_status program_make(const tc_context *context, program *p, const char 
 tc_status program_get(tc_context *context, program_name name, kernel_kind kind, const program **out) {
     const program_sources *from = &programs[name];
     const char *kernels[KERNELS_MOST];
-    char options[PROGRAM_OPTIONS_BYTES];
-    options_write(context, name, kind, options, sizeof options);
+    const char *source = from->sources[variant_for(context->launch.work_items)];
+    options_text options;
+    options_write(context, name, kind, &options);
     for (program *p = context->programs; p; p = p->next)
-        if (!strcmp(p->asked, options)) {
+        if (p->source == source && !strcmp(p->asked, options.text)) {
             *out = p;
             return TC_OK;
         }
     program *p = calloc(1, sizeof *p);
     if (!p) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for a program");
-    snprintf(p->asked, sizeof p->asked, "%s", options);
-    p->source = from->sources[variant_for(context->launch.work_items)];
+    snprintf(p->asked, sizeof p->asked, "%s", options.text);
+    p->source = source;
     memcpy(kernels, from->kernels, sizeof kernels);
     if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
     tc_status status = program_make(context, p, kernels);
