@@ -211,6 +211,7 @@ FILES = {
     "host/lib/structured/structured.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_slab.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
     "host/lib/structured/structured_snap.c": SNAPPED,
+    "host/lib/structured/crossed_rows.c": ["test_carry, snap"],
     "host/lib/structured/structured_carry.c": ["test_carry, snap"],
     "host/lib/structured/snapped_edge.c": ["test_carry, snap"],
     "host/lib/structured/structured_emit.c": DEVICE + ["test_device, slabs", "test_device, copied slabs"],
