@@ -7,10 +7,10 @@
 /* METHOD(name, types, most, usual)
  *
  * name: as the public header numbers methods, from 0 on; kernels are built with -DMETHOD=name
- * types: of vertices, the first so many of these: on an edge x, y, z, xy, xz, yz; at a sample. Closed surfaces have the
- *        last one besides
+ * types: how many types of vertices it has, the first of these: on an edge x, y, z, xy, xz, yz; at a sample. Closed
+ *        surfaces have the last one, too
  * most: triangles of a cube at the most; no more than 10, which fill CUBE_CASE_BYTES
- * usual: triangles that are copied without a branch; more only where a cube has more
+ * usual: triangles that are copied for every cube, without a branch; others only where a cube has more
  *
  * A method also has the table name_cases_derive (declared in host/lib/tables/tables.h), which fills cubes with
  * triangles, and the function name_triangles (tetrahedra.cl), which counts them. Where samples can be vertices they

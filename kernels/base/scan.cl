@@ -1,11 +1,12 @@
 /*
  * scan.cl - single-pass chained scan with decoupled look-back and fallback
  *
- * Every tile posts its sum, then its inclusive prefix; a tile's prefix is the sum of what the tiles before it posted,
- * back to the nearest prefix. Value and state share one atomic word, so no fence is needed. Tiles are taken by ticket,
- * so all earlier tiles have been started. As a device may let a started group starve, there is a fallback: after
- * spin_limit polls the waiting group computes the missing sum itself. Where a group is one thread of a CPU, which the
- * system may suspend at any time, groups post the sums of all their tiles before they look back for any.
+ * Every tile posts its sum, and later its inclusive prefix: its own sum and those of all tiles before it. It finds
+ * these by looking back, adding sums until it meets a prefix. Value and state share one atomic word, so no fence is
+ * needed. Tiles are taken by ticket, so all earlier tiles have been started. As a device may let a started group
+ * starve, there is a fallback: after spin_limit polls the waiting group computes the missing sum itself. Where a group
+ * is one thread of a CPU, which the system may suspend at any time, groups post the sums of all their tiles before they
+ * look back for any.
  *
  * Merrill, Garland, "Single-pass Parallel Prefix Scan with Decoupled Look-back" (2016); fallback after Smith, Levien,
  * Owens, "Decoupled Fallback" (2025).
@@ -56,8 +57,8 @@ inline_always bool scan_look_back(global uint *tiles, uint sum_index, uint *tile
     return *tile == 0;
 }
 
-/* To settle a tile is to look back for its prefix, to post it, and to complete what the tile has stored by it. A group
- * that posts the sums of all its tiles before it settles any lists them, in the order in which it took them. */
+/* To settle a tile is to look back for its prefix and to post it; what the tile has stored is completed after that. A
+ * group that posts the sums of all its tiles before it settles any lists them, in the order in which it took them. */
 #define SETTLES_LATER (WORK_ITEMS == 1)
 #define NO_TILE       0xffffffffu
 

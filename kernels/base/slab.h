@@ -45,7 +45,7 @@ typedef struct brick_range {
 
 /* The table of cases for kernel 2, of 2 parities x CASE_COUNT patterns of a cube: the number of triangles, then three
  * vertices for each. A pattern of two signs has a bit per corner; where the surface can go through samples, a digit to
- * the base 3, and behind the table are 256 shorts: number n's bits as digits. */
+ * the base 3. Then 256 shorts follow the table: entry n is the number whose digits to the base 3 are the bits of n. */
 #define CASE_COUNT(vertex_types) ((vertex_types) > 6 ? 6561 : 256)
 enum { CUBE_CASE_BYTES = 32 };
 
@@ -55,8 +55,8 @@ enum { CUBE_CASE_BYTES = 32 };
 enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FACE_CASES };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
- * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
- * make their number a power of two. The table of cases names a vertex by its slot (case_slots.h). */
+ * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of vertex and, where these are not a
+ * power of two, unused ones up to the next. The table of cases names a vertex by its slot (case_slots.h). */
 #define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 
@@ -97,7 +97,8 @@ enum {
 };
 
 /* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and
- * the next tile of the same group. */
+ * the next tile of the same group. Others than kernel 1 sum up something else: active items and triangles
+ * (complex_count.cl), vertices at points and tetrahedra (complex_interval_count.cl). */
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
 /* The side of the isovalue that a sample is on, by its bits. */

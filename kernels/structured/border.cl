@@ -101,8 +101,8 @@ typedef struct face_corners {
     lanes p, q, u, v, zero_p, zero_q, zero_u, zero_v;
 } face_corners;
 
-/* Triangles that the inside parts of the face's two triangles are: one where a corner is inside, two where two are and
- * the third is outside. */
+/* Where each half of the face is cut by itself: a half with one or three corners inside gives one triangle, with two it
+ * gives two, or one where the third corner is a vertex. */
 inline_always lanes halves_triangles(face_corners c, lanes faces) {
     const lanes two_of_u = ((c.p & c.q) | (c.p & c.u) | (c.q & c.u)) & ~(c.p & c.q & c.u);
     const lanes two_of_v = ((c.p & c.q) | (c.p & c.v) | (c.q & c.v)) & ~(c.p & c.q & c.v);
@@ -111,8 +111,8 @@ inline_always lanes halves_triangles(face_corners c, lanes faces) {
            lanes_popcount(two_of_u & outside_u & faces) + lanes_popcount(two_of_v & outside_v & faces);
 }
 
-/* Of the face as a whole: a polygon of its inside corners and crossed sides. Two, where the diagonal parts the two
- * corners inside. */
+/* Where the face is cut as a whole: a polygon of its inside corners and crossed sides, or two where the diagonal
+ * separates the two corners inside. */
 inline_always lanes whole_triangles(face_corners c, lanes faces) {
     const lanes corners = lanes_popcount(c.p & faces) + lanes_popcount(c.q & faces) + lanes_popcount(c.u & faces) +
                           lanes_popcount(c.v & faces);

@@ -23,9 +23,9 @@
 /* Words of local memory in which the leader tells its group how far it has come; at the end, the two sums. */
 enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_WORDS };
 
-/* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory. The
- * sums in prefix go back to tile back; tile `unposted`, before that, has posted none in time, and is recounted. With
- * spin_limit 1, which is for tests, the tile before is recounted every time. */
+/* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory.
+ * `prefix` holds the sums of tiles `back` to number - 1. Where tile back - 1, `unposted`, has posted nothing in time,
+ * it is recounted. With spin_limit 1, which is for tests, the tile before is recounted every time. */
 inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
                                 tile_words signs, global uint *tiles, local uint *shared) {
     bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
@@ -65,8 +65,9 @@ inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *s
     return (uint2)(shared[PREFIX_VERTICES], shared[PREFIX_TRIANGLES]);
 }
 
-/* Adds the tile's prefix to the offsets of its bricks, which so far count from the start of the tile. Done for bricks
- * that emit something, which are appended to the list, and for the first brick of a layer, which the host reads. */
+/* Adds the sums before the tile, `prefix`, to the offsets of its bricks, which so far count from the start of the tile.
+ * Done for bricks that emit something, which are appended to the list, and for the first brick of a layer, which the
+ * host reads. */
 inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emitting, global brick_state *bricks,
                                global uint *active, global uint *head, local uint *shared) {
     uint first = brick_index(s, t.y0, t.z0, 0), layer = layer_bricks(s, t);

@@ -31,8 +31,8 @@ typedef struct tile_words {
     global brick_state *bricks;
 } tile_words;
 
-/* Scratch holds the words of the halo. First plane z1, eight words per brick, also for the bricks that begin at y1, of
- * which only the first row is filled. Then row y1, plane after plane. */
+/* Scratch holds the words of the halo. First those of plane z1, eight per brick, up to the bricks that begin at y1, of
+ * which only the first row is filled. Then those of row y1, plane after plane. */
 inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
     return BRICK_ROWS * ((ulong)(y - t.y0) / BRICK_ROWS * s->words_x + w) + y % BRICK_ROWS;
 }

@@ -3,8 +3,8 @@
  *
  * Kernel 1 has made the list of active bricks; groups are persistent and take runs of them by ticket. A work-item alone
  * emits a brick by emit_numbers.cl and emit_brick.cl, a group by emit_rows.cl. Triangles come from a table of a cube's
- * cases (2 parities x 256 patterns), which the host derives from the 16 cases of a tetrahedron or, for the hybrid
- * method, from loops of crossed edges.
+ * cases (CASE_COUNT patterns for each parity, and faces on the border of closed surfaces), which the host derives from
+ * the cases of a tetrahedron or, for the hybrid method, from loops of crossed edges.
  */
 #ifndef EMIT_CL
 #define EMIT_CL

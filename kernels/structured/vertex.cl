@@ -21,7 +21,7 @@ typedef struct corner {
     uint x, y, z;
 } corner;
 
-/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, from edges_corner of the brick on. Then two
+/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, counted from edges_corner (mesh.cl). Then two
  * bits for each axis: the step to its other end, -1, 0 or 1, plus 1. */
 #define EDGE_CODE(x, y, z, step_x, step_y, step_z)                                                                     \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
@@ -42,7 +42,8 @@ inline_always void position_make(const slab *s, corner c, uint edge, float t, fl
     out[2] = ((m[8] * x + m[9] * y) + m[10] * z) + m[11];
 }
 #else
-/* The same, between points. The edge's samples are at `from` and `from` + `step` in the sample buffer. */
+/* The position on the edge at t, between the points of its ends. The edge's samples are at `from` and `from` + `step`
+ * in the sample buffer. */
 inline_always void position_between(const slab *s, grid_arrays in, corner c, uint edge, ulong from, long step, float t,
                                     float out[3]) {
 #if GRID == 1

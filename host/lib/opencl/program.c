@@ -32,7 +32,7 @@ enum {
     ON_MISSING = 1 << 0,
     ON_METHOD = 1 << 1,
     ON_CLOSED = 1 << 2,
-    ON_VALUES = 1 << 3, /* else samples are bit patterns, so types of one width share the program */
+    ON_VALUES = 1 << 3, /* else samples are bit patterns, so integer types of one width share the program */
     ON_DIVISION = 1 << 4,
     ON_CHANNELS = 1 << 5,
     ON_GRID = 1 << 6,

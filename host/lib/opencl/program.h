@@ -6,7 +6,7 @@
 
 #include "opencl/context.h"
 
-/* Each is built from a list of sources of its own, in either variant (variant.h). */
+/* Each is one text with all that it includes (embed.cmake), in either variant (variant.h). */
 typedef enum program_name {
     PROGRAM_CLASSIFY,
     PROGRAM_EMIT,

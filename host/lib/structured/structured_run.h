@@ -20,7 +20,7 @@ typedef struct slab_store {
 
 /* What an OpenCL context adds to a grid. */
 struct device_grid {
-    slab_plan plans[2][2]; /* [zeros][closed]; but for the first made when first needed: before, layer_count is 0 */
+    slab_plan plans[2][2]; /* [zeros][closed]; all but [0][0] are made when first needed, until then layer_count is 0 */
     device_buffer arrays[ARRAY_COUNT]; /* the whole grid, where plans have samples_whole */
     device_buffer axes;                /* of a rectilinear grid: positions along x, y, z */
     device_buffer ranges;              /* of all bricks, made at the first visit */
