@@ -17,6 +17,7 @@
  */
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "extract/surface_check.h"
 #include "extract/surface_totals.h"
@@ -349,8 +350,9 @@ int extract_run_together(const options *o, team *t) {
     if (!j.streams && (status = make_surfaces(&j))) goto cleanup;
     if ((status = print_report(&j, begin))) goto cleanup;
     if (j.failed_count)
-        status = fail(STATUS_CHECK, "%d of %zu surfaces failed and %s", j.failed_count, o->isovalue_count,
-                      o->output || o->preview ? "were not written" : "should not be used");
+        status = fail(STATUS_CHECK, "%d of %s failed: %s", j.failed_count,
+                      counted(o->isovalue_count, "surface", "surfaces").text,
+                      o->output || o->preview ? "not written" : "not to be used");
 cleanup:
     for (size_t n = 0; n < j.report.surface_count; n++) {
         free(j.report.surfaces[n].path);

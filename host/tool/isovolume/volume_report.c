@@ -1,6 +1,7 @@
 /* volume_report.c - each fact is formatted as JSON and as text; the same fact has the same place in both */
 #include "volume_report.h"
 
+#include "counted.h"
 #include "input/part_report.h"
 #include "output.h"
 #include "shortest.h"
@@ -92,9 +93,9 @@ int isovolume_report_json(const isovolume_report *r) {
 
 static void shapes_text(const volume_report *v) {
     const tetrahedra_shapes *s = &v->shapes;
-    printf("  check       %s: %" PRIu64 " faces of more than two tetrahedra, %" PRIu64 " passed twice the same way\n",
+    printf("  check       %s: %s of more than two tetrahedra, %" PRIu64 " passed twice the same way\n",
            v->faces.nonmanifold_faces || v->faces.folded_faces ? "tetrahedra do not fit" : "tetrahedra fit",
-           v->faces.nonmanifold_faces, v->faces.folded_faces);
+           counted(v->faces.nonmanifold_faces, "face", "faces").text, v->faces.folded_faces);
     printf("  shapes      %" PRIu64 " flat, %" PRIu64 " inverted", s->flat, s->inverted);
     if (s->count)
         printf("; smallest dihedral angles: least %.3g degrees, median %.1f, %.3g%% below 5, %.3g%% below 10", s->least,
@@ -116,9 +117,9 @@ static void fields_text(const isovolume_report *r, const volume_report *v) {
 
 static void volume_text(const isovolume_report *r, const volume_report *v) {
     printf("range %s\n", v->range->text);
-    printf("  tetrahedra  %" PRIu64 ", with %" PRIu64 " vertices: %" PRIu64 " samples, %" PRIu64
-           " on the low bound, %" PRIu64 " on the high one\n",
-           v->tetrahedron_count, vertex_count(v), v->sample_count, v->low_count, v->high_count);
+    printf("  tetrahedra  %" PRIu64 ", with %s: %s, %" PRIu64 " on the low bound, %" PRIu64 " on the high one\n",
+           v->tetrahedron_count, counted(vertex_count(v), "vertex", "vertices").text,
+           counted(v->sample_count, "sample", "samples").text, v->low_count, v->high_count);
     printf("  memory      %" PRIu64 " bytes\n", v->bytes);
     if (v->has_volume) printf("  volume      %.9g\n", v->volume);
     if (v->has_volume) fields_text(r, v);
