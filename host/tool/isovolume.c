@@ -5,8 +5,10 @@
  * With --engine auto, the reference engine takes over where the main engine fails. A volume that fails verification or
  * check is not written; the others are, and the exit status is 3.
  */
+#include "command_line/name_pattern.h"
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input/input.h"
@@ -36,23 +38,9 @@ typedef struct volume_job {
 
 /* ----------------------------------------------------------------------------------------------------------- files */
 
-/* With several ranges every % stands for the range as typed. From malloc; NULL with its failure's text. */
-static char *file_name(const options *o, const typed_range *range) {
-    const char *stand_in = o->range_count > 1 ? range->text : "%";
-    size_t bytes = 1;
-    for (const char *c = o->output; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
-    char *path = malloc(bytes), *at = path;
-    for (const char *c = o->output; path && *c; c++) at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
-    if (path)
-        *at = '\0';
-    else
-        fail(STATUS_FAILED, "out of memory for the name of the output");
-    return path;
-}
-
 static int check_file(const options *o, const dataset *d, const typed_range *range) {
-    char *path = file_name(o, range);
-    int status = path ? complex_write_check(path) : STATUS_FAILED;
+    char *path = name_pattern_fill(o->output, range->text, "");
+    int status = path ? complex_write_check(path, o->format) : STATUS_FAILED;
     if (!status) status = input_overwrite_check(o, d, "-o", path);
     if (!status) status = output_check(path);
     free(path);
@@ -63,10 +51,8 @@ static int check_file(const options *o, const dataset *d, const typed_range *ran
 static int check_files(const options *o, const dataset *d) {
     int status = 0;
     if (!o->output) return 0;
-    if (o->range_count > 1 && !strchr(o->output, '%'))
-        return fail(STATUS_USAGE, "-o %s: with several ranges the name needs a %%, which stands for the range",
-                    o->output);
-    for (size_t a = 0; a < o->range_count; a++)
+    status = name_pattern_check("-o", o->output, o->range_count, "range");
+    for (size_t a = 0; a < o->range_count && !status; a++)
         for (size_t b = 0; b < a; b++)
             if (strcmp(o->ranges[a].text, o->ranges[b].text) == 0)
                 return fail(STATUS_USAGE, "--range: %s is given twice and both would be written to one file",
@@ -144,7 +130,7 @@ static int check_volume(const joined_volume *v, volume_report *r, int *is_good) 
 
 static int write_volume(volume_job *j, const joined_volume *v, volume_report *r) {
     const double begin = now_ms();
-    r->path = file_name(j->o, r->range);
+    r->path = name_pattern_fill(j->o->output, r->range->text, "");
     int status = r->path ? joined_volume_write(v, &j->main, &j->carried, &j->data, r->path) : STATUS_FAILED;
     j->report.write_ms += now_ms() - begin;
     return status;
@@ -217,8 +203,8 @@ int isovolume_run(const options *o) {
     if (!status) status = make_volumes(&j);
     if (!status) status = print_report(&j, begin);
     if (!status && j.failed_count)
-        status = fail(STATUS_CHECK, "%d of %zu volumes failed and %s", j.failed_count, o->range_count,
-                      o->output ? "were not written" : "should not be used");
+        status = fail(STATUS_CHECK, "%d of %s failed: %s", j.failed_count,
+                      counted(o->range_count, "volume", "volumes").text, o->output ? "not written" : "not to be used");
     for (size_t n = 0; n < j.report.volume_count; n++) {
         free(j.report.volumes[n].path);
         free(j.report.volumes[n].integrals);

@@ -296,8 +296,23 @@ class Reports(Case):
         for surface in report["surfaces"]:
             alone = self.report("extract", volume, "--iso", repr(surface["iso"]), "--engine", "reference")
             self.assertEqual(alone["surfaces"][0]["hash"], surface["hash"])
-        self.expect(0, "extract", volume, "--iso", "100", "-o", self.path("100%.stl"), "--engine", "reference")
-        self.assertIn("100%.stl", self.files())
+
+    def test_names_of_values(self):
+        """Every % stands for the value, also for a single one, and in folders; %% is a percent sign."""
+        volume = self.generate("torus", "a.nrrd", "30,30,30")
+        os.mkdir(self.path("9.5"))
+        for iso, pattern, names in (("9.5", "s-%.ply", ["s-9.5.ply"]), ("9.5", "%/s_%%%%_%.ply", ["9.5/s_%%_9.5.ply"]),
+                                    ("9.5", "90%%.ply", ["90%.ply"]), ("9.5,1e1", "%%%.ply", ["%9.5.ply", "%1e1.ply"]),
+                                    ("9.5", "%%-%.a%b.ply", ["%-9.5.a9.5b.ply"])):
+            text = self.expect(0, "extract", volume, "--iso", iso, "-o", self.path(pattern), "--engine", "reference").stdout
+            self.assertEqual([line.split("written ")[1].strip() for line in text.splitlines() if "written" in line],
+                             [self.path(name) for name in names])
+            for name in names:
+                os.remove(self.path(name))
+        self.assertEqual(self.files(), ["9.5", "a.nrrd"])
+        self.refuses(2, "extract", volume, "--iso", "1,2", "-o", self.path("90%%.ply"), says="name needs a %, which stands for the isovalue")
+        self.refuses(2, "isovolume", volume, "--range", "1,2", "--range", "2,3", "-o", self.path("%%.vtu"),
+                     says="name needs a %, which stands for the range")
 
     def test_isovalues_read_back_exactly(self):
         volume = self.generate("gyroid", "a.nrrd", "8,8,8", "f64")

@@ -29,6 +29,7 @@ typedef struct label_report {
     uint32_t slab_count;
     label_row *rows;
     size_t row_count;
+    char *path; /* of the file of all labels, once it is written, or NULL; from malloc */
     int has_verdict, verified;
     double read_ms, device_start_ms, write_ms, total_ms;
 } label_report;
