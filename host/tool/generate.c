@@ -135,8 +135,9 @@ int generate_run(const options *o) {
     write_planes(&r, chunk, chunk_planes, &out);
     status = output_close(&out);
     if (!status && !o->quiet)
-        printf("%s: %s, %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", o->output, r.f->name, o->dims[0], o->dims[1],
-               o->dims[2], tc_type_name((tc_type)o->type));
+        printf("%s: %s, %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n",
+               output_is_dash(o->output) ? "standard output" : o->output, r.f->name, o->dims[0], o->dims[1], o->dims[2],
+               tc_type_name((tc_type)o->type));
 cleanup:
     free(chunk);
     return status;

@@ -79,7 +79,7 @@ static int read_input(volume_job *j) {
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
-    j->report.read_ms = now_ms() - begin;
+    j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
 
@@ -93,11 +93,13 @@ static int engine_begin(volume_job *j) {
     tc_device_info info = {.struct_size = sizeof info};
     const double begin = now_ms();
     int status = engine_open(j->o, j->report.engine, &j->main);
+    const double opened = now_ms();
+    j->report.times.device_start_ms += opened - begin;
     if (!status) status = engine_upload(j->o, &j->blocks, &j->main);
     if (!status && j->report.engine == TC_ENGINE_OPENCL)
         status = library_status(tc_context_device(j->main.context, &info));
     snprintf(j->report.device, sizeof j->report.device, "%s", info.name);
-    j->report.upload_ms += now_ms() - begin;
+    j->report.times.upload_ms += now_ms() - opened;
     return status;
 }
 
@@ -132,7 +134,7 @@ static int write_volume(volume_job *j, const joined_volume *v, volume_report *r)
     const double begin = now_ms();
     r->path = name_pattern_fill(j->o->output, r->range->text, "");
     int status = r->path ? joined_volume_write(v, &j->main, &j->carried, &j->data, r->path) : STATUS_FAILED;
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -183,7 +185,7 @@ static int make_volumes(volume_job *j) {
 }
 
 static int print_report(volume_job *j, double begin_ms) {
-    j->report.total_ms = now_ms() - begin_ms;
+    run_times_end(&j->report.times, begin_ms, j->main.context);
     progress_clear();
     if (j->o->json) return isovolume_report_json(&j->report);
     if (!j->o->quiet) isovolume_report_text(&j->report);

@@ -76,7 +76,7 @@ static int read_input(label_job *j) {
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = label_samples_make(j->o->operands[0], &j->data, &j->field);
     if (!status) status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
-    j->report.read_ms = now_ms() - begin;
+    j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
 
@@ -117,8 +117,10 @@ static int make_with(label_job *j, tc_engine kind) {
     tc_device_info info = {.struct_size = sizeof info};
     const double begin = now_ms();
     int status = engine_open(j->o, kind, &j->main);
+    const double opened = now_ms();
     if (!status) status = engine_upload(j->o, &j->blocks, &j->main);
-    j->report.device_start_ms = now_ms() - begin;
+    j->report.times.device_start_ms = opened - begin;
+    j->report.times.upload_ms = now_ms() - opened;
     if (!status) status = extract(j, &j->main, &j->main.mesh, &j->mesh);
     if (!status && kind == TC_ENGINE_OPENCL) status = library_status(tc_context_device(j->main.context, &info));
     memcpy(j->report.device, info.name, sizeof info.name);
@@ -187,7 +189,7 @@ static int write_label(label_job *j, label_row *row) {
     const double begin = now_ms();
     row->path = label_file_name(j->o, row->label);
     const int status = row->path ? label_file_write(j->o, &j->data, row->path, &j->one.mesh, &j->files) : STATUS_FAILED;
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -228,7 +230,7 @@ static int publish(label_job *j) {
     }
     if (!status) label_files_tell(j->o, &j->mesh);
     if (!status) status = output_group_publish(&j->files);
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -257,7 +259,7 @@ int labels_run(const options *o) {
     if (!status) status = take_labels(&j);
     if (!status) tell_absent(&j);
     if (!status) status = publish(&j);
-    j.report.total_ms = now_ms() - begin;
+    run_times_end(&j.report.times, begin, j.main.context);
     if (!status) status = label_report_print(&j.report);
     if (!status && !j.is_good) status = fail(STATUS_CHECK, "verification or check failed: nothing is written");
     release(&j);

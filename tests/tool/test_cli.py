@@ -260,7 +260,7 @@ class Reports(Case):
             self.assertEqual((report["dims"], report["cells"], report["tetrahedra"]), ([33, 33, 33], 32768, 163840))
             self.assertEqual((report["input"], report["engine"], report["method"]), (volume, engine, "tetra"))
             self.assertEqual(report["device"] is None, engine == "reference")
-            self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "upload", "write", "total"})
+            self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "build", "upload", "write", "total"})
             [surface] = report["surfaces"]
             self.assertEqual(set(surface), tool_case.SURFACE_KEYS)
             self.assertEqual((surface["iso"], surface["vertices"], surface["triangles"]), (127.5, 5082, 10160))

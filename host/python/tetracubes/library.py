@@ -230,6 +230,7 @@ FUNCTIONS = {
     "tc_context_device": (_STATUS, c_void_p, POINTER(tc_device_info)),
     "tc_context_cl_context": (c_void_p, c_void_p),
     "tc_context_cl_queue": (c_void_p, c_void_p),
+    "tc_context_build_ms": (c_double, c_void_p),
     "tc_context_device_bytes": (c_uint64, c_void_p, POINTER(c_uint64)),
     "tc_type_bytes": (c_size_t, c_int),
     "tc_type_name": (c_char_p, c_int),

@@ -94,12 +94,6 @@ static json_t *surface_json(const surface_report *s, const options *o) {
     return object;
 }
 
-static json_t *timings_json(const extract_report *r) {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "device_start",
-                     ms_json(r->device_start_ms), "upload", ms_json(r->upload_ms), "write", ms_json(r->write_ms),
-                     "total", ms_json(r->total_ms));
-}
-
 /* Of --part: which, of how many, and the planes that it owns. */
 static void piece_json(json_t *object, const extract_report *r) {
     const int64_t *piece = r->o->piece;
@@ -136,7 +130,7 @@ int extract_report_json(const extract_report *r) {
     if (r->rank_count) json_object_set_new(object, "sent_bytes", count_json(r->sent_bytes));
     json_object_set_new(object, "cells", count_json(r->input.cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
-    json_object_set_new(object, "timings_ms", timings_json(r));
+    json_object_set_new(object, "timings_ms", run_times_json(&r->times));
     json_object_set_new(object, "surfaces", surfaces);
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
@@ -244,6 +238,5 @@ void extract_report_text(const extract_report *r) {
     if (r->rank_count)
         printf("ranks: %d, each of which sent at most %" PRIu64 " bytes to the others\n", r->rank_count, r->sent_bytes);
     for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n], r->has_tetrahedra);
-    printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
-           r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
+    run_times_text(&r->times);
 }

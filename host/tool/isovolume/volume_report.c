@@ -81,9 +81,7 @@ int isovolume_report_json(const isovolume_report *r) {
     part_report_json(object, r->input.grid);
     json_object_set_new(object, "cells", count_json(r->input.cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
-    json_object_set_new(object, "timings_ms",
-                        json_pack("{s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "upload", ms_json(r->upload_ms),
-                                  "write", ms_json(r->write_ms), "total", ms_json(r->total_ms)));
+    json_object_set_new(object, "timings_ms", run_times_json(&r->times));
     json_object_set_new(object, "volumes", volumes);
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
@@ -136,5 +134,5 @@ void isovolume_report_text(const isovolume_report *r) {
     input_summary_text(&r->input);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     for (size_t n = 0; n < r->volume_count; n++) volume_text(r, &r->volumes[n]);
-    printf("total %.2f ms: read %.2f, upload %.2f, write %.2f\n", r->total_ms, r->read_ms, r->upload_ms, r->write_ms);
+    run_times_text(&r->times);
 }

@@ -28,6 +28,15 @@ static json_t *row_json(const label_report *r, const label_row *row) {
     return object;
 }
 
+static json_t *timings_json(const label_report *r) {
+    json_t *object = run_times_json(&r->times);
+    json_object_set_new(object, "classify", ms_json(r->timings.classify_ms));
+    json_object_set_new(object, "emit", ms_json(r->timings.emit_ms));
+    json_object_set_new(object, "readback", ms_json(r->timings.readback_ms));
+    json_object_set_new(object, "extract", ms_json(r->timings.total_ms));
+    return object;
+}
+
 static int print_json(const label_report *r) {
     char hash[24];
     json_t *rows = json_array(), *object = json_object();
@@ -52,12 +61,7 @@ static int print_json(const label_report *r) {
     json_object_set_new(object, "hash", json_string(hash));
     json_object_set_new(object, "labels", rows);
     if (r->has_verdict) json_object_set_new(object, "verified", json_boolean(r->verified));
-    json_object_set_new(object, "timings_ms",
-                        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms),
-                                  "device_start", ms_json(r->device_start_ms), "classify",
-                                  ms_json(r->timings.classify_ms), "emit", ms_json(r->timings.emit_ms), "readback",
-                                  ms_json(r->timings.readback_ms), "extract", ms_json(r->timings.total_ms), "write",
-                                  ms_json(r->write_ms), "total", ms_json(r->total_ms)));
+    json_object_set_new(object, "timings_ms", timings_json(r));
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
 }
@@ -100,8 +104,7 @@ static void print_text(const label_report *r) {
     for (size_t n = 0; n < r->row_count; n++) print_row(r, &r->rows[n]);
     if (r->has_verdict) printf("  verify      %s\n", r->verified ? "same bytes as the reference" : "FAILED");
     if (r->path) printf("  written     %s\n", output_is_dash(r->path) ? "standard output" : r->path);
-    printf("read %.2f ms, device start %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms, r->device_start_ms,
-           r->write_ms, r->total_ms);
+    run_times_text(&r->times);
 }
 
 int label_report_print(const label_report *r) {
