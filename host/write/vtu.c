@@ -79,7 +79,7 @@ int complex_write_check(const char *path, const char *format) {
         return fail(STATUS_USAGE, "format \"%s\" is not known for tetrahedra: they are written as vtu", format);
     if (format || output_is_dash(path) || (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0)) return 0;
     return fail(STATUS_USAGE,
-                "%s: tetrahedra are written as VTK XML: let the name end in .vtu, or name the format by --format vtu",
+                "%s: tetrahedra are written as VTK XML, vtu: let the name end in .vtu, or name the format by --format",
                 path);
 }
 
