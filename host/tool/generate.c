@@ -47,8 +47,8 @@ static int unknown_field(const char *name) {
         names[count++] = f->name;
     }
     const char *meant = similar_name(name, names, count);
-    return fail(STATUS_USAGE, "there is no field '%s'%s%s%s; fields are %s", name, meant ? "; did you mean " : "",
-                meant ? meant : "", meant ? "?" : "", all);
+    return fail(STATUS_USAGE, "there is no field '%s'%s%s%s fields are %s", name, meant ? "; did you mean " : ";",
+                meant ? meant : "", meant ? "? The" : "", all);
 }
 
 static int check_dims(const options *o, uint64_t *plane_bytes) {

@@ -189,7 +189,7 @@ static int join_field(conversion *c, const char *name, dataset_field *out) {
     if (is_rounded && !(c->field.blocks && c->field.is_rounded && strcmp(c->field.name, name) == 0))
         input_tell_rounded(name);
     *out = from.blocks[0];
-    if (!name[0]) out->name = "samples"; /* arrays of the format have names */
+    if (!name[0]) out->name = FIELD_WITHOUT_NAME; /* arrays of the format have names */
     if (c->data.block_count == 1) return 0;
     size_t bytes = tc_type_bytes(out->type) * (size_t)out->components;
     unsigned char *to = dataset_allocate(&c->data, c->file.point_count * bytes);

@@ -52,6 +52,9 @@ class Usage(Case):
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--max-memroy=1G", says="did you mean --max-memory")
         self.refuses(2, "generate", "sphere", "--dim", "2,2,2", says="did you mean --dims")
         self.refuses(2, "devices", "--jsn", says="did you mean --json")
+        self.refuses(2, "extract", "x.nrrd", "--isovalue", "1", says="did you mean --iso[?]")
+        self.refuses(2, "extract", "x.nrrd", "--ISO", "1", says="did you mean --iso[?]")
+        self.refuses(2, "extract", "x.nrrd", "--iso", "1", "-oa.ply", says="did you mean -o a.ply[?]")
         self.refuses(2, "extract", "x.nrrd", "--frobnicate", says="extract --help")
 
     def test_option_values(self):
@@ -310,6 +313,9 @@ class Reports(Case):
             for name in names:
                 os.remove(self.path(name))
         self.assertEqual(self.files(), ["9.5", "a.nrrd"])
+        report = self.report("extract", volume, "--iso", "9.5", "-o", self.path("%.ply"), "--engine", "reference")
+        self.assertEqual(report["surfaces"][0]["output"], self.path("9.5.ply"))
+        os.remove(self.path("9.5.ply"))
         self.refuses(2, "extract", volume, "--iso", "1,2", "-o", self.path("90%%.ply"), says="name needs a %, which stands for the isovalue")
         self.refuses(2, "isovolume", volume, "--range", "1,2", "--range", "2,3", "-o", self.path("%%.vtu"),
                      says="name needs a %, which stands for the range")

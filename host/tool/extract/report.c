@@ -88,6 +88,8 @@ static json_t *surface_json(const surface_report *s, const options *o) {
     }
     if (s->has_simplified) json_object_set_new(timings, "simplify", ms_json(s->simplified.ms));
     json_object_set_new(object, "timings_ms", timings);
+    if (s->path && !o->separate_blocks) json_object_set_new(object, "output", string_json(s->path));
+    if (s->preview && !o->separate_blocks) json_object_set_new(object, "preview", string_json(s->preview));
     if (s->has_topology) add_topology(object, s);
     if (s->has_topology) add_shapes(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));

@@ -85,8 +85,8 @@ void result_mesh_tell_dropped(const surface_report *s) {
                "had there before",
                s->iso->text, counted(s->nonmanifold_edges, "edge", "edges").text);
     if (s->has_dropped && s->summary.degenerate_triangles)
-        notice("isovalue %s: %s of zero area: corners are apart, on a line", s->iso->text,
-               counted(s->summary.degenerate_triangles, "triangle is left", "triangles are left").text);
+        notice("isovalue %s: %s of zero area left: corners are apart, on a line", s->iso->text,
+               counted(s->summary.degenerate_triangles, "triangle is", "triangles are").text);
 }
 
 int result_mesh_carry(const result_mesh *result, carried_fields *fields) {

@@ -67,6 +67,7 @@ static json_t *volume_json(const isovolume_report *r, const volume_report *v) {
     if (v->has_volume) json_object_set_new(timings, "readback", ms_json(v->readback_ms));
     json_object_set_new(object, "timings_ms", timings);
     if (v->has_shapes) add_shapes(object, v);
+    if (v->path) json_object_set_new(object, "output", string_json(v->path));
     if (v->has_verdict) json_object_set_new(object, "verified", json_boolean(v->verified));
     return object;
 }
