@@ -201,6 +201,11 @@ TC_API tc_status tc_context_device(const tc_context *context, tc_device_info *in
 TC_API struct _cl_context *tc_context_cl_context(const tc_context *context);
 TC_API struct _cl_command_queue *tc_context_cl_queue(const tc_context *context);
 
+/* Milliseconds that kernels took so far until they were ready: built, or loaded from the cache, and tried where
+ * check_device or child_trial ask for that. No timing of a result includes them; but a driver that puts compiling off
+ * until kernels run, as PoCL does, is only told whole where check_device is set. 0 for NULL. */
+TC_API double tc_context_build_ms(const tc_context *context);
+
 /* Bytes of device buffers held at this moment; *peak, which may be NULL: at most so far. Samples and mesh are included,
  * also where they lie in memory of the host that the device uses in place. 0 for NULL. */
 TC_API uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak);

@@ -187,6 +187,8 @@ struct _cl_command_queue *tc_context_cl_queue(const tc_context *context) {
     return context ? context->queue : NULL;
 }
 
+double tc_context_build_ms(const tc_context *context) { return context ? context->build_ms : 0; }
+
 uint64_t tc_context_device_bytes(const tc_context *context, uint64_t *peak) {
     if (peak) *peak = context ? context->device_bytes_peak : 0;
     return context ? context->device_bytes : 0;

@@ -2,6 +2,7 @@
  * mesh_files.c - the tool's writers, its hash and its pictures, for the Python package: files have the same bytes as
  * the tool's
  */
+#include "dataset/dataset.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "mesh_check.h"
@@ -16,6 +17,9 @@ FILES_API uint64_t mesh_files_hash(const tc_mesh_data *mesh);
 FILES_API int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
                               const char *const *names, const int *components, const float *const *values,
                               int *is_relative);
+FILES_API int mesh_files_save_complex(const char *path, const char *format, const complex_file *complex,
+                                      int field_count, const char *const *names, const int *components,
+                                      const float *const *values);
 FILES_API const char *mesh_files_view(int n, view_angles *angles);
 FILES_API int mesh_files_draw(const tc_mesh_data *mesh, view_angles angles, int width, int height,
                               unsigned char *pixels);
@@ -36,6 +40,22 @@ int mesh_files_save(const char *path, const char *format, const tc_mesh_data *me
     int status = mesh_write_check(path, &options);
     if (!status) status = mesh_write(path, mesh, &options);
     *is_relative = !status && mesh_write_is_relative(path, mesh, &options);
+    free(fields);
+    return status;
+}
+
+/* The complex is given without its fields. */
+int mesh_files_save_complex(const char *path, const char *format, const complex_file *complex, int field_count,
+                            const char *const *names, const int *components, const float *const *values) {
+    complex_file file = *complex;
+    dataset_field *fields = calloc((size_t)field_count + 1, sizeof *fields);
+    if (!fields) return fail(STATUS_FAILED, "out of memory for %d fields", field_count);
+    for (int n = 0; n < field_count; n++)
+        fields[n] = (dataset_field){.name = names[n], .components = components[n], .type = TC_F32, .values = values[n]};
+    file.fields = fields;
+    file.field_count = field_count;
+    int status = complex_write_check(path, format);
+    if (!status) status = complex_write(path, &file);
     free(fields);
     return status;
 }

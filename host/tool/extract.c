@@ -17,6 +17,7 @@
  */
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "extract/surface_check.h"
 #include "extract/surface_totals.h"
@@ -72,7 +73,7 @@ static int read_input(job *j) {
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
-    j->report.read_ms = now_ms() - begin;
+    j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
 
@@ -94,7 +95,7 @@ static void *device_start(void *argument) {
     job *j = argument;
     double begin = now_ms();
     j->start_status = engine_open(j->o, j->report.engine, &j->main);
-    j->report.device_start_ms = now_ms() - begin;
+    j->report.times.device_start_ms = now_ms() - begin;
     if (j->start_status) snprintf(j->start_text, sizeof j->start_text, "%s", failure_text());
     return NULL;
 }
@@ -119,7 +120,7 @@ static void describe_input(job *j) {
 static int cut(job *j) {
     double begin = now_ms();
     int status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
-    j->report.upload_ms = now_ms() - begin;
+    j->report.times.upload_ms = now_ms() - begin;
     if (!status) describe_input(j);
     return status ? status : progress_status();
 }
@@ -135,23 +136,16 @@ static int describe_device(job *j) {
 static int upload(job *j) {
     double begin = now_ms();
     int status = fall_back(j, engine_upload(j->o, &j->blocks, &j->main));
-    j->report.upload_ms += now_ms() - begin;
+    j->report.times.upload_ms += now_ms() - begin;
     if (!status && j->o->verify) status = engine_open(j->o, TC_ENGINE_REFERENCE, &j->reference);
     if (!status && j->o->verify) status = engine_upload(j->o, &j->blocks, &j->reference);
     return status ? status : describe_device(j);
 }
 
-/* The first call makes the kernels ready: what it took beyond the kernels' own time belongs to the device's start. */
-static void add_device_start(job *j, double begin_ms, double kernels_ms) {
-    j->report.device_start_ms += now_ms() - begin_ms - kernels_ms;
-}
-
 static int count_surface(job *j, const tc_extract_options *how, surface_report *s) {
     tc_counts counts;
-    double begin = now_ms();
     int status = engine_count(&j->main, how, &counts);
     if (status && !(status = fall_back(j, status))) status = engine_count(&j->main, how, &counts);
-    add_device_start(j, begin, counts.classify_ms);
     s->vertex_count = counts.vertex_count;
     s->triangle_count = counts.triangle_count;
     s->active_cell_count = counts.active_cell_count;
@@ -191,7 +185,7 @@ static int judge_surface(surface_job *w) {
 static int write_preview(surface_job *w, block_range blocks, const result_mesh *mesh) {
     double begin = now_ms();
     int status = surface_preview_write(w->j->o, w->s->iso, blocks.first, mesh, &w->files);
-    w->j->report.write_ms += now_ms() - begin;
+    w->j->report.times.write_ms += now_ms() - begin;
     return status ? status : progress_status();
 }
 
@@ -203,7 +197,7 @@ static int write_mesh(surface_job *w, block_range blocks, const tc_mesh_data *ma
     if (!status) status = result_mesh_carry(mesh, &j->carried);
     if (!status && is_last) carried_fields_tell(&j->carried);
     if (!status) status = surface_files_write(j->o, &j->data, w->s->iso, blocks.first, mesh, &j->carried, &w->files);
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -231,11 +225,9 @@ static int make_mesh(surface_job *w, block_range blocks, int is_last) {
     job *j = w->j;
     tc_mesh_data made;
     result_mesh mesh;
-    double begin = now_ms();
     int status = engine_extract(&j->main, blocks, &w->how, &made);
     if (status && !(status = fall_back(j, status))) status = engine_extract(&j->main, blocks, &w->how, &made);
     if (status) return status;
-    add_device_start(j, begin, made.timings.total_ms + made.timings.readback_ms);
     result_mesh_begin(&j->main, blocks, &made, &mesh);
     status = finish_mesh(w, blocks, &made, &mesh, is_last);
     result_mesh_release(&mesh);
@@ -258,7 +250,7 @@ static int publish(surface_job *w) {
     if (!w->is_good) return 0;
     int status = describe_files(w);
     if (!status) status = output_group_publish(&w->files);
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -310,7 +302,7 @@ static int make_streamed(job *j) {
     }
     j->report.surfaces = s;
     j->report.surface_count = count;
-    for (size_t n = 0; n < count; n++) j->report.write_ms += s[n].write_ms;
+    for (size_t n = 0; n < count; n++) j->report.times.write_ms += s[n].write_ms;
     for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
     for (size_t n = 0; n < count && !status && !j->o->piece[1]; n++)
         status = surface_tell_empty(&j->data, &j->field, &s[n]); /* a part may well be empty */
@@ -318,7 +310,7 @@ static int make_streamed(job *j) {
 }
 
 static int print_report(job *j, double begin_ms) {
-    j->report.total_ms = now_ms() - begin_ms;
+    run_times_end(&j->report.times, begin_ms, j->main.context);
     progress_clear();
     if (j->team) {
         double sent = (double)j->team->sent_bytes(j->team);
@@ -349,8 +341,9 @@ int extract_run_together(const options *o, team *t) {
     if (!j.streams && (status = make_surfaces(&j))) goto cleanup;
     if ((status = print_report(&j, begin))) goto cleanup;
     if (j.failed_count)
-        status = fail(STATUS_CHECK, "%d of %zu surfaces failed and %s", j.failed_count, o->isovalue_count,
-                      o->output || o->preview ? "were not written" : "should not be used");
+        status = fail(STATUS_CHECK, "%d of %s failed: %s", j.failed_count,
+                      counted(o->isovalue_count, "surface", "surfaces").text,
+                      o->output || o->preview ? "not written" : "not to be used");
 cleanup:
     for (size_t n = 0; n < j.report.surface_count; n++) {
         free(j.report.surfaces[n].path);

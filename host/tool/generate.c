@@ -47,8 +47,8 @@ static int unknown_field(const char *name) {
         names[count++] = f->name;
     }
     const char *meant = similar_name(name, names, count);
-    return fail(STATUS_USAGE, "there is no field '%s'%s%s%s; fields are %s", name, meant ? "; did you mean " : "",
-                meant ? meant : "", meant ? "?" : "", all);
+    return fail(STATUS_USAGE, "there is no field '%s'%s%s%s fields are %s", name, meant ? "; did you mean " : ";",
+                meant ? meant : "", meant ? "? The" : "", all);
 }
 
 static int check_dims(const options *o, uint64_t *plane_bytes) {
@@ -135,8 +135,9 @@ int generate_run(const options *o) {
     write_planes(&r, chunk, chunk_planes, &out);
     status = output_close(&out);
     if (!status && !o->quiet)
-        printf("%s: %s, %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n", o->output, r.f->name, o->dims[0], o->dims[1],
-               o->dims[2], tc_type_name((tc_type)o->type));
+        printf("%s: %s, %" PRId64 " x %" PRId64 " x %" PRId64 " %s\n",
+               output_is_dash(o->output) ? "standard output" : o->output, r.f->name, o->dims[0], o->dims[1], o->dims[2],
+               tc_type_name((tc_type)o->type));
 cleanup:
     free(chunk);
     return status;

@@ -1,6 +1,7 @@
 /* info.c - what an input holds: blocks and fields; range, histogram and isovalues worth trying of the chosen one */
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "info/describe_blocks.h"
@@ -150,8 +151,10 @@ static void print_field(const facts *f) {
     if (f->field->name[0]) printf("field '%s'%s\n", f->field->name, f->field->is_averaged ? ", averaged" : "");
     if (s->finite_count)
         printf("range         %s to %s\n", shortest_number(s->minimum).text, shortest_number(s->maximum).text);
-    if (s->nonfinite_count) printf("not finite    %" PRIu64 " samples, treated as missing\n", s->nonfinite_count);
-    if (s->missing_count) printf("missing       %" PRIu64 " samples, blanked or equal to --nodata\n", s->missing_count);
+    if (s->nonfinite_count)
+        printf("not finite    %s, treated as missing\n", counted(s->nonfinite_count, "sample", "samples").text);
+    if (s->missing_count)
+        printf("missing       %s, blanked or equal to --nodata\n", counted(s->missing_count, "sample", "samples").text);
     if (s->bin_count) print_chart(s);
     print_suggestions(f);
 }

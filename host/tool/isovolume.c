@@ -5,8 +5,10 @@
  * With --engine auto, the reference engine takes over where the main engine fails. A volume that fails verification or
  * check is not written; the others are, and the exit status is 3.
  */
+#include "command_line/name_pattern.h"
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input/input.h"
@@ -36,23 +38,9 @@ typedef struct volume_job {
 
 /* ----------------------------------------------------------------------------------------------------------- files */
 
-/* With several ranges every % stands for the range as typed. From malloc; NULL with its failure's text. */
-static char *file_name(const options *o, const typed_range *range) {
-    const char *stand_in = o->range_count > 1 ? range->text : "%";
-    size_t bytes = 1;
-    for (const char *c = o->output; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
-    char *path = malloc(bytes), *at = path;
-    for (const char *c = o->output; path && *c; c++) at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
-    if (path)
-        *at = '\0';
-    else
-        fail(STATUS_FAILED, "out of memory for the name of the output");
-    return path;
-}
-
 static int check_file(const options *o, const dataset *d, const typed_range *range) {
-    char *path = file_name(o, range);
-    int status = path ? complex_write_check(path) : STATUS_FAILED;
+    char *path = name_pattern_fill(o->output, range->text, "");
+    int status = path ? complex_write_check(path, o->format) : STATUS_FAILED;
     if (!status) status = input_overwrite_check(o, d, "-o", path);
     if (!status) status = output_check(path);
     free(path);
@@ -63,10 +51,8 @@ static int check_file(const options *o, const dataset *d, const typed_range *ran
 static int check_files(const options *o, const dataset *d) {
     int status = 0;
     if (!o->output) return 0;
-    if (o->range_count > 1 && !strchr(o->output, '%'))
-        return fail(STATUS_USAGE, "-o %s: with several ranges the name needs a %%, which stands for the range",
-                    o->output);
-    for (size_t a = 0; a < o->range_count; a++)
+    status = name_pattern_check("-o", o->output, o->range_count, "range");
+    for (size_t a = 0; a < o->range_count && !status; a++)
         for (size_t b = 0; b < a; b++)
             if (strcmp(o->ranges[a].text, o->ranges[b].text) == 0)
                 return fail(STATUS_USAGE, "--range: %s is given twice and both would be written to one file",
@@ -93,7 +79,7 @@ static int read_input(volume_job *j) {
     if (!status) status = option_effects_check_input(j->o, &j->data, 0);
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = carried_fields_select(j->o, &j->data, &j->carried);
-    j->report.read_ms = now_ms() - begin;
+    j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
 
@@ -107,11 +93,13 @@ static int engine_begin(volume_job *j) {
     tc_device_info info = {.struct_size = sizeof info};
     const double begin = now_ms();
     int status = engine_open(j->o, j->report.engine, &j->main);
+    const double opened = now_ms();
+    j->report.times.device_start_ms += opened - begin;
     if (!status) status = engine_upload(j->o, &j->blocks, &j->main);
     if (!status && j->report.engine == TC_ENGINE_OPENCL)
         status = library_status(tc_context_device(j->main.context, &info));
     snprintf(j->report.device, sizeof j->report.device, "%s", info.name);
-    j->report.upload_ms += now_ms() - begin;
+    j->report.times.upload_ms += now_ms() - opened;
     return status;
 }
 
@@ -144,9 +132,9 @@ static int check_volume(const joined_volume *v, volume_report *r, int *is_good) 
 
 static int write_volume(volume_job *j, const joined_volume *v, volume_report *r) {
     const double begin = now_ms();
-    r->path = file_name(j->o, r->range);
+    r->path = name_pattern_fill(j->o->output, r->range->text, "");
     int status = r->path ? joined_volume_write(v, &j->main, &j->carried, &j->data, r->path) : STATUS_FAILED;
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -197,7 +185,7 @@ static int make_volumes(volume_job *j) {
 }
 
 static int print_report(volume_job *j, double begin_ms) {
-    j->report.total_ms = now_ms() - begin_ms;
+    run_times_end(&j->report.times, begin_ms, j->main.context);
     progress_clear();
     if (j->o->json) return isovolume_report_json(&j->report);
     if (!j->o->quiet) isovolume_report_text(&j->report);
@@ -217,8 +205,8 @@ int isovolume_run(const options *o) {
     if (!status) status = make_volumes(&j);
     if (!status) status = print_report(&j, begin);
     if (!status && j.failed_count)
-        status = fail(STATUS_CHECK, "%d of %zu volumes failed and %s", j.failed_count, o->range_count,
-                      o->output ? "were not written" : "should not be used");
+        status = fail(STATUS_CHECK, "%d of %s failed: %s", j.failed_count,
+                      counted(o->range_count, "volume", "volumes").text, o->output ? "not written" : "not to be used");
     for (size_t n = 0; n < j.report.volume_count; n++) {
         free(j.report.volumes[n].path);
         free(j.report.volumes[n].integrals);

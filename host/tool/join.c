@@ -5,6 +5,7 @@
  * the numbers of its vertices are checked; the file appears when all of it is good.
  */
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "extract/surface_files.h"
 #include "failure.h"
@@ -17,7 +18,6 @@
 #include "terminal/json_report.h"
 #include "vertex_values.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -208,8 +208,9 @@ static int print_report(const join_job *j, double total_ms) {
                                            (json_int_t)j->count, "vertices", count_json(j->vertex_count), "triangles",
                                            count_json(j->triangle_count), "total_ms", total_ms));
     if (!j->o->quiet)
-        printf("%s: %" PRIu64 " vertices, %" PRIu64 " triangles of %zu parts, in %.2f ms\n", j->o->output,
-               j->vertex_count, j->triangle_count, j->count, total_ms);
+        printf("%s: %s, %s of %s, in %.2f ms\n", j->o->output, counted(j->vertex_count, "vertex", "vertices").text,
+               counted(j->triangle_count, "triangle", "triangles").text, counted(j->count, "part", "parts").text,
+               total_ms);
     return 0;
 }
 

@@ -7,6 +7,7 @@
  */
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "extract/engine.h"
 #include "failure.h"
@@ -75,8 +76,17 @@ static int read_input(label_job *j) {
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = label_samples_make(j->o->operands[0], &j->data, &j->field);
     if (!status) status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
-    j->report.read_ms = now_ms() - begin;
+    j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
+}
+
+/* Whether the block ends within a larger one, along some axis, by --roi or --roi-world. */
+static int is_region(const options *o, const dataset_block *b) {
+    const sample_box *p = &b->part;
+    if (!b->whole || !(options_given(o, "--roi") || options_given(o, "--roi-world"))) return 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (p->first[axis] > 0 || p->first[axis] + p->count[axis] * p->step[axis] < b->whole->dims[axis]) return 1;
+    return 0;
 }
 
 static void choose_options(label_job *j) {
@@ -88,6 +98,10 @@ static void choose_options(label_job *j) {
     if (options_given(j->o, "--smooth")) j->how.smoothing = (uint32_t)j->o->smooth;
     if (!is_uniform && j->how.smoothing) notice("%s: is no uniform grid: surfaces are not smoothed", j->o->operands[0]);
     if (!is_uniform) j->how.smoothing = 0;
+    if (j->how.smoothing && is_region(j->o, &j->data.blocks[0]))
+        notice("%s: surfaces are smoothed at the border of the region, too: those of regions that share a plane of "
+               "samples fit by --smooth 0 alone",
+               j->o->operands[0]);
     j->report.smoothing = j->how.smoothing;
 }
 
@@ -103,8 +117,10 @@ static int make_with(label_job *j, tc_engine kind) {
     tc_device_info info = {.struct_size = sizeof info};
     const double begin = now_ms();
     int status = engine_open(j->o, kind, &j->main);
+    const double opened = now_ms();
     if (!status) status = engine_upload(j->o, &j->blocks, &j->main);
-    j->report.device_start_ms = now_ms() - begin;
+    j->report.times.device_start_ms = opened - begin;
+    j->report.times.upload_ms = now_ms() - opened;
     if (!status) status = extract(j, &j->main, &j->main.mesh, &j->mesh);
     if (!status && kind == TC_ENGINE_OPENCL) status = library_status(tc_context_device(j->main.context, &info));
     memcpy(j->report.device, info.name, sizeof info.name);
@@ -161,17 +177,19 @@ static int check_label(label_job *j, label_row *row) {
     if (status) return status;
     if (!t->nonmanifold_edges && !t->nonmanifold_vertices && !t->misoriented_edges && !t->invalid_triangles) return 0;
     j->is_good = 0;
-    message("label %" PRIu32 ": check failed: %" PRIu64 " non-manifold edges, %" PRIu64
-            " non-manifold vertices, %" PRIu64 " misoriented edges, %" PRIu64 " invalid triangles",
-            row->label, t->nonmanifold_edges, t->nonmanifold_vertices, t->misoriented_edges, t->invalid_triangles);
+    message("label %" PRIu32 ": check failed: %s, %s, %s, %s", row->label,
+            counted(t->nonmanifold_edges, "non-manifold edge", "non-manifold edges").text,
+            counted(t->nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices").text,
+            counted(t->misoriented_edges, "misoriented edge", "misoriented edges").text,
+            counted(t->invalid_triangles, "invalid triangle", "invalid triangles").text);
     return 0;
 }
 
 static int write_label(label_job *j, label_row *row) {
     const double begin = now_ms();
-    row->path = label_file_name(j->o->output, row->label);
+    row->path = label_file_name(j->o, row->label);
     const int status = row->path ? label_file_write(j->o, &j->data, row->path, &j->one.mesh, &j->files) : STATUS_FAILED;
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -206,11 +224,13 @@ static int publish(label_job *j) {
     const double begin = now_ms();
     int status = 0;
     if (!j->is_good) return 0;
-    if (j->o->output && !j->o->separate_labels)
-        status = label_file_write(j->o, &j->data, j->o->output, &j->mesh, &j->files);
+    if (j->o->output && !j->o->separate_labels) {
+        j->report.path = label_file_name(j->o, 0);
+        status = j->report.path ? label_file_write(j->o, &j->data, j->report.path, &j->mesh, &j->files) : STATUS_FAILED;
+    }
     if (!status) label_files_tell(j->o, &j->mesh);
     if (!status) status = output_group_publish(&j->files);
-    j->report.write_ms += now_ms() - begin;
+    j->report.times.write_ms += now_ms() - begin;
     return status;
 }
 
@@ -218,6 +238,7 @@ static void release(label_job *j) {
     output_group_discard(&j->files);
     for (size_t n = 0; n < j->report.row_count; n++) free(j->report.rows[n].path);
     free(j->report.rows);
+    free(j->report.path);
     label_mesh_release(&j->one);
     mesh_labels_release(&j->labels);
     engine_close(&j->main);
@@ -238,7 +259,7 @@ int labels_run(const options *o) {
     if (!status) status = take_labels(&j);
     if (!status) tell_absent(&j);
     if (!status) status = publish(&j);
-    j.report.total_ms = now_ms() - begin;
+    run_times_end(&j.report.times, begin, j.main.context);
     if (!status) status = label_report_print(&j.report);
     if (!status && !j.is_good) status = fail(STATUS_CHECK, "verification or check failed: nothing is written");
     release(&j);

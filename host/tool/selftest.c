@@ -1,5 +1,6 @@
 /* selftest.c - runs the groups of trials on a device, each in a child of this process; says PASS or FAIL */
 #include "commands.h"
+#include "counted.h"
 #include "drivers/child_process.h"
 #include "drivers/driver_trial.h"
 #include "exit_status.h"
@@ -236,7 +237,8 @@ int selftest_run(const options *o) {
         printf("%s\n", failed_count ? "FAIL" : "PASS");
     if (!status && o->junit) status = junit_write(o->junit, &all, &info);
     if (!status && failed_count)
-        status = fail(STATUS_CHECK, "%d trials failed: do not trust results of %s", failed_count, info.name);
+        status = fail(STATUS_CHECK, "%s failed: do not trust results of %s",
+                      counted((uint64_t)failed_count, "trial", "trials").text, info.name);
 cleanup:
     json_decref(groups);
     results_release(&all);

@@ -5,6 +5,7 @@
  */
 #include "command_line/option_effects.h"
 #include "commands.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input/blocks.h"
@@ -35,8 +36,8 @@ typedef struct conversion {
 } conversion;
 
 static int check_usage(const options *o) {
-    if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, ending in .vtu");
-    int status = complex_write_check(o->output);
+    if (!o->output) return fail(STATUS_USAGE, "tetrahedralize needs -o FILE, the unstructured grid to write: .vtu");
+    int status = complex_write_check(o->output, o->format);
     if (!status) status = input_overwrite_check(o, NULL, "-o", o->output);
     return status ? status : output_check(o->output);
 }
@@ -188,7 +189,7 @@ static int join_field(conversion *c, const char *name, dataset_field *out) {
     if (is_rounded && !(c->field.blocks && c->field.is_rounded && strcmp(c->field.name, name) == 0))
         input_tell_rounded(name);
     *out = from.blocks[0];
-    if (!name[0]) out->name = "samples"; /* arrays of the format have names */
+    if (!name[0]) out->name = FIELD_WITHOUT_NAME; /* arrays of the format have names */
     if (c->data.block_count == 1) return 0;
     size_t bytes = tc_type_bytes(out->type) * (size_t)out->components;
     unsigned char *to = dataset_allocate(&c->data, c->file.point_count * bytes);
@@ -251,9 +252,11 @@ static int print_report(const conversion *c) {
     progress_clear();
     if (c->o->json) return print_json(c);
     if (c->o->quiet) return 0;
-    printf("%s: %" PRIu64 " points, %" PRIu64 " cells\n", c->o->operands[0], c->file.point_count, c->blocks.cell_count);
-    printf("%s: %" PRIu64 " tetrahedra, %d fields, total %.2f ms\n", c->o->output, c->file.tetrahedron_count,
-           c->file.field_count, c->total_ms);
+    printf("%s: %s, %s\n", c->o->operands[0], counted(c->file.point_count, "point", "points").text,
+           counted(c->blocks.cell_count, "cell", "cells").text);
+    printf("%s: %s, %s, total %.2f ms\n", output_is_dash(c->o->output) ? "standard output" : c->o->output,
+           counted(c->file.tetrahedron_count, "tetrahedron", "tetrahedra").text,
+           counted((uint64_t)c->file.field_count, "field", "fields").text, c->total_ms);
     return 0;
 }
 

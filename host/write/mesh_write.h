@@ -140,8 +140,11 @@ typedef struct complex_file {
     const char *world, *units; /* as above */
 } complex_file;
 
-/* 0 where path ends with .vtu, else STATUS_USAGE: to be called before any work is done. */
-int complex_write_check(const char *path);
+/* format: a name of COMPLEX_FORMATS, in any case; NULL: the path's ending, and for "-" the first of them. 0, or
+ * STATUS_USAGE with its message: to be called before any work is done. */
+int complex_write_check(const char *path, const char *format);
+
+/* path is one that complex_write_check takes. */
 int complex_write(const char *path, const complex_file *complex);
 
 #endif

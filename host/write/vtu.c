@@ -73,17 +73,20 @@ static void add_cells(vtk_file *f, const complex_file *c) {
                                   .source = c});
 }
 
-int complex_write_check(const char *path) {
-    size_t length = strlen(path);
-    if (output_is_dash(path) || (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0)) return 0;
-    return fail(STATUS_USAGE, "%s: tetrahedra are written as VTK XML: let the name end in .vtu", path);
+int complex_write_check(const char *path, const char *format) {
+    const size_t length = strlen(path);
+    if (format && strcasecmp(format, "vtu") != 0)
+        return fail(STATUS_USAGE, "format \"%s\" is not known for tetrahedra: they are written as vtu", format);
+    if (format || output_is_dash(path) || (length > 4 && strcasecmp(path + length - 4, ".vtu") == 0)) return 0;
+    return fail(STATUS_USAGE,
+                "%s: tetrahedra are written as VTK XML, vtu: let the name end in .vtu, or name the format by --format",
+                path);
 }
 
 int complex_write(const char *path, const complex_file *c) {
     output o;
     vtk_file f = {.o = &o};
-    int status = complex_write_check(path);
-    if (!status) status = output_open(&o, path);
+    int status = output_open(&o, path);
     if (status) return status;
     vtk_notes_add(&f, c->world, c->units);
     text_add(&f.text, "    <Piece NumberOfPoints=\"%llu\" NumberOfCells=\"%llu\">\n      <PointData>\n",

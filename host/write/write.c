@@ -91,7 +91,9 @@ static int check_fields(const char *path, const mesh_write_options *options, con
                 path, (long long)values, FIELD_VALUES_MOST);
 }
 
-static int choose_format(const char *path, const mesh_write_options *options, const format **chosen) {
+/* The format of those that are meant: others are not refused, but none of them is proposed. */
+static int choose_of(int (*is_meant)(const format *f), const char *path, const mesh_write_options *options,
+                     const format **chosen) {
     int named = options && options->format;
     char list[LIST_BYTES];
     *chosen = find_format(named ? options->format : ending_of(path));
@@ -100,10 +102,14 @@ static int choose_format(const char *path, const mesh_write_options *options, co
     if (*chosen) return check_fields(path, options, *chosen);
     if (named)
         return fail(STATUS_USAGE, "format \"%s\" is not known: meshes are written as %s", options->format,
-                    list_formats(is_there, "", list));
+                    list_formats(is_meant, "", list));
     if (output_is_dash(path)) return fail(STATUS_USAGE, "-o - has no ending: name the format by --format");
     return fail(STATUS_USAGE, "%s: its ending names no known format: let it end in %s, or name the format by --format",
-                path, list_formats(is_there, ".", list));
+                path, list_formats(is_meant, ".", list));
+}
+
+static int choose_format(const char *path, const mesh_write_options *options, const format **chosen) {
+    return choose_of(is_there, path, options, chosen);
 }
 
 static int check_counts(const char *path, const tc_mesh_data *mesh, int soup, const format *f) {
@@ -251,7 +257,11 @@ struct mesh_file {
 int mesh_file_check(const char *path, const mesh_write_options *options) {
     const format *f;
     char list[LIST_BYTES];
-    int status = choose_format(path, options, &f);
+    if (!output_is_file(path))
+        return fail(STATUS_USAGE,
+                    "%s is no file: pieces of a mesh are written at many places of one; name a file that ends in %s",
+                    output_is_dash(path) ? "-o -" : path, list_formats(goes_in_pieces, ".", list));
+    int status = choose_of(goes_in_pieces, path, options, &f);
     if (status) return status;
     if (!goes_in_pieces(f))
         return fail(STATUS_USAGE,
@@ -261,11 +271,7 @@ int mesh_file_check(const char *path, const mesh_write_options *options) {
     if (options && options->soup)
         return fail(STATUS_USAGE,
                     "%s: vertices of their own for every triangle (--soup) are not written piece by piece", path);
-    return output_is_file(path) ? 0
-                                : fail(STATUS_USAGE,
-                                       "%s: a mesh that does not fit memory is written at many places "
-                                       "of a file: name a file",
-                                       path);
+    return 0;
 }
 
 int mesh_file_takes_halves(const char *path, const mesh_write_options *options) {

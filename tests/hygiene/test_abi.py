@@ -21,6 +21,7 @@ RESULTS = {"tc_planes", "tc_mesh_piece", "tc_device_info", "tc_tuning", "tc_coun
            "tc_interval_volume_counts", "tc_interval_volume_data"}
 NO_STATUS = {"tc_message", "tc_version", "tc_context_options_init", "tc_context_destroy", "tc_context_cl_context",
              "tc_seam_size", "tc_stream_options_init", "tc_context_cl_queue", "tc_context_device_bytes", "tc_type_bytes",
+             "tc_context_build_ms",
              "tc_type_name", "tc_method_name", "tc_grid_options_init",
              "tc_grid_destroy", "tc_extract_options_init", "tc_mesh_destroy", "tc_tetrahedra_release",
              "tc_interval_volume_options_init", "tc_interval_volume_destroy",

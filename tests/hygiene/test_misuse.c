@@ -286,6 +286,7 @@ static void test_others(const world *w) {
     EXPECT(made.tetrahedron_count == 0 && !made.tetrahedra && !made.cells, "a complex after its release");
     EXPECT(tc_seam_size(NULL) == 0, "a seam of no grid");
     EXPECT(!tc_context_cl_context(NULL) && !tc_context_cl_queue(NULL), "OpenCL objects of no context");
+    EXPECT(tc_context_build_ms(NULL) == 0, "kernels of no context");
     EXPECT(tc_context_device_bytes(NULL, NULL) == 0 && tc_context_device_bytes(NULL, &peak) == 0 && peak == 0,
            "device bytes of no context");
     for (unsigned n = 8; n; n <<= 1)

@@ -2,7 +2,8 @@
  * test_contexts.c - what contexts promise besides meshes
  *
  * Devices are named and found; callers built against older headers are served; progress runs forward and cancels,
- * after which everything works; contexts in several threads at once; no OpenCL platform at all.
+ * after which everything works; what kernels took until they were ready; contexts in several threads at once; no
+ * OpenCL platform at all.
  */
 #include "api.h"
 #include "folder.h"
@@ -10,6 +11,7 @@
 #include <pthread.h>
 #include <stddef.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Callers built when the structs ended earlier: what they do not know has its default. */
@@ -73,6 +75,51 @@ static void test_devices(tc_context *device) {
     EXPECT_REFUSED(tc_device_get(-1, &info), TC_ERROR_ARGUMENT, "device -1");
     EXPECT(tc_context_device(device, &info) == TC_OK && tc_context_cl_context(device) && tc_context_cl_queue(device),
            "the context does not tell its device");
+}
+
+static double clock_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+/* The first surface makes kernels ready, the second one finds them; timings of surfaces and of label maps have neither
+ * that nor the trial. */
+static void test_build_time(void) {
+    uint8_t small[8 * 8 * 8] = {0};
+    small[3 * 64 + 3 * 8 + 3] = 1;
+    tc_context_options options;
+    tc_grid_options how;
+    tc_extract_options surface;
+    tc_labels_options labels;
+    tc_grid *grid = NULL;
+    tc_mesh *mesh = NULL;
+    double built[3], walls[3];
+    tc_context_options_init(&options);
+    options.check_device = 1;
+    tc_context *context = context_open(&options);
+    tc_grid_options_init(&how);
+    tc_extract_options_init(&surface);
+    tc_labels_options_init(&labels);
+    for (int axis = 0; axis < 3; axis++) how.dims[axis] = 8;
+    how.samples = small;
+    surface.isovalue = 0.5;
+    EXPECT(tc_context_build_ms(context) == 0, "kernels before any call");
+    EXPECT(tc_grid_create(context, &how, &grid) == TC_OK, "%s", tc_message());
+    for (int n = 0; n < 3; n++) {
+        tc_mesh_data data = {.struct_size = sizeof data};
+        const double before = tc_context_build_ms(context), start = clock_ms();
+        const tc_status status = n < 2 ? tc_extract(grid, &surface, &mesh) : tc_extract_labels(grid, &labels, &mesh);
+        walls[n] = clock_ms() - start;
+        built[n] = tc_context_build_ms(context) - before;
+        EXPECT(status == TC_OK && tc_mesh_get(mesh, &data) == TC_OK, "%s", tc_message());
+        EXPECT(built[n] + data.timings.total_ms <= walls[n], "call %d: %g ms for kernels, %g of %g for the mesh", n,
+               built[n], data.timings.total_ms, walls[n]);
+    }
+    EXPECT(built[0] > 0 && built[1] == 0 && built[2] > 0, "kernels took %g, %g, %g ms", built[0], built[1], built[2]);
+    tc_mesh_destroy(mesh);
+    tc_grid_destroy(grid);
+    tc_context_destroy(context);
 }
 
 /* -------------------------------------------------------------------------------------------------------- progress */
@@ -275,6 +322,7 @@ int main(void) {
         tc_context_options_init(&options);
         tc_context *context = context_open(&options);
         test_devices(context);
+        test_build_time();
         test_progress(TC_ENGINE_OPENCL, &expected);
         tc_context_destroy(context);
     }

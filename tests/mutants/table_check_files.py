@@ -241,6 +241,8 @@ MUTANTS = [
            ("left < c->size[last] ? left : c->size[last]", "c->size[last]", "HDF5: what of a chunk is behind the array")),
     *group("host/read/image/hdf5_file.c",
            ("*is_swapped = !is_native && is_other;", "*is_swapped = 0;", "HDF5: the other byte order"),
+           ("value[0] + value[1] == 1", "1", "HDF5: enumerations of two values are taken for booleans"),
+           ("if (is_boolean(type)) return TC_U8;", "", "HDF5: booleans are signed"),
            ("stored == H5D_VIRTUAL || others > 0", "0", "HDF5: samples in other files"),
            ("sizes[2 - axis] > 0 ? sizes[2 - axis] : 1", "sizes[axis]", "HDF5: spacing from behind")),
     *group("host/read/image/slices.c",

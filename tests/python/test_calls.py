@@ -31,6 +31,23 @@ def test_progress(noise):
     assert len(told) > 2 and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told)
 
 
+def test_arguments_without_effect(noise):
+    """As in the tool: a threshold of another method is refused; what is of devices alone has a warning."""
+    with pytest.raises(ValueError, match="snap is the threshold of method 'snap', and method is 'tetra'"):
+        tetracubes.isosurface(noise, 0.5, snap=0.2)
+    for name, value in ("device", 0), ("max_memory", 1e9):
+        with pytest.warns(RuntimeWarning, match=f"{name} has no effect with engine='reference'"):
+            tetracubes.isosurface(noise, 0.5, engine="reference", **{name: value})
+    for value in "1G", -1, [3]:
+        with pytest.raises(ValueError, match="max_memory is .*, not a number of bytes"):
+            tetracubes.isosurface(noise, 0.5, max_memory=value)
+    for name in 1, "a\0b":
+        with pytest.raises(ValueError, match="carry has the name .*, which is no text"):
+            tetracubes.isosurface(noise, 0.5, carry={name: noise}, engine="reference")
+    with pytest.raises(ValueError, match="volume is a list, which has no shape"):
+        tetracubes.isosurface_by_parts(noise.tolist(), 0.5)
+
+
 def test_exception_of_progress_ends_the_call(noise):
     def stop(stage, fraction):
         raise OverflowError("enough")

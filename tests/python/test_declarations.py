@@ -32,8 +32,8 @@ def test_structs_and_enumerators():
     assert made == wanted and len(made) > 150
 
 
-KINDS = {"char *": ctypes.c_char_p, "size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64, "int": ctypes.c_int,
-         "void": None, "tc_type": ctypes.c_int, "tc_method": ctypes.c_int, "tc_status": ctypes.c_int,
+KINDS = {"char *": ctypes.c_char_p, "size_t": ctypes.c_size_t, "double": ctypes.c_double, "uint64_t": ctypes.c_uint64,
+         "int": ctypes.c_int, "void": None, "tc_type": ctypes.c_int, "tc_method": ctypes.c_int, "tc_status": ctypes.c_int,
          "tc_progress": library.tc_progress, "void *": ctypes.c_void_p}
 
 

@@ -115,6 +115,8 @@ def test_save_fails(surface, tmp_path):
         surface().save(tmp_path / "a.gltf")
     with pytest.raises(ValueError, match="name the format by format=$"):
         surface().save(tmp_path / "a")
+    with pytest.raises(ValueError, match="VTKHDF, for which libhdf5 was not built in: write vtp"):
+        surface().save(tmp_path / "a.vtkhdf")
     with pytest.raises(OSError, match="nowhere"):
         surface().save(tmp_path / "nowhere" / "a.ply")
     surface().save(tmp_path / "a.dat", format="ply")

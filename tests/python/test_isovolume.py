@@ -1,4 +1,7 @@
 """Interval volumes of arrays: their volume, fields, axes; both engines; what is refused."""
+import pathlib
+import subprocess
+
 import numpy as np
 import pytest
 import tetracubes
@@ -30,6 +33,32 @@ def test_engines(ball):
     samples, on_low, on_high = parts[0].counts
     assert (on_low, on_high) == (len(low.vertices), len(high.vertices))
     assert (parts[0].positions[samples:samples + on_low] == low.positions).all()
+
+
+def test_save(ramp, tmp_path):
+    """The tool's file, byte for byte, also far from zero; nothing else is written."""
+    np.save(tmp_path / "ramp.npy", ramp)
+    for origin in (0, 1e7):
+        tetracubes.isovolume(ramp, 1.5, 4, origin=origin).save(tmp_path / "own.vtu")
+        subprocess.run([pathlib.Path(tetracubes.__file__).parent / "tetracubes", "isovolume", tmp_path / "ramp.npy", "--range",
+                        "1.5,4", "--origin", f"{origin},{origin},{origin}", "--engine", "reference", "--quiet",
+                        "-o", tmp_path / "tool.vtu"], check=True)
+        assert (tmp_path / "own.vtu").read_bytes() == (tmp_path / "tool.vtu").read_bytes()
+    part = tetracubes.isovolume(ramp, 1.5, 4, carry={"heat": ramp, "flow": np.stack([ramp, -ramp], -1)})
+    part.save(tmp_path / "named", format="vtu")
+    content = (tmp_path / "named").read_bytes()
+    assert b'Name="flow" NumberOfComponents="2"' in content
+    assert all(content.count(part.values[name].tobytes()) == 1 for name in ("heat", "flow"))
+    for name, how, match in (("a.vtk", {}, r"end in \.vtu, or name the format by format=$"),
+                             ("a.vtu", {"format": "ply"}, "written as vtu")):
+        with pytest.raises(ValueError, match=match):
+            part.save(tmp_path / name, **how)
+    with pytest.raises(OSError, match="nowhere"):
+        part.save(tmp_path / "nowhere" / "a.vtu")
+    part.tetrahedra[0, 0] = len(part.positions)
+    with pytest.raises(ValueError, match="a tetrahedron has vertex"):
+        part.save(tmp_path / "bad.vtu")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["named", "own.vtu", "ramp.npy", "tool.vtu"]
 
 
 def test_refusals(ramp):

@@ -128,6 +128,35 @@ static void test_names(void) {
     }
 }
 
+/* An enumeration over int8 of two values: booleans are u8, others the numbers that they name. */
+static void test_booleans(void) {
+    static const struct { int values[2], type; } cases[] = {{{0, 1}, TC_U8}, {{1, 0}, TC_U8}, {{0, 2}, TC_I8}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const hid_t file = begin("b.h5", 0), type = H5Tenum_create(H5T_NATIVE_INT8),
+                    space = H5Screate_simple(3, sizes, NULL);
+        int8_t values[COUNT];
+        for (int m = 0; m < 2; m++) {
+            const int8_t value = (int8_t)cases[n].values[m];
+            H5Tenum_insert(type, m ? "TRUE" : "FALSE", &value);
+        }
+        for (int k = 0; k < COUNT; k++) values[k] = (int8_t)cases[n].values[k % 3 == 0];
+        const hid_t made = H5Dcreate2(file, "mask", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+        EXPECT(H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, "case %zu cannot be written", n);
+        H5Dclose(made);
+        H5Sclose(space);
+        H5Tclose(type);
+        H5Fclose(file);
+        read_request r = request_for(file_path("b.h5"));
+        read_image v;
+        const int status = image_read(&r, &v);
+        EXPECT(status == 0, "case %zu: %s", n, failure_text());
+        if (!status)
+            EXPECT((int)v.type == cases[n].type && memcmp(v.samples, values, COUNT) == 0, "case %zu: type %d", n,
+                   (int)v.type);
+        image_release(&v);
+    }
+}
+
 /* Chunks of a file, whose samples lie in it and do not lie in it, and spacing as Fiji writes it. */
 static void test_spacing(void) {
     static const double matrix[12] = {0.5, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
@@ -197,6 +226,7 @@ int main(void) {
     folder_make("hdf5");
     test_types();
     test_names();
+    test_booleans();
     test_spacing();
     test_damaged();
     folder_remove();

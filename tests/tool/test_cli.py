@@ -52,6 +52,9 @@ class Usage(Case):
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--max-memroy=1G", says="did you mean --max-memory")
         self.refuses(2, "generate", "sphere", "--dim", "2,2,2", says="did you mean --dims")
         self.refuses(2, "devices", "--jsn", says="did you mean --json")
+        self.refuses(2, "extract", "x.nrrd", "--isovalue", "1", says="did you mean --iso[?]")
+        self.refuses(2, "extract", "x.nrrd", "--ISO", "1", says="did you mean --iso[?]")
+        self.refuses(2, "extract", "x.nrrd", "--iso", "1", "-oa.ply", says="did you mean -o a.ply[?]")
         self.refuses(2, "extract", "x.nrrd", "--frobnicate", says="extract --help")
 
     def test_option_values(self):
@@ -260,7 +263,7 @@ class Reports(Case):
             self.assertEqual((report["dims"], report["cells"], report["tetrahedra"]), ([33, 33, 33], 32768, 163840))
             self.assertEqual((report["input"], report["engine"], report["method"]), (volume, engine, "tetra"))
             self.assertEqual(report["device"] is None, engine == "reference")
-            self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "upload", "write", "total"})
+            self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "build", "upload", "write", "total"})
             [surface] = report["surfaces"]
             self.assertEqual(set(surface), tool_case.SURFACE_KEYS)
             self.assertEqual((surface["iso"], surface["vertices"], surface["triangles"]), (127.5, 5082, 10160))
@@ -296,8 +299,26 @@ class Reports(Case):
         for surface in report["surfaces"]:
             alone = self.report("extract", volume, "--iso", repr(surface["iso"]), "--engine", "reference")
             self.assertEqual(alone["surfaces"][0]["hash"], surface["hash"])
-        self.expect(0, "extract", volume, "--iso", "100", "-o", self.path("100%.stl"), "--engine", "reference")
-        self.assertIn("100%.stl", self.files())
+
+    def test_names_of_values(self):
+        """Every % stands for the value, also for a single one, and in folders; %% is a percent sign."""
+        volume = self.generate("torus", "a.nrrd", "30,30,30")
+        os.mkdir(self.path("9.5"))
+        for iso, pattern, names in (("9.5", "s-%.ply", ["s-9.5.ply"]), ("9.5", "%/s_%%%%_%.ply", ["9.5/s_%%_9.5.ply"]),
+                                    ("9.5", "90%%.ply", ["90%.ply"]), ("9.5,1e1", "%%%.ply", ["%9.5.ply", "%1e1.ply"]),
+                                    ("9.5", "%%-%.a%b.ply", ["%-9.5.a9.5b.ply"])):
+            text = self.expect(0, "extract", volume, "--iso", iso, "-o", self.path(pattern), "--engine", "reference").stdout
+            self.assertEqual([line.split("written ")[1].strip() for line in text.splitlines() if "written" in line],
+                             [self.path(name) for name in names])
+            for name in names:
+                os.remove(self.path(name))
+        self.assertEqual(self.files(), ["9.5", "a.nrrd"])
+        report = self.report("extract", volume, "--iso", "9.5", "-o", self.path("%.ply"), "--engine", "reference")
+        self.assertEqual(report["surfaces"][0]["output"], self.path("9.5.ply"))
+        os.remove(self.path("9.5.ply"))
+        self.refuses(2, "extract", volume, "--iso", "1,2", "-o", self.path("90%%.ply"), says="name needs a %, which stands for the isovalue")
+        self.refuses(2, "isovolume", volume, "--range", "1,2", "--range", "2,3", "-o", self.path("%%.vtu"),
+                     says="name needs a %, which stands for the range")
 
     def test_isovalues_read_back_exactly(self):
         volume = self.generate("gyroid", "a.nrrd", "8,8,8", "f64")

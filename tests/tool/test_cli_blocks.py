@@ -97,7 +97,7 @@ class Blocks(GridCase):
                 for key in "area", "volume":
                     surface[key] = surface[key] and round(surface[key], 9)
             self.assertNotEqual(separate.pop("hash"), joined.pop("hash"))  # of numbers that begin anew
-            self.assertEqual(separate, joined)
+            self.assertEqual(separate, {key: joined[key] for key in joined if key != "output"})
             self.assertEqual(report["notices"], self.report(*extract)["notices"])
 
     def test_separate_keeps_one_block(self):
@@ -151,7 +151,7 @@ class Blocks(GridCase):
         report, surface = self.surface(*inputs, "--field", "density", "--iso", "0.5")
         self.assertEqual((report["cells"], surface["hash"]), (449, whole["hash"]))
         self.assertRegex(self.expect(0, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine",
-                                     "reference").stderr, "1 blocks of one point along an axis are skipped")
+                                     "reference").stderr, "1 block of one point along an axis: skipped")
         for blocks in ([flat], [flat, flat]):
             inputs = self.write_plot3d("g", blocks)
             self.refuses(4, "extract", *inputs, "--field", "density", "--iso", "0.5", "--engine", "reference")

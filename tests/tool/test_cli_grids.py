@@ -265,7 +265,7 @@ class Structured(GridCase):
         self.assertLess(one["triangles"], whole["triangles"])
         self.assertGreater(one["boundary_edges"], whole["boundary_edges"])
         self.assertRegex(self.expect(0, "extract", blanked, "--iso", "0.5", "--engine", "reference").stderr,
-                         "1 points are blanked")
+                         "1 point is blanked")
         self.assertRegex(self.expect(0, "extract", cells, "--iso", "0.5", "--engine", "reference").stderr,
                          "8 blanked cells")
 

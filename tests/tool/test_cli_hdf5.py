@@ -30,8 +30,8 @@ class Datasets(GridCase):
         self.wanted = self.surface("a.npy")["hash"]
 
     def surface(self, name, *more):
-        return json.loads(self.expect(0, "extract", self.path(name), "--iso", "50.5", "--json", *REFERENCE,
-                                      *more).stdout)["surfaces"][0]
+        return json.loads(self.expect(0, "extract", self.path(name), "--json", *REFERENCE,
+                                      *(() if "--iso" in more else ("--iso", "50.5")), *more).stdout)["surfaces"][0]
 
     def test_forms(self):
         chunked = dict(chunks=(2, 3, 4))
@@ -46,6 +46,32 @@ class Datasets(GridCase):
                 continue
             self.assertEqual(self.surface("a.h5")["hash"], self.wanted, (library, form, kind))
             self.assertEqual(self.surface("a.h5:/group/volume")["hash"], self.wanted)
+
+    def test_booleans_and_enumerations(self):
+        """h5py's booleans are an enumeration over int8: u8 of 0 and 1; others are the numbers that they name. PyTables has
+        booleans as 8 bits."""
+        mask = self.array > 50
+        numpy.save(self.path("m.npy"), mask.astype("u1"))
+        wanted = self.surface("m.npy", "--iso", "0.5")["hash"]
+        for form in ({}, dict(chunks=(2, 3, 4), compression="gzip", shuffle=True), dict(chunks=(2, 3, 4))):
+            with h5py.File(self.path("m.h5"), "w") as file:
+                file.create_dataset("mask", data=mask, **form)
+            facts = json.loads(self.expect(0, "info", self.path("m.h5"), "--json").stdout)
+            self.assertEqual((facts["type"], facts["range"]), ("u8", [0, 1]))
+            self.assertEqual(self.surface("m.h5", "--iso", "0.5")["hash"], wanted)
+        masked = [self.surface("a.npy", "--mask", self.path(name))["hash"] for name in ("m.h5", "m.npy")]
+        self.assertEqual(*masked)
+        labels = json.loads(self.expect(0, "labels", self.path("m.h5"), "--json", *REFERENCE).stdout)["labels"]
+        self.assertEqual([row["label"] for row in labels], [1])
+        named = h5py.enum_dtype({"AIR": 0, "BONE": 1, "SKIN": 40, "OTHER": 77}, basetype=">i2")
+        with h5py.File(self.path("e.h5"), "w") as file:
+            file.create_dataset("organs", data=self.array.astype(">i2"), dtype=named)
+        self.assertEqual(self.surface("e.h5")["hash"], self.wanted)
+        self.assertEqual(json.loads(self.expect(0, "info", self.path("e.h5"), "--json").stdout)["type"], "i16")
+        with h5py.File(self.path("b.h5"), "w") as file:
+            bits = h5py.h5d.create(file.id, b"bits", h5py.h5t.STD_B8LE, h5py.h5s.create_simple(mask.shape))
+            bits.write(h5py.h5s.ALL, h5py.h5s.ALL, mask.astype("u1"), h5py.h5t.STD_B8LE)
+        self.assertEqual(self.surface("b.h5", "--iso", "0.5")["hash"], wanted)
 
     def test_chunks_that_were_not_written(self):
         for fill in (0, 77):

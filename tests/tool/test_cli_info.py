@@ -144,10 +144,10 @@ class Obstacles(GridCase):
         fields = [("f", "f32", [0.0, 1.0, 2.0, 3.0, 4.0])]
         flat = self.write("a.vtu", vtu_text(points, [[0, 1, 2], [1, 3, 2]], [TRIANGLE] * 2, fields))
         info = self.check("no cell of three dimensions", flat)
-        self.assertRegex("\n".join(info["notices"]), "2 cells of fewer than three dimensions are skipped")
+        self.assertRegex("\n".join(info["notices"]), "2 cells of fewer than three dimensions: skipped")
         inverted = self.write("b.vtu", vtu_text(points, [[0, 2, 1, 4]], [TETRAHEDRON], fields))
         info = self.report("info", inverted)
-        self.assertRegex("\n".join(info["notices"]), "1 cells of negative volume are turned over")
+        self.assertRegex("\n".join(info["notices"]), "1 cell of negative volume: turned over")
         self.assertNotEqual(info["isovalues"], [])
         uncut = self.write("c.vtu", vtu_text(points, [[0, 1, 2, 4]], [41], fields))
         self.check("cell 0 is of type 41", uncut, status=4)

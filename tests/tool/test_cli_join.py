@@ -271,7 +271,13 @@ class Refused(JoinCase):
         self.refuses(2, "join", "-o", self.path("x.ply"), says="needs the files of all parts")
         self.refuses(2, "join", *self.good, "-o", self.path("x.obj"), says="cannot be written piece by piece")
         self.refuses(2, "join", *self.good, "-o", self.good[0], "--format", "ply", says="input itself")
-        self.refuses(2, "join", *self.good, "-o", "-", "--format", "ply", says="name a file")
+        for more in ([], ["--format", "ply"]):
+            self.refuses(2, "join", *self.good, "-o", "-", *more, says=r"is no file: .* many places .* \.ply, \.vtp, \.stl")
+        for more in (["x.obj"], ["x", "--format", "off"]):
+            self.refuses(2, "join", *self.good, "-o", *more, says="piece by piece, .* write ply, vtp, stl( or vtkhdf)?$")
+        for more, says in ((["x.vrml"], "end in .ply, .vtp, .stl( or .vtkhdf)?, or name"),
+                           (["x", "--format", "vrml"], "written as ply, vtp, stl( or vtkhdf)?$")):
+            self.refuses(2, "join", *self.good, "-o", *more, says=says)
         self.refuses(4, "join", self.path("none"), "-o", self.path("x.ply"), says="none")
 
     def test_other_grids(self):

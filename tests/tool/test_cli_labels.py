@@ -85,7 +85,7 @@ class Reports(LabelCase):
     def test_text(self):
         text = self.expect(0, "labels", *self.raw_blocks(), "--engine", "reference", "--check").stdout
         self.assertRegex(text, r"surfaces of 3 labels\n")
-        self.assertRegex(text, r"label 300 +\d+ triangles, manifold, closed, Euler characteristic 2, 1 components")
+        self.assertRegex(text, r"label 300 +\d+ triangles, manifold, closed, Euler characteristic 2, 1 component,")
 
     def test_smoothing(self):
         areas = []
@@ -190,6 +190,31 @@ class Files(LabelCase):
             self.assertAlmostEqual(volume(points, triangles) / VOXELS[row["label"]], 0.97, delta=0.03)
         self.labels(self.raw_blocks(), "--separate", "--labels", "7", "-o", self.path("organ.ply"))
         self.assertIn("organ_7.ply", self.files())
+
+    def test_names(self):
+        """% as in extract; one file of all labels has no label that it could stand for."""
+        os.mkdir(self.path("7"))
+        self.labels(self.raw_blocks(), "--separate", "--labels", "7", "-o", self.path("%/%%-%.ply"))
+        self.assertEqual(os.listdir(self.path("7")), ["%-7.ply"])
+        self.refuses(2, "labels", *self.raw_blocks(), "-o", self.path("organ-%.ply"), says="--separate .* typed %%")
+        report = self.labels(self.raw_blocks(), "-o", self.path("100%%.ply"))
+        self.assertEqual(report["output"], self.path("100%.ply"))
+        self.assertIn("100%.ply", self.files())
+        self.labels(self.raw_blocks(), "--separate", "--labels", "7", "-o", self.path("100%%.ply"))
+        self.assertIn("100%_7.ply", self.files())
+
+    def test_regions(self):
+        """Smoothed surfaces of regions do not fit, which a notice says; whole volumes have no regions."""
+        for more, is_told in ((["--roi", "0:7,:,:"], True), (["--roi-world", "0:7,:,:", "--smooth", "3"], True),
+                              (["--roi", "0:7,:,:", "--smooth", "0"], False), (["--roi", ":,:,:"], False),
+                              (["--step", "2"], False), ([], False)):
+            told = "".join(self.labels(self.raw_blocks(), *more)["notices"])
+            self.assertEqual("fit by --smooth 0 alone" in told, is_told, more)
+
+    def test_one_label(self):
+        text = self.expect(0, "labels", *self.raw_blocks(), "--labels", "7", "--check", "--engine", "reference").stdout
+        self.assertRegex(text, r"(?m)^surface of 1 label$")
+        self.assertRegex(text, r"\b1 component,")
 
     def test_formats(self):
         told = self.labels(self.raw_blocks(), "-o", self.path("all.stl"))["notices"]

@@ -288,7 +288,21 @@ class Simplified(GridCase):
     def test_border_keeps_triangles(self):
         path = self.generate("gyroid", "g.nrrd", "12,12,12", "f32")
         report, _ = self.both([path], "127.5", "0.01")
-        self.assertRegex(report["notices"][0], r"triangles are left, not \d+: the border")
+        self.assertRegex(report["notices"][0], r"triangles are left, not \d+: the border.*; for fewer, smooth or thin")
+
+    def test_shape_that_is_lost(self):
+        """A few triangles of a ball are told to be none; those of a cube, which has no more, are not."""
+        ball = self.generate("sphere", "s.nrrd", "40,40,40", "f32")
+        for share, more, says in (("0.001", [], r"^isovalue 127.5: \d+ triangles are left, .* shape is lost; a larger RATIO"),
+                                  ("0.001", ["--simplify-error", "9"], "shape is lost; a smaller --simplify-error"),
+                                  ("0.01", [], None)):
+            told = self.extract([ball], "127.5", "--simplify", share, *more)["notices"]
+            self.assertEqual(len(told), says is not None, told)
+            if says:
+                self.assertRegex(told[0], says)
+        values = [0 if 0 in (x, y, z) or 19 in (x, y, z) else 2 for z in range(20) for y in range(20) for x in range(20)]
+        report = self.extract(self.raw("cube.raw", "u8", (20, 20, 20), values), "1", "--simplify", "0.02")
+        self.assertNotIn("shape is lost", "".join(report["notices"]))
 
     def test_empty(self):
         path = self.generate("empty", "e.nrrd")

@@ -106,7 +106,7 @@ class Streams(GridCase):
             done = subprocess.run([tool_case.TOOL, *words, "-o", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   timeout=400)
             self.assertEqual((done.returncode, done.stdout), (0, good))
-            self.assertIn(b"-:", done.stderr)
+            self.assertIn(b"standard output:", done.stderr)
 
     def test_usage(self):
         self.refuses(2, *self.words[1:], "-o", "-", says="--format")

@@ -152,9 +152,15 @@ static void test_refusals(void) {
     EXPECT(mesh_write_check("a.vtp", &too_many) == STATUS_USAGE && strstr(failure_text(), "4096"), "many: %s",
            failure_text());
     EXPECT(mesh_write_check("a.VTP", &with) == 0 && mesh_write_check("a.ply", &with) == 0, "%s", failure_text());
-    EXPECT(complex_write_check("a.vtu") == 0 && complex_write_check("a.b/c.Vtu") == 0, "%s", failure_text());
-    EXPECT(complex_write_check("a.vtk") == STATUS_USAGE && strstr(failure_text(), ".vtu"), "VTK: %s", failure_text());
-    EXPECT(complex_write_check(".vtu") == STATUS_USAGE && complex_write_check("") == STATUS_USAGE, "no name");
+    EXPECT(complex_write_check("a.vtu", NULL) == 0 && complex_write_check("a.b/c.Vtu", NULL) == 0, "%s",
+           failure_text());
+    EXPECT(complex_write_check("a", "VTU") == 0 && complex_write_check("-", NULL) == 0, "%s", failure_text());
+    EXPECT(complex_write_check("a.vtk", NULL) == STATUS_USAGE && strstr(failure_text(), ".vtu"), "VTK: %s",
+           failure_text());
+    EXPECT(complex_write_check("a.vtu", "ply") == STATUS_USAGE && strstr(failure_text(), "as vtu"), "PLY: %s",
+           failure_text());
+    EXPECT(complex_write_check(".vtu", NULL) == STATUS_USAGE && complex_write_check("", NULL) == STATUS_USAGE,
+           "no name");
     complex_file none = {0};
     EXPECT(complex_write(path_of("none/a.vtu"), &none) == STATUS_FAILED, "a folder that is not there");
 }

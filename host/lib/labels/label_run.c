@@ -28,6 +28,7 @@ typedef struct label_run {
     label_slab *slabs;
     uint32_t slab_count;
     uint32_t head[LABEL_HEAD_WORDS];
+    double start_ms; /* kernels are built by then */
 } label_run;
 
 enum { PLANES_BEHIND = BRICK_PLANES + 1 }; /* of a slab: the layer that is counted too, and a plane more */
@@ -336,6 +337,7 @@ static tc_status run_begin(label_run *r, const label_volume *v, scan_parameters 
     }
     if (!v->own) r->whole = structured_samples(v->grid, &r->whole_offset);
     tc_status status = label_kernels_get(context, labels_kind(v), r->kernels);
+    r->start_ms = clock_ms();
     if (!status) status = tables_provide(r);
     r->held = context->device_bytes - buffers_bytes(r->work);
     return status;
@@ -358,7 +360,6 @@ tc_status labels_extract(const label_volume *volume, scan_parameters scan, tc_me
     label_run r;
     label_job job;
     uint64_t vertices = 0, triangles = 0;
-    const double start = clock_ms();
     tc_status status = run_begin(&r, volume, scan);
     if (!status) status = slabs_count(&r, &job);
     const double classified = clock_ms();
@@ -371,8 +372,9 @@ tc_status labels_extract(const label_volume *volume, scan_parameters scan, tc_me
     if (!status) status = mesh_allocate_labelled(mesh, vertices, triangles);
     if (!status) status = slabs_emit(&r, &job, mesh);
     mesh->slab_count = r.slab_count;
-    mesh->timings.classify_ms = classified - start;
+    mesh->timings.classify_ms = classified - r.start_ms;
     mesh->timings.emit_ms = clock_ms() - classified;
+    mesh->timings.total_ms = clock_ms() - r.start_ms;
     run_end(&r, status);
     return status;
 }

@@ -121,6 +121,7 @@ struct tc_context {
     const struct tc_grid *counted_grid;    /* whose counts the workspace holds since tc_count; NULL: none */
     const struct tc_grid *classified_grid; /* whose surface it holds, counted or extracted; NULL: none */
     uint64_t device_bytes, device_bytes_peak;
+    double build_ms;                 /* that kernels took so far: built or loaded, vetted and tried */
     struct whole_cases *whole_cases; /* of method hybrid on complexes (whole_cases.h) */
     uint64_t whole_case_bytes;       /* of them, in the workspace */
 };

@@ -113,7 +113,9 @@ static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged
     *exchanged = false;
     while (!context->is_trial && !context->vetted[number]) {
         kept_verdict v;
+        const double start = clock_ms();
         verdict_find(context, number, &v);
+        context->build_ms += clock_ms() - start;
         if (v.verdict == TC_VERDICT_GOOD || v.verdict == TC_VERDICT_NONE) {
             vetted_note(context, kind);
         } else if (v.verdict != TC_VERDICT_CANCELLED && context->launch.other_items &&

@@ -213,7 +213,9 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
 tc_status trial_once(tc_context *context, kernel_kind kind) {
     bool *passed = &context->trial_passed[kind_number(kind)];
     if (!context->options.check_device || *passed) return TC_OK;
+    const double start = clock_ms();
     tc_status status = trial_of_kind(context, kind);
+    context->build_ms += clock_ms() - start;
     if (status) return status;
     *passed = true;
     return context_progress(context, "trial", 0);

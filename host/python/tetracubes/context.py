@@ -161,8 +161,14 @@ def take(engine, device, max_memory):
     """The context for what the caller of a public function asked for."""
     if engine not in ENGINES:
         raise ValueError(f"engine is {engine!r}, not one of {', '.join(ENGINES)}")
-    max_memory = 0 if max_memory is None else int(max_memory)
-    if max_memory < 0:
+    for name, given in ("device", device), ("max_memory", max_memory):
+        if engine == "reference" and given is not None:
+            warnings.warn(f"{name} has no effect with engine='reference', which uses no device", RuntimeWarning, stacklevel=4)
+    try:
+        max_memory = 0 if max_memory is None else int(max_memory)
+    except (TypeError, ValueError):
+        max_memory = repr(max_memory)
+    if isinstance(max_memory, str) or max_memory < 0:
         raise ValueError(f"max_memory is {max_memory}, not a number of bytes")
     device = None if device is None else str(device)
     if engine != "reference":

@@ -50,6 +50,8 @@ def extract_options(level, method="tetra", snap=None, normals=False, closed=Fals
     how.method = METHODS[method]
     how.normals = bool(normals)
     if snap is not None:
+        if method != "snap":
+            raise ValueError(f"snap is the threshold of method 'snap', and method is {method!r}: leave it out")
         how.snap = float(snap)
     how.closed = bool(closed)
     return how
@@ -337,6 +339,9 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
 def _fields_of(carry):
     if carry is not None and not isinstance(carry, Mapping):
         raise TypeError(f"carry is a {type(carry).__name__}, not a dict of names and arrays")
+    for name in carry or {}:
+        if not isinstance(name, str) or "\0" in name:
+            raise ValueError(f"carry has the name {name!r}, which is no text")
     return carry or {}
 
 

@@ -230,6 +230,7 @@ FUNCTIONS = {
     "tc_context_device": (_STATUS, c_void_p, POINTER(tc_device_info)),
     "tc_context_cl_context": (c_void_p, c_void_p),
     "tc_context_cl_queue": (c_void_p, c_void_p),
+    "tc_context_build_ms": (c_double, c_void_p),
     "tc_context_device_bytes": (c_uint64, c_void_p, POINTER(c_uint64)),
     "tc_type_bytes": (c_size_t, c_int),
     "tc_type_name": (c_char_p, c_int),
@@ -276,11 +277,21 @@ class view_angles(Structure):
     _fields_ = [("azimuth", c_double), ("elevation", c_double)]
 
 
+class complex_file(Structure):
+    """Tetrahedra as they are written (mesh_write.h)."""
+
+    _fields_ = [("point_count", c_uint64), ("points", c_void_p), ("points_f64", c_void_p),
+                ("tetrahedron_count", c_uint64), ("tetrahedra", c_void_p), ("fields", c_void_p), ("field_count", c_int),
+                ("world", c_char_p), ("units", c_char_p)]
+
+
 # The tool's writers, its hash and its pictures: mesh_files.c beside this package.
 FILE_FUNCTIONS = {
     "mesh_files_hash": (c_uint64, POINTER(tc_mesh_data)),
     "mesh_files_save": (_STATUS, c_char_p, c_char_p, POINTER(tc_mesh_data), c_int, POINTER(c_char_p), POINTER(c_int),
                         POINTER(c_void_p), POINTER(c_int)),
+    "mesh_files_save_complex": (_STATUS, c_char_p, c_char_p, POINTER(complex_file), c_int, POINTER(c_char_p),
+                                POINTER(c_int), POINTER(c_void_p)),
     "mesh_files_view": (c_char_p, c_int, POINTER(view_angles)),
     "mesh_files_draw": (_STATUS, POINTER(tc_mesh_data), view_angles, c_int, c_int, c_void_p),
     "mesh_files_save_picture": (_STATUS, c_char_p, c_int, c_int, c_void_p),

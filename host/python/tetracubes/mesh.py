@@ -15,12 +15,22 @@ _USAGE, _NO_MEMORY_FOR = 2, "out of memory"  # of exit_status.h; how the tool's 
 _SIDES = 16, 8192  # pixels, of picture.h
 
 
-def _check(status):
+def check_written(status):
     """Raises what a status of the writers means."""
     if status:
         text = files.mesh_files_message().decode(errors="replace").replace("--format", "format=")
         error = ValueError if status == _USAGE else MemoryError if text.startswith(_NO_MEMORY_FOR) else OSError
         raise error(text)
+
+
+def fields_of(values):
+    """Count, names, components and addresses of carried fields, as the writers take them; and the arrays themselves."""
+    count = len(values)
+    arrays = [np.ascontiguousarray(array, np.float32) for array in values.values()]
+    names = (ctypes.c_char_p * count)(*[name.encode() for name in values])
+    components = (ctypes.c_int * count)(*[array[:1].size if array.ndim > 1 else 1 for array in arrays])
+    places = (ctypes.c_void_p * count)(*[array.ctypes.data for array in arrays])
+    return (count, names, components, places), arrays
 
 
 def _views():
@@ -121,20 +131,17 @@ class Mesh:
         or a picture of it: .png, as of ``preview``.
 
         The bytes are the tool's: coordinates are x, y, z in world space. An older file stays whole until the new one is
-        complete. format: "ply", ..., whatever path ends in.
+        complete. format: "ply", ..., whatever path ends in. The tool's VTKHDF needs libhdf5, which the package has not:
+        .vtp holds the same.
         """
         if format is None and os.fsdecode(path).lower().endswith(".png"):
             self.preview(path)
             return
         data, _arrays = self._data()
-        count = len(self.values)
-        values = [np.ascontiguousarray(array, np.float32) for array in self.values.values()]
-        names = (ctypes.c_char_p * count)(*[name.encode() for name in self.values])
-        components = (ctypes.c_int * count)(*[array[:1].size if array.ndim > 1 else 1 for array in values])
-        places = (ctypes.c_void_p * count)(*[array.ctypes.data for array in values])
+        fields, _values = fields_of(self.values)
         is_relative = ctypes.c_int()
-        _check(files.mesh_files_save(os.fsencode(path), None if format is None else format.encode(), ctypes.byref(data),
-                                     count, names, components, places, ctypes.byref(is_relative)))
+        check_written(files.mesh_files_save(os.fsencode(path), None if format is None else format.encode(),
+                                            ctypes.byref(data), *fields, ctypes.byref(is_relative)))
         if is_relative.value:
             warnings.warn(f"{os.fspath(path)} has float32 coordinates, relative to {', '.join(map(str, self.origin))}",
                           RuntimeWarning, stacklevel=2)
@@ -153,14 +160,14 @@ class Mesh:
             raise ValueError(f"size is {size!r}: width and height are from {_SIDES[0]} to {_SIDES[1]} pixels")
         pixels = np.full((height, width, 3), 255, np.uint8)
         data, _arrays = self._data()
-        _check(files.mesh_files_draw(ctypes.byref(data), angles, width, height, pixels.ctypes.data))
+        check_written(files.mesh_files_draw(ctypes.byref(data), angles, width, height, pixels.ctypes.data))
         return pixels
 
     def preview(self, path: str | os.PathLike, view: str | tuple[float, float] | None = None,
                 size: tuple[int, int] = (1024, 768)) -> None:
         """Writes ``picture`` as PNG; the pixels are those of the tool's --preview."""
         pixels = self.picture(view, size)
-        _check(files.mesh_files_save_picture(os.fsencode(path), pixels.shape[1], pixels.shape[0], pixels.ctypes.data))
+        check_written(files.mesh_files_save_picture(os.fsencode(path), pixels.shape[1], pixels.shape[0], pixels.ctypes.data))
 
     def _repr_png_(self):
         """The picture that a notebook shows; None where the package was built without PNG."""

@@ -39,6 +39,8 @@ def isosurface_by_parts(volume: Any, level: float, *, planes: int | None = None,
     planes: samples along z in a part, rounded up to a multiple of 4; by default as many as have about 256 MB.
     The mesh itself has to fit into memory. The rest as for ``isosurface``.
     """
+    if not hasattr(volume, "shape") or not hasattr(volume, "dtype"):
+        raise ValueError(f"volume is a {type(volume).__name__}, which has no shape and dtype: numpy.asarray makes an array")
     if len(volume.shape) != 3:
         raise ValueError(f"volume has {len(volume.shape)} dimensions, not 3: z, y, x")
     count = volume.shape[0]

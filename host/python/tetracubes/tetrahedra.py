@@ -1,9 +1,14 @@
 """Interval volumes: what lies between two levels, as tetrahedra."""
 from __future__ import annotations
 
+import ctypes
+import os
 from typing import Any
 
 import numpy as np
+
+from .library import complex_file, files
+from .mesh import check_written, fields_of
 
 
 class Tetrahedra:
@@ -50,6 +55,21 @@ class Tetrahedra:
 
     def __repr__(self) -> str:
         return f"<tetracubes.Tetrahedra: {len(self.positions)} vertices, {len(self.tetrahedra)} tetrahedra>"
+
+    def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin
+        """Writes the tetrahedra with their values: .vtu, which ParaView, PyVista and meshio read.
+
+        The bytes are the tool's: coordinates are x, y, z in world space. An older file stays whole until the new one is
+        complete. format: "vtu", whatever path ends in. ``to_meshio`` has other formats.
+        """
+        points, corners = (np.ascontiguousarray(array) for array in (self._world(), self.tetrahedra))
+        if corners.size and corners.max() >= len(points):
+            raise ValueError(f"a tetrahedron has vertex {corners.max()}, and there are {len(points)} vertices")
+        file = complex_file(point_count=len(points), tetrahedron_count=len(corners), tetrahedra=corners.ctypes.data)
+        setattr(file, "points" if points.dtype == np.float32 else "points_f64", points.ctypes.data)
+        fields, _values = fields_of(self.values)
+        check_written(files.mesh_files_save_complex(os.fsencode(path), None if format is None else format.encode(),
+                                                    ctypes.byref(file), *fields))
 
     def to_meshio(self) -> Any:
         """A meshio.Mesh, coordinates x, y, z; values as point data."""

@@ -11,6 +11,9 @@
 #include "file/file_list.h"
 #include "tetracubes.h"
 
+/* What the only field is called on command lines and in files where the format has no names. */
+#define FIELD_WITHOUT_NAME "samples"
+
 typedef struct dataset_field {
     const char *name; /* "" where the format has no names */
     int on_cells;     /* a tuple per cell, not per point */

@@ -71,6 +71,8 @@ static choice find_choice(const dataset *d, const char *const *names, int count,
     const size_t prefix = field_prefix(text);
     for (int n = 0; n < count; n++)
         if (strcmp(names[n], text) == 0) return (choice){names[n], ANY_ASSOCIATION, 0};
+    if (count == 1 && !names[0][0] && strcmp(text, FIELD_WITHOUT_NAME) == 0)
+        return (choice){names[0], ANY_ASSOCIATION, 0};
     for (int n = 0; n < count && prefix; n++) {
         const choice c = {names[n], text[0] == 'c' ? ON_CELLS : AT_POINTS, 0};
         if (strcmp(names[n], text + prefix) == 0 && is_common(d, c)) return c;
@@ -140,8 +142,9 @@ static int choose(const dataset *d, const char *path, const char *option, const 
         status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
                       d->block_count > 1 ? " that every block has" : "");
     else if (is_unknown && count == 1 && !names[0][0])
-        status = fail(STATUS_USAGE, "%s: no field is named '%s': its only one has no name; leave out %.*s", path,
-                      wanted, (int)strcspn(option, " "), option);
+        status = fail(STATUS_USAGE,
+                      "%s: no field is named '%s': its only one has no name, and is called " FIELD_WITHOUT_NAME, path,
+                      wanted);
     else if (is_unknown)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);
@@ -348,7 +351,9 @@ int point_field_select(dataset *d, const char *path, const char *name, point_fie
     choice chosen;
     int status = choose(d, path, "--carry takes", name, &chosen);
     if (status) return status;
-    out->name = chosen.association == ANY_ASSOCIATION ? chosen.name : dataset_text(d, name);
+    out->name = chosen.association != ANY_ASSOCIATION ? dataset_text(d, name)
+                : *chosen.name                        ? chosen.name
+                                                      : FIELD_WITHOUT_NAME;
     if (!out->name) return STATUS_FAILED;
     out->blocks = dataset_allocate(d, (uint64_t)d->block_count * sizeof *out->blocks);
     if (!out->blocks) return STATUS_FAILED;

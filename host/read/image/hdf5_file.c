@@ -46,11 +46,22 @@ static int dimension_of(hid_t set) {
     return dimension;
 }
 
+/* Bytes of 0 and 1: of h5py an enumeration of both, of PyTables a field of 8 bits. */
+static int is_boolean(hid_t type) {
+    const H5T_class_t kind = H5Tget_class(type);
+    unsigned char value[2] = {0};
+    if (H5Tget_size(type) != 1 || (kind == H5T_ENUM && H5Tget_nmembers(type) != 2)) return 0;
+    for (unsigned n = 0; n < 2 && kind == H5T_ENUM; n++)
+        if (H5Tget_member_value(type, n, &value[n]) < 0) return 0;
+    return kind == H5T_BITFIELD || (kind == H5T_ENUM && value[0] + value[1] == 1);
+}
+
 static int is_number(hid_t set) {
     const hid_t type = H5Dget_type(set);
     const H5T_class_t kind = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    const int is = kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM || (type >= 0 && is_boolean(type));
     if (type >= 0) H5Tclose(type);
-    return kind == H5T_INTEGER || kind == H5T_FLOAT;
+    return is;
 }
 
 static herr_t note_dataset(hid_t group, const char *name, const H5O_info_t *info, void *user) {
@@ -154,7 +165,7 @@ static hid_t native_of(int element) {
 }
 
 /* The stored type that a number of HDF5 is, in either byte order; -1 where it is none. */
-static int element_of(hid_t type, int *is_swapped) {
+static int element_of_number(hid_t type, int *is_swapped) {
     for (int element = 0; element < ELEMENT_COUNT; element++) {
         const hid_t other = H5Tcopy(native_of(element));
         H5Tset_order(other, __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? H5T_ORDER_BE : H5T_ORDER_LE);
@@ -166,14 +177,25 @@ static int element_of(hid_t type, int *is_swapped) {
     return -1;
 }
 
+/* Enumerations are the numbers that they name. */
+static int element_of(hid_t type, int *is_swapped) {
+    *is_swapped = 0;
+    if (is_boolean(type)) return TC_U8;
+    if (H5Tget_class(type) != H5T_ENUM) return element_of_number(type, is_swapped);
+    const hid_t number = H5Tget_super(type);
+    const int element = number < 0 ? -1 : element_of_number(number, is_swapped);
+    if (number >= 0) H5Tclose(number);
+    return element;
+}
+
 static int read_type(hdf5_file *h) {
     const hid_t type = H5Dget_type(h->dataset);
     h->element = type < 0 ? -1 : element_of(type, &h->is_swapped);
     if (type >= 0) H5Tclose(type);
     if (h->element >= 0) return 0;
     return fail(STATUS_INPUT,
-                "%s: the type of its dataset cannot be read; integers of 8 to 64 bits and numbers of floating point of "
-                "32 and 64 can",
+                "%s: the type of its dataset cannot be read; integers of 8 to 64 bits, numbers of floating point of 32 "
+                "and 64, booleans and enumerations can",
                 h->path);
 }
 

@@ -120,6 +120,7 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--simplify", BEFORE_READING, has_no_mesh, REFUSED, NO_MESH "--simplify, or --count"},
 
     {COMMAND_ISOVOLUME, "--output", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--output, or --count"},
+    {COMMAND_ISOVOLUME, "--format", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--format, or --count"},
     {COMMAND_ISOVOLUME, "--verify", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--verify, or --count"},
     {COMMAND_ISOVOLUME, "--check", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--check, or --count"},
     {COMMAND_ISOVOLUME, "--carry", BEFORE_READING, has_no_mesh, REFUSED, NO_VOLUME "--carry, or --count"},
@@ -139,6 +140,8 @@ static const effect table[] = {
     {COMMAND_LABELS, "--separate", BEFORE_READING, has_no_output, REFUSED, "--separate names files: give -o FILE"},
     {COMMAND_EXTRACT | COMMAND_LABELS, "--format", BEFORE_READING, has_no_output, REFUSED,
      "--format is that of the mesh's file: give -o FILE, or -o - for standard output"},
+    {COMMAND_ISOVOLUME, "--format", BEFORE_READING, has_no_output, REFUSED,
+     "--format is that of the tetrahedra's file: give -o FILE, or -o - for standard output"},
     {COMMAND_EXTRACT | COMMAND_LABELS, "--origin-at", BEFORE_READING, has_no_output, REFUSED,
      "--origin-at is for the coordinates in the mesh's file: give -o FILE"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, has_no_file_nor_reference, TOLD,
@@ -146,7 +149,7 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--soup", BEFORE_READING, has_no_output, TOLD,
      "--soup has no effect without -o FILE: the report is of shared vertices"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
-     "--normals has no effect on STL, which holds normals of triangles, none of vertices: ply, obj and vtp do"},
+     "--normals has no effect on STL and OFF, which hold no normals of vertices: ply, vtp, obj, glb, npz and html do"},
 
     {MAKES, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
      "--verify compares with the reference engine: it proves nothing about that engine itself; leave out --verify or "

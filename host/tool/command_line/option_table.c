@@ -22,6 +22,21 @@ static const char *format_choices(int n) {
     return names[n];
 }
 
+/* Those that 'join' writes: piece by piece. */
+#define PIECES_NOT(name)
+#define PIECES_NUMBERS(name)                                                 #name,
+#define PIECES_CORNERS(name)                                                 #name,
+#define PIECES_CHOICE(name, label, roles, has_doubles, counts, fits, pieces) PIECES_##pieces(name)
+static const char *pieces_choices(int n) {
+    static const char *const names[] = {MESH_FORMATS(PIECES_CHOICE) NULL};
+    return names[n];
+}
+
+static const char *complex_choices(int n) {
+    static const char *const names[] = {COMPLEX_FORMATS(FORMAT_CHOICE) NULL};
+    return names[n];
+}
+
 static const char *view_choices(int n) { return view_name(n); }
 
 static const char *method_choices(int n) { return tc_method_name((tc_method)n); }
@@ -42,13 +57,15 @@ const option option_table[] = {
      "LO <= samples < HI are within; LO, and ,HI have one bound; given again:\n"
      "one more range"},
     {"--output", "-o", "FILE", COMMAND_ISOVOLUME, VALUE_TEXT, IN(output), NULL,
-     "unstructured grid to write: .vtu (left out: only the report); with several\n"
-     "ranges, % in FILE stands for the range as typed; - is standard output"},
+     "unstructured grid to write: .vtu (left out: only the report); % in FILE\n"
+     "stands for the range as typed, %% for a percent sign; - is standard output"},
+    {"--format", NULL, "F", COMMAND_ISOVOLUME | COMMAND_TETRAHEDRALIZE, VALUE_FORMAT, IN(format), complex_choices,
+     "vtu, whatever FILE ends in"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz, .vtkhdf or .html,\n"
-     "a page that shows it in a browser (left out: only the report); with several\n"
-     "isovalues, % in FILE stands for the isovalue as typed; - is standard output\n"
-     "(give --format): the report then goes to standard error"},
+     "a page that shows it in a browser (left out: only the report); % in FILE\n"
+     "stands for the isovalue as typed, %% for a percent sign; - is standard\n"
+     "output (give --format): the report then goes to standard error"},
     {"--labels", NULL, "all|L[,L...]", COMMAND_LABELS, VALUE_LABELS, IN(labels), NULL,
      "labels whose surfaces are made, with commas between (default: all): other\n"
      "samples count as background, which is 0"},
@@ -56,11 +73,12 @@ const option option_table[] = {
      "mesh to write: .ply, .vtp, .npz or .vtkhdf, with the two labels of every\n"
      "triangle; .stl, .obj, .off, .glb or .html (left out: only the report); -\n"
      "is standard output (give --format)"},
-    {"--format", NULL, "F", COMMAND_LABELS, VALUE_TEXT, IN(format), format_choices,
+    {"--format", NULL, "F", COMMAND_LABELS, VALUE_FORMAT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--separate", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(separate_labels), NULL,
-     "write a file for each label, its whole surface: the label stands for % in\n"
-     "FILE, or goes with _ before the ending, as in organs_7.stl"},
+     "write a file for each label, its whole surface: % in FILE stands for the\n"
+     "label (%% for a percent sign), which else goes with _ before the ending, as\n"
+     "in organs_7.stl"},
     {"--smooth", NULL, "N", COMMAND_LABELS, VALUE_NUMBER, IN(smooth), NULL,
      "sweeps of smoothing (default: 8, at most 1000); vertices stay within their\n"
      "voxel, and surfaces joined where they meet; 0 leaves the stairs of voxels"},
@@ -74,14 +92,14 @@ const option option_table[] = {
      "unstructured grid to write: .vtu; - is standard output"},
     {"--output", "-o", "FILE", COMMAND_JOIN, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl or .vtkhdf"},
-    {"--format", NULL, "F", COMMAND_JOIN, VALUE_TEXT, IN(format), format_choices,
+    {"--format", NULL, "F", COMMAND_JOIN, VALUE_FORMAT, IN(format), pieces_choices,
      "ply, vtp, stl or vtkhdf, whatever FILE ends in"},
-    {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_TEXT, IN(format), format_choices,
+    {"--format", NULL, "F", COMMAND_EXTRACT, VALUE_FORMAT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--preview", NULL, "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(preview), NULL,
-     "picture of the surface to write, as PNG; also without -o; with several\n"
-     "isovalues or --blocks separate it is named as FILE of -o is. Blue is the\n"
-     "outer side, which the lower values are on; ochre the inner one"},
+     "picture of the surface to write, as PNG; also without -o; % and --blocks\n"
+     "separate name it as they do FILE of -o. Blue is the outer side, which the\n"
+     "lower values are on; ochre the inner one"},
     {"--preview", NULL, "FILE", COMMAND_INFO, VALUE_TEXT, IN(preview), NULL,
      "picture to write, as PNG: three slices through the middle of a structured\n"
      "grid, with the isolines of --iso"},

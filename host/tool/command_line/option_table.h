@@ -11,6 +11,7 @@
 typedef enum value_kind {
     VALUE_NONE,      /* int, set to 1 */
     VALUE_TEXT,      /* const char * */
+    VALUE_FORMAT,    /* const char *, which the writers check: they know why one does not suit */
     VALUE_CHOICE,    /* int, the index in choices */
     VALUE_ISOVALUES, /* appended to isovalues */
     VALUE_INTERVALS, /* one more of ranges */

@@ -36,6 +36,8 @@ static int unknown_option(enum command_bit command, const char *name, const char
     if (find(~(enum command_bit)0, typed, strlen(typed)))
         return fail(STATUS_USAGE, "%s has no option %s, as other commands have; see 'tetracubes %s --help'", name,
                     typed, name);
+    if (typed[1] != '-' && find(command, typed, 2))
+        return fail(STATUS_USAGE, "%s has no option %s; did you mean %.2s %s?", name, typed, typed, typed + 2);
     const char *meant = similar_name(typed, names, option_table_count);
     if (meant) return fail(STATUS_USAGE, "%s has no option %s; did you mean %s?", name, typed, meant);
     return fail(STATUS_USAGE, "%s has no option %s; see 'tetracubes %s --help'", name, typed, name);

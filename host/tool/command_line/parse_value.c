@@ -333,11 +333,10 @@ int parse_value(const option *spec, const char *text, options *o) {
         *(int *)place = 1;
         return 0;
     case VALUE_TEXT:
+    case VALUE_FORMAT:
         if (!*text) return fail(STATUS_USAGE, "%s: the value is empty", spec->name);
         *(const char **)place = text;
-        if (!spec->choices) return 0;
-        int unused;
-        return choice_find(spec->name, text, spec->choices, &unused);
+        return 0;
     case VALUE_CHOICE:
         return choice_find(spec->name, text, spec->choices, place);
     case VALUE_ISOVALUES:

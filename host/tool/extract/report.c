@@ -1,6 +1,7 @@
 /* report.c - each fact is formatted as JSON and as text; the same fact has the same place in both */
 #include "report.h"
 
+#include "counted.h"
 #include "input/part_report.h"
 #include "output.h"
 #include "planes_cut.h"
@@ -87,16 +88,12 @@ static json_t *surface_json(const surface_report *s, const options *o) {
     }
     if (s->has_simplified) json_object_set_new(timings, "simplify", ms_json(s->simplified.ms));
     json_object_set_new(object, "timings_ms", timings);
+    if (s->path && !o->separate_blocks) json_object_set_new(object, "output", string_json(s->path));
+    if (s->preview && !o->separate_blocks) json_object_set_new(object, "preview", string_json(s->preview));
     if (s->has_topology) add_topology(object, s);
     if (s->has_topology) add_shapes(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
     return object;
-}
-
-static json_t *timings_json(const extract_report *r) {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "device_start",
-                     ms_json(r->device_start_ms), "upload", ms_json(r->upload_ms), "write", ms_json(r->write_ms),
-                     "total", ms_json(r->total_ms));
 }
 
 /* Of --part: which, of how many, and the planes that it owns. */
@@ -135,7 +132,7 @@ int extract_report_json(const extract_report *r) {
     if (r->rank_count) json_object_set_new(object, "sent_bytes", count_json(r->sent_bytes));
     json_object_set_new(object, "cells", count_json(r->input.cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
-    json_object_set_new(object, "timings_ms", timings_json(r));
+    json_object_set_new(object, "timings_ms", run_times_json(&r->times));
     json_object_set_new(object, "surfaces", surfaces);
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
@@ -145,13 +142,14 @@ int extract_report_json(const extract_report *r) {
 
 static void topology_text(const surface_report *s) {
     const mesh_topology *t = &s->topology;
-    printf("  check       %s, %s: %" PRIu64 " boundary edges, %" PRIu64 " non-manifold edges, %" PRIu64
-           " non-manifold vertices, %" PRIu64 " misoriented edges\n",
+    printf("  check       %s, %s: %s, %s, %s, %s\n",
            t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
-           t->boundary_edges ? "open" : "closed", t->boundary_edges, t->nonmanifold_edges, t->nonmanifold_vertices,
-           t->misoriented_edges);
-    printf("              Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g", t->euler_characteristic,
-           t->components, t->area);
+           t->boundary_edges ? "open" : "closed", counted(t->boundary_edges, "boundary edge", "boundary edges").text,
+           counted(t->nonmanifold_edges, "non-manifold edge", "non-manifold edges").text,
+           counted(t->nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices").text,
+           counted(t->misoriented_edges, "misoriented edge", "misoriented edges").text);
+    printf("              Euler characteristic %" PRId64 ", %s, area %.7g", t->euler_characteristic,
+           counted(t->components, "component", "components").text, t->area);
     if (has_volume(s))
         printf(", volume %.7g\n", t->volume);
     else
@@ -175,26 +173,29 @@ static void bounds_text(const surface_report *s) {
 
 static void simplified_text(const surface_report *s) {
     const simplified_report *r = &s->simplified;
-    printf("  simplified  from %" PRIu64 " vertices, %" PRIu64
-           " triangles, in %.2f ms; topology and border are the same\n",
-           r->vertices_before, r->triangles_before, r->ms);
+    printf("  simplified  from %s, %s, in %.2f ms; topology and border are the same\n",
+           counted(r->vertices_before, "vertex", "vertices").text,
+           counted(r->triangles_before, "triangle", "triangles").text, r->ms);
     printf(
         "              distances, in units of coordinates, by samples: %.4g of the surface before, %.4g of this one\n",
         r->distance_to, r->distance_from);
 }
 
-static void surface_text(const surface_report *s, const char *cells) {
+static void surface_text(const surface_report *s, int has_tetrahedra) {
+    const char *cell = has_tetrahedra ? "tetrahedron" : "cell", *cells = has_tetrahedra ? "tetrahedra" : "cells";
     const mesh_summary *m = &s->summary;
     printf("isovalue %s\n", s->iso->text);
-    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles",
-           s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count, s->triangle_count);
+    printf("  mesh        %s, %s",
+           counted(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count, "vertex", "vertices").text,
+           counted(s->triangle_count, "triangle", "triangles").text);
     if (s->has_mesh && !s->is_streamed) printf(" (%" PRIu64 " of zero area)", m->degenerate_triangles);
-    printf(", through %" PRIu64 " %s\n", s->active_cell_count, cells);
+    printf(", through %s\n", counted(s->active_cell_count, cell, cells).text);
     if (s->soup_vertex_count)
         printf("  soup        three vertices of its own for every triangle; hash and check are of %" PRIu64
                " shared ones\n",
                s->vertex_count);
-    if (s->has_dropped) printf("  dropped     %" PRIu64 " triangles of zero area\n", s->dropped_count);
+    if (s->has_dropped)
+        printf("  dropped     %s of zero area\n", counted(s->dropped_count, "triangle", "triangles").text);
     if (s->has_simplified) simplified_text(s);
     if (s->has_mesh) {
         bounds_text(s);
@@ -203,7 +204,7 @@ static void surface_text(const surface_report *s, const char *cells) {
             printf("  origin      %s %s %s\n", shortest_number(s->origin[0]).text, shortest_number(s->origin[1]).text,
                    shortest_number(s->origin[2]).text);
         if (s->is_streamed)
-            printf("  streamed    in %" PRIu64 " pieces: no hash\n", s->piece_count);
+            printf("  streamed    in %s: no hash\n", counted(s->piece_count, "piece", "pieces").text);
         else
             printf("  hash        %016" PRIx64 "\n", s->hash);
         printf("  time        classify %.2f ms, emit %.2f ms, read-back %.2f ms", s->classify_ms, s->emit_ms,
@@ -238,8 +239,6 @@ void extract_report_text(const extract_report *r) {
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     if (r->rank_count)
         printf("ranks: %d, each of which sent at most %" PRIu64 " bytes to the others\n", r->rank_count, r->sent_bytes);
-    for (size_t n = 0; n < r->surface_count; n++)
-        surface_text(&r->surfaces[n], r->has_tetrahedra ? "tetrahedra" : "cells");
-    printf("read %.2f ms, device start %.2f ms, upload %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms,
-           r->device_start_ms, r->upload_ms, r->write_ms, r->total_ms);
+    for (size_t n = 0; n < r->surface_count; n++) surface_text(&r->surfaces[n], r->has_tetrahedra);
+    run_times_text(&r->times);
 }

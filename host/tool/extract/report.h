@@ -10,6 +10,7 @@
 #include "command_line/options.h"
 #include "dataset/dataset.h"
 #include "input/input_summary.h"
+#include "terminal/run_times.h"
 #include "tetracubes.h"
 
 /* Vertices in cells that are only few steps of floating-point numbers thick (precision.h). */
@@ -66,11 +67,10 @@ typedef struct extract_report {
     input_summary input;
     int has_tetrahedra; /* unstructured, and not kept whole: active cells are tetrahedra */
     char device[160];   /* "" for the reference engine */
-    double read_ms, upload_ms, write_ms, total_ms;
-    int rank_count;         /* processes that made the surfaces together; 0: this one alone */
-    const int64_t *begins;  /* then: as in team.h */
-    uint64_t sent_bytes;    /* then: to the others, at most by one of them */
-    double device_start_ms; /* finding the device, partly while reading, and making its kernels ready */
+    run_times times;
+    int rank_count;        /* processes that made the surfaces together; 0: this one alone */
+    const int64_t *begins; /* then: as in team.h */
+    uint64_t sent_bytes;   /* then: to the others, at most by one of them */
     surface_report *surfaces;
     size_t surface_count;
 } extract_report;

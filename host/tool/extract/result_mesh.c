@@ -1,10 +1,10 @@
 #include "result_mesh.h"
 
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "terminal/notice.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,12 +81,12 @@ int result_mesh_drop_degenerate(result_mesh *result, surface_report *s) {
 
 void result_mesh_tell_dropped(const surface_report *s) {
     if (s->nonmanifold_edges)
-        notice("isovalue %s: without its triangles of zero area the surface has %" PRIu64 " edges of more than two "
-               "triangles, as it had there before",
-               s->iso->text, s->nonmanifold_edges);
+        notice("isovalue %s: without its triangles of zero area the surface has %s of more than two triangles, as it "
+               "had there before",
+               s->iso->text, counted(s->nonmanifold_edges, "edge", "edges").text);
     if (s->has_dropped && s->summary.degenerate_triangles)
-        notice("isovalue %s: %" PRIu64 " triangles of zero area are left: their corners are apart, on a line",
-               s->iso->text, s->summary.degenerate_triangles);
+        notice("isovalue %s: %s of zero area left: corners are apart, on a line", s->iso->text,
+               counted(s->summary.degenerate_triangles, "triangle is", "triangles are").text);
 }
 
 int result_mesh_carry(const result_mesh *result, carried_fields *fields) {

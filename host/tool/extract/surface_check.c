@@ -1,5 +1,6 @@
 #include "surface_check.h"
 
+#include "counted.h"
 #include "input/face_faults.h"
 #include "mesh_check.h"
 #include "mesh_compare.h"
@@ -68,15 +69,16 @@ int surface_judge(const block_list *blocks, const surface_report *s, int *good) 
             (!t->nonmanifold_vertices || blocks_may_touch(blocks));
     if ((t->misoriented_edges || t->nonmanifold_edges) && (status = explain_faults(blocks, s, good))) return status;
     if (!*good)
-        message("isovalue %s: check failed: %llu non-manifold edges, %llu non-manifold vertices, %llu misoriented "
-                "edges, %llu unused vertices, %llu invalid triangles",
-                s->iso->text, (unsigned long long)t->nonmanifold_edges, (unsigned long long)t->nonmanifold_vertices,
-                (unsigned long long)t->misoriented_edges, (unsigned long long)t->orphan_vertices,
-                (unsigned long long)t->invalid_triangles);
+        message("isovalue %s: check failed: %s, %s, %s, %s, %s", s->iso->text,
+                counted(t->nonmanifold_edges, "non-manifold edge", "non-manifold edges").text,
+                counted(t->nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices").text,
+                counted(t->misoriented_edges, "misoriented edge", "misoriented edges").text,
+                counted(t->orphan_vertices, "unused vertex", "unused vertices").text,
+                counted(t->invalid_triangles, "invalid triangle", "invalid triangles").text);
     if (!s->coarse_vertices) return 0;
     *good = 0;
-    message("isovalue %s: check failed: %llu vertices lie where cells are thinner than %d steps of the numbers that "
-            "coordinates are: shapes are lost there",
-            s->iso->text, (unsigned long long)s->coarse_vertices, COARSE_STEPS_LEAST);
+    message("isovalue %s: check failed: %s where cells are thinner than %d steps of the numbers that coordinates are: "
+            "shapes are lost there",
+            s->iso->text, counted(s->coarse_vertices, "vertex lies", "vertices lie").text, COARSE_STEPS_LEAST);
     return 0;
 }

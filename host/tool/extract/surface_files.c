@@ -1,5 +1,6 @@
 #include "surface_files.h"
 
+#include "command_line/name_pattern.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input/input.h"
@@ -17,34 +18,15 @@ enum { ALL_BLOCKS = -1 };
 
 /* ----------------------------------------------------------------------------------------------------------- names */
 
-/* Where "_b0" goes: before the last dot of the name's last part, or at its end. */
-static const char *ending_of(const char *path) {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot : path + strlen(path);
-}
-
-/* The file of one isovalue and block, from malloc: with several isovalues every % stands for the isovalue as typed. */
-static char *file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block) {
-    const char *stand_in = o->isovalue_count > 1 ? iso->text : "%", *ending = ending_of(pattern);
-    char suffix[24] = "";
-    if (block != ALL_BLOCKS) snprintf(suffix, sizeof suffix, "_b%d", block);
-    size_t bytes = strlen(suffix) + 1;
-    for (const char *c = pattern; *c; c++) bytes += *c == '%' ? strlen(stand_in) : 1;
-    char *path = malloc(bytes), *at = path;
-    for (const char *c = pattern; path; c++) {
-        if (c == ending) at = stpcpy(at, suffix);
-        if (!*c) break;
-        at = *c == '%' ? stpcpy(at, stand_in) : (*at = *c, at + 1);
-    }
-    if (path)
-        *at = '\0';
-    else
-        fail(STATUS_FAILED, "out of memory for the name of the output");
-    return path;
+/* The file of one isovalue and block. */
+static char *file_name(const char *pattern, const typed_isovalue *iso, int block) {
+    char behind[24] = "";
+    if (block != ALL_BLOCKS) snprintf(behind, sizeof behind, "_b%d", block);
+    return name_pattern_fill(pattern, iso->text, behind);
 }
 
 char *surface_file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block) {
-    return file_name(o, pattern, iso, o->separate_blocks ? block : ALL_BLOCKS);
+    return file_name(pattern, iso, o->separate_blocks ? block : ALL_BLOCKS);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- usage */
@@ -55,15 +37,12 @@ static int check_names(const options *o, const char *option, const char *pattern
         return fail(STATUS_USAGE, "--blocks separate writes several files: %s - is one stream; name files", option);
     if (o->separate_blocks && stat(pattern, &there) == 0 && !S_ISREG(there.st_mode))
         return fail(STATUS_USAGE, "--blocks separate writes several files: %s is no file; name files", pattern);
-    if (o->isovalue_count > 1 && !strchr(pattern, '%'))
-        return fail(STATUS_USAGE, "%s %s: with several isovalues the name needs a %%, which stands for the isovalue",
-                    option, pattern);
     for (size_t a = 0; a < o->isovalue_count; a++)
         for (size_t b = 0; b < a; b++)
             if (strcmp(o->isovalues[a].text, o->isovalues[b].text) == 0)
                 return fail(STATUS_USAGE, "--iso: %s is given twice and both would be written to one file",
                             o->isovalues[a].text);
-    return 0;
+    return name_pattern_check(option, pattern, o->isovalue_count, "isovalue");
 }
 
 /* The files of an isovalue; before the input is read, that of the first block alone. */
@@ -73,7 +52,7 @@ static int check_files(const options *o, const dataset *d, const char *option, c
     const int end = o->separate_blocks && d ? d->block_count : first + 1;
     int status = 0;
     for (int block = first; block < end && !status; block++) {
-        char *path = file_name(o, pattern, iso, block);
+        char *path = file_name(pattern, iso, block);
         status = path ? input_overwrite_check(o, d, option, path) : STATUS_FAILED;
         if (!status) status = output_check(path);
         free(path);
@@ -204,8 +183,8 @@ int surface_files_close_pieces(piece_file *p, int status) {
 
 /* "out_b0.ply to out_b2.ply" */
 char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count) {
-    if (!o->separate_blocks) return file_name(o, pattern, iso, ALL_BLOCKS);
-    char *first = file_name(o, pattern, iso, 0), *last = file_name(o, pattern, iso, block_count - 1), *text = NULL;
+    if (!o->separate_blocks) return file_name(pattern, iso, ALL_BLOCKS);
+    char *first = file_name(pattern, iso, 0), *last = file_name(pattern, iso, block_count - 1), *text = NULL;
     if (block_count < 2) {
         free(last);
         return first;

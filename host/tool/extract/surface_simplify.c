@@ -1,5 +1,6 @@
 #include "surface_simplify.h"
 
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "mesh_distance.h"
@@ -202,15 +203,36 @@ int surface_simplify(const options *o, result_mesh *mesh, surface_report *s, int
 
 #endif
 
+/* The greatest distance that simplifying has made, as a part of the size of what is left. */
+static double part_lost(const surface_report *s) {
+    const double *low = s->summary.bounds[0], *high = s->summary.bounds[1];
+    const double size = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    const double distance = fmax(s->simplified.distance_to, s->simplified.distance_from);
+    return size > 0 ? distance / size : 0;
+}
+
+/* Less is left than shows the shape: of a ball, that fewer than some 25 triangles are. */
+static void tell_shapeless(const options *o, const surface_report *s) {
+    static const double much = 0.05;
+    const double lost = part_lost(s);
+    if (lost > much)
+        notice("isovalue %s: %s, which differs from the surface before by %.2g%% of its size: its shape is lost; %s "
+               "keeps it",
+               s->iso->text, counted(s->triangle_count, "triangle is left", "triangles are left").text, 100 * lost,
+               options_given(o, "--simplify-error") ? "a smaller --simplify-error"
+                                                    : "a larger RATIO, or --simplify-error D,");
+}
+
 void surface_simplify_tell(const options *o, const surface_report *s) {
     static const double tolerance = 1.05;
     const double goal = o->simplify * (double)s->simplified.triangles_before;
-    if (!s->has_simplified || (double)s->triangle_count <= tolerance * goal + 8) return;
-    if (options_given(o, "--simplify-error"))
-        notice("isovalue %s: %" PRIu64 " triangles are left, not %.0f: --simplify-error, the border, which stays, and "
-               "topology keep them",
-               s->iso->text, s->triangle_count, ceil(goal));
-    else
-        notice("isovalue %s: %" PRIu64 " triangles are left, not %.0f: the border, which stays, and topology keep them",
-               s->iso->text, s->triangle_count, ceil(goal));
+    const int has_error = options_given(o, "--simplify-error");
+    if (!s->has_simplified) return;
+    tell_shapeless(o, s);
+    if ((double)s->triangle_count <= tolerance * goal + 8) return;
+    notice("isovalue %s: %s, not %.0f: %sthe border, which stays, and topology keep %s; %s", s->iso->text,
+           counted(s->triangle_count, "triangle is left", "triangles are left").text, ceil(goal),
+           has_error ? "--simplify-error, " : "", s->triangle_count == 1 ? "it" : "them",
+           has_error ? "a larger one leaves fewer"
+                     : "for fewer, smooth or thin (--step) the samples first, so that pieces and holes go");
 }

@@ -1,5 +1,6 @@
 #include "describe_blocks.h"
 
+#include "counted.h"
 #include "dataset/cell_types.h"
 #include "input/part_report.h"
 #include "input/statistics.h"
@@ -185,7 +186,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
     uint64_t points = count_set(b->blanked_points, b->point_count), cells = count_set(b->blanked_cells, b->cell_count);
     printf("grid          %s, ", kind_names[b->kind]);
     if (b->kind == BLOCK_UNSTRUCTURED) {
-        printf("%" PRId64 " points\n", b->point_count);
+        printf("%s\n", counted((uint64_t)b->point_count, "point", "points").text);
         cells_text(b);
     } else {
         printf("%" PRId64 " x %" PRId64 " x %" PRId64 " points\n", b->dims[0], b->dims[1], b->dims[2]);
@@ -194,7 +195,8 @@ static void block_text(const dataset *d, const dataset_block *b) {
     }
     part_report_text("part          ", b);
     if (b->kind == BLOCK_UNIFORM) describe_place_text(d, b);
-    if (points || cells) printf("blanked       %" PRIu64 " points, %" PRIu64 " cells\n", points, cells);
+    if (points || cells)
+        printf("blanked       %s, %s\n", counted(points, "point", "points").text, counted(cells, "cell", "cells").text);
     if (b->point_count)
         printf("bounds        %s %s %s to %s %s %s\n", shortest_coordinate(all.low[0]).text,
                shortest_coordinate(all.low[1]).text, shortest_coordinate(all.low[2]).text,

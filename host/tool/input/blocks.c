@@ -1,5 +1,6 @@
 #include "blocks.h"
 
+#include "counted.h"
 #include "dataset/cell_types.h"
 #include "dataset/part.h"
 #include "exit_status.h"
@@ -143,8 +144,8 @@ static int all_are_flat(const dataset *d) {
     return flat;
 }
 
-static void tell(uint64_t count, const char *what) {
-    if (count) notice("%" PRIu64 " %s", count, what);
+static void tell(uint64_t count, const char *one, const char *several, const char *what) {
+    if (count) notice("%s %s", counted(count, one, several).text, what);
 }
 
 /* Whether the cell may be cut in more ways than one, linear or not. */
@@ -198,21 +199,22 @@ static void tell_all(const block_list *list) {
         blanked_points += count_set(b->source->blanked_points, b->source->point_count);
         blanked_cells += count_set(b->source->blanked_cells, b->source->cell_count);
     }
-    tell(flat_blocks, "blocks of one point along an axis are skipped");
-    tell(flat, "cells of fewer than three dimensions are skipped");
-    tell(curved, "quadratic or higher cells are taken as linear, by their corners");
-    tell(unsupported, "cells are left out: of a type that is not cut, or polyhedra whose faces are not closed");
-    tell(surplus, "cells have more points than their type: the first ones are taken");
-    tell(count_unused_points(list), "points are used by no cell");
-    tell(left_out, "cells are left out: blanked, or with a corner that is missing");
-    tell(inverted, "cells of negative volume are turned over");
-    tell(folded, "cells are folded: their tetrahedra overlap");
+    tell(flat_blocks, "block", "blocks", "of one point along an axis: skipped");
+    tell(flat, "cell", "cells", "of fewer than three dimensions: skipped");
+    tell(curved, "cell is", "cells are", "quadratic or higher: taken as linear, by their corners");
+    tell(unsupported, "cell is", "cells are",
+         "left out: of a type that is not cut, or polyhedra whose faces are not closed");
+    tell(surplus, "cell has", "cells have", "more points than cells of that type: the first ones are taken");
+    tell(count_unused_points(list), "point is", "points are", "used by no cell");
+    tell(left_out, "cell is", "cells are", "left out: blanked, or with a corner that is missing");
+    tell(inverted, "cell", "cells", "of negative volume: turned over");
+    tell(folded, "cell is", "cells are", "folded: tetrahedra overlap there");
     if (list->count > 1 && has_ambiguous_cells(list))
         notice("each piece is cut by its own point numbers: surfaces of neighbouring pieces may not meet");
     if (list->count > 1 && is_thinned)
         notice("--step takes every Nth sample of each block by itself: surfaces of neighbouring blocks may not meet");
-    tell(blanked_points, "points are blanked: cells with one of them are left out");
-    tell(blanked_cells, "blanked cells are left out");
+    tell(blanked_points, "point is", "points are", "blanked: cells with a blanked point are left out");
+    tell(blanked_cells, "blanked cell is", "blanked cells are", "left out");
     if (!list->tetrahedron_count && all_cut) notice("nothing to contour: no cell of three dimensions is left");
 }
 

@@ -1,11 +1,11 @@
 #include "face_faults.h"
 
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "sample_types.h"
 #include "terminal/notice.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -48,9 +48,9 @@ int face_faults_find(const block_list *list, const double *isovalue, complex_fac
 
 void face_faults_tell(const complex_faces *faces) {
     if (faces->folded_faces)
-        notice("%" PRIu64 " faces are folded: both cells lie on the same side; a surface there is not oriented",
-               faces->folded_faces);
+        notice("%s folded: both cells lie on the same side; a surface there is not oriented",
+               counted(faces->folded_faces, "face is", "faces are").text);
     if (faces->nonmanifold_faces)
-        notice("%" PRIu64 " faces have three cells or more; a surface there is not a manifold",
-               faces->nonmanifold_faces);
+        notice("%s three cells or more; a surface there is not a manifold",
+               counted(faces->nonmanifold_faces, "face has", "faces have").text);
 }

@@ -1,5 +1,6 @@
 #include "input/input_summary.h"
 
+#include "counted.h"
 #include "input/part_report.h"
 
 #include <inttypes.h>
@@ -24,8 +25,9 @@ void input_summary_text(const input_summary *s) {
     if (s->grid)
         printf("%" PRId64 " x %" PRId64 " x %" PRId64 " ", s->grid->dims[0], s->grid->dims[1], s->grid->dims[2]);
     else
-        printf("%" PRIu64 " points ", s->point_count);
-    printf("%s%s%s, %" PRIu64 " cells, %" PRIu64 " tetrahedra\n", s->field, s->field[0] ? " " : "",
-           tc_type_name(s->type), s->cell_count, s->tetrahedron_count);
+        printf("%s ", counted(s->point_count, "point", "points").text);
+    printf("%s%s%s, %s, %s\n", s->field, s->field[0] ? " " : "", tc_type_name(s->type),
+           counted(s->cell_count, "cell", "cells").text,
+           counted(s->tetrahedron_count, "tetrahedron", "tetrahedra").text);
     part_report_text("part: ", s->grid);
 }

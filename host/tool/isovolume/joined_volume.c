@@ -202,7 +202,7 @@ int joined_volume_write(const joined_volume *v, const engine *e, const carried_f
     dataset_field *fields = calloc((size_t)carried->count + 1, sizeof *fields);
     if (!fields && !status) status = fail(STATUS_FAILED, "out of memory for the fields to carry");
     for (int n = 0; n < carried->count && !status; n++)
-        fields[n] = (dataset_field){.name = carried->from[n].name[0] ? carried->from[n].name : "samples",
+        fields[n] = (dataset_field){.name = carried->from[n].name,
                                     .components = carried->from[n].components,
                                     .type = TC_F32,
                                     .values = v->values[n]};

@@ -1,6 +1,7 @@
 /* volume_report.c - each fact is formatted as JSON and as text; the same fact has the same place in both */
 #include "volume_report.h"
 
+#include "counted.h"
 #include "input/part_report.h"
 #include "output.h"
 #include "shortest.h"
@@ -66,6 +67,7 @@ static json_t *volume_json(const isovolume_report *r, const volume_report *v) {
     if (v->has_volume) json_object_set_new(timings, "readback", ms_json(v->readback_ms));
     json_object_set_new(object, "timings_ms", timings);
     if (v->has_shapes) add_shapes(object, v);
+    if (v->path) json_object_set_new(object, "output", string_json(v->path));
     if (v->has_verdict) json_object_set_new(object, "verified", json_boolean(v->verified));
     return object;
 }
@@ -80,9 +82,7 @@ int isovolume_report_json(const isovolume_report *r) {
     part_report_json(object, r->input.grid);
     json_object_set_new(object, "cells", count_json(r->input.cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
-    json_object_set_new(object, "timings_ms",
-                        json_pack("{s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms), "upload", ms_json(r->upload_ms),
-                                  "write", ms_json(r->write_ms), "total", ms_json(r->total_ms)));
+    json_object_set_new(object, "timings_ms", run_times_json(&r->times));
     json_object_set_new(object, "volumes", volumes);
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
@@ -92,9 +92,9 @@ int isovolume_report_json(const isovolume_report *r) {
 
 static void shapes_text(const volume_report *v) {
     const tetrahedra_shapes *s = &v->shapes;
-    printf("  check       %s: %" PRIu64 " faces of more than two tetrahedra, %" PRIu64 " passed twice the same way\n",
+    printf("  check       %s: %s of more than two tetrahedra, %" PRIu64 " passed twice the same way\n",
            v->faces.nonmanifold_faces || v->faces.folded_faces ? "tetrahedra do not fit" : "tetrahedra fit",
-           v->faces.nonmanifold_faces, v->faces.folded_faces);
+           counted(v->faces.nonmanifold_faces, "face", "faces").text, v->faces.folded_faces);
     printf("  shapes      %" PRIu64 " flat, %" PRIu64 " inverted", s->flat, s->inverted);
     if (s->count)
         printf("; smallest dihedral angles: least %.3g degrees, median %.1f, %.3g%% below 5, %.3g%% below 10", s->least,
@@ -116,9 +116,9 @@ static void fields_text(const isovolume_report *r, const volume_report *v) {
 
 static void volume_text(const isovolume_report *r, const volume_report *v) {
     printf("range %s\n", v->range->text);
-    printf("  tetrahedra  %" PRIu64 ", with %" PRIu64 " vertices: %" PRIu64 " samples, %" PRIu64
-           " on the low bound, %" PRIu64 " on the high one\n",
-           v->tetrahedron_count, vertex_count(v), v->sample_count, v->low_count, v->high_count);
+    printf("  tetrahedra  %" PRIu64 ", with %s: %s, %" PRIu64 " on the low bound, %" PRIu64 " on the high one\n",
+           v->tetrahedron_count, counted(vertex_count(v), "vertex", "vertices").text,
+           counted(v->sample_count, "sample", "samples").text, v->low_count, v->high_count);
     printf("  memory      %" PRIu64 " bytes\n", v->bytes);
     if (v->has_volume) printf("  volume      %.9g\n", v->volume);
     if (v->has_volume) fields_text(r, v);
@@ -135,5 +135,5 @@ void isovolume_report_text(const isovolume_report *r) {
     input_summary_text(&r->input);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     for (size_t n = 0; n < r->volume_count; n++) volume_text(r, &r->volumes[n]);
-    printf("total %.2f ms: read %.2f, upload %.2f, write %.2f\n", r->total_ms, r->read_ms, r->upload_ms, r->write_ms);
+    run_times_text(&r->times);
 }

@@ -6,6 +6,7 @@
 #include "complex_check.h"
 #include "extract/carried_fields.h"
 #include "input/input_summary.h"
+#include "terminal/run_times.h"
 #include "tetrahedra_measure.h"
 
 /* One range's results: sums over the blocks. */
@@ -30,7 +31,7 @@ typedef struct isovolume_report {
     char device[160]; /* "" for the reference engine */
     input_summary input;
     const carried_fields *carried;
-    double read_ms, upload_ms, write_ms, total_ms;
+    run_times times;
     volume_report *volumes;
     size_t volume_count;
 } isovolume_report;

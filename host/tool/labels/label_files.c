@@ -1,5 +1,6 @@
 #include "label_files.h"
 
+#include "command_line/name_pattern.h"
 #include "exit_status.h"
 #include "extract/surface_files.h"
 #include "failure.h"
@@ -11,11 +12,24 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static mesh_write_options write_options(const options *o) {
     return (mesh_write_options){.format = o->format,
                                 .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+}
+
+/* Of one file of all labels, in whose name no label has a place. */
+static int check_one_file(const options *o, const dataset *d) {
+    if (name_pattern_has_place(o->output))
+        return fail(STATUS_USAGE,
+                    "-o %s: %% stands for a label, and one file has all: --separate writes a file for each label; a "
+                    "percent sign in the name is typed %%%%",
+                    o->output);
+    char *path = name_pattern_fill(o->output, "", "");
+    int status = path ? input_overwrite_check(o, d, "-o", path) : STATUS_FAILED;
+    if (!status) status = output_check(path);
+    free(path);
+    return status;
 }
 
 int label_files_check(const options *o, const dataset *d) {
@@ -25,20 +39,14 @@ int label_files_check(const options *o, const dataset *d) {
     if (!status && o->separate_labels && !output_is_file(o->output))
         status = fail(STATUS_USAGE, "--separate writes several files: -o %s is one stream; name files", o->output);
     if (status || o->separate_labels) return status; /* whose names are known when their labels are */
-    status = input_overwrite_check(o, d, "-o", o->output);
-    return status ? status : output_check(o->output);
+    return check_one_file(o, d);
 }
 
-char *label_file_name(const char *pattern, uint32_t label) {
-    const char *percent = strchr(pattern, '%'), *slash = strrchr(pattern, '/');
-    const char *dot = strrchr(slash ? slash : pattern, '.'), *at = percent ? percent : dot;
-    char *path = NULL;
-    if (!at) at = pattern + strlen(pattern);
-    if (asprintf(&path, "%.*s%s%" PRIu32 "%s", (int)(at - pattern), pattern, percent ? "" : "_", label,
-                 percent ? at + 1 : at) >= 0)
-        return path;
-    fail(STATUS_FAILED, "out of memory for the name of the output");
-    return NULL;
+char *label_file_name(const options *o, uint32_t label) {
+    char value[16], behind[17] = "";
+    snprintf(value, sizeof value, "%" PRIu32, label);
+    if (o->separate_labels && !name_pattern_has_place(o->output)) snprintf(behind, sizeof behind, "_%s", value);
+    return name_pattern_fill(o->output, value, behind);
 }
 
 int label_file_write(const options *o, const dataset *d, const char *path, const tc_mesh_data *mesh,

@@ -13,9 +13,9 @@
  * file cannot be written. d is NULL before the input is read. */
 int label_files_check(const options *o, const dataset *d);
 
-/* The file of a label, which stands for % in the name, or goes with _ before its ending; from malloc, NULL with its
- * failure's text without memory. */
-char *label_file_name(const char *pattern, uint32_t label);
+/* The file of all labels, or with --separate of this one, which stands for % in the name, or goes with _ before its
+ * ending; from malloc, NULL with its failure's text without memory. */
+char *label_file_name(const options *o, uint32_t label);
 
 /* Writes the mesh to path; it waits in the group. */
 int label_file_write(const options *o, const dataset *d, const char *path, const tc_mesh_data *mesh,

@@ -1,5 +1,6 @@
 #include "label_report.h"
 
+#include "counted.h"
 #include "input/part_report.h"
 #include "output.h"
 #include "progress.h"
@@ -27,13 +28,23 @@ static json_t *row_json(const label_report *r, const label_row *row) {
     return object;
 }
 
+static json_t *timings_json(const label_report *r) {
+    json_t *object = run_times_json(&r->times);
+    json_object_set_new(object, "classify", ms_json(r->timings.classify_ms));
+    json_object_set_new(object, "emit", ms_json(r->timings.emit_ms));
+    json_object_set_new(object, "readback", ms_json(r->timings.readback_ms));
+    json_object_set_new(object, "extract", ms_json(r->timings.total_ms));
+    return object;
+}
+
 static int print_json(const label_report *r) {
     char hash[24];
     json_t *rows = json_array(), *object = json_object();
+    const char *named = r->o->separate_labels ? r->o->output : r->path;
     snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
     for (size_t n = 0; n < r->row_count; n++) json_array_append_new(rows, row_json(r, &r->rows[n]));
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
-    json_object_set_new(object, "output", r->o->output ? string_json(r->o->output) : json_null());
+    json_object_set_new(object, "output", named ? string_json(named) : json_null());
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->device[0] ? "opencl" : "reference"));
     json_object_set_new(object, "dims", integers_json(r->grid->dims));
@@ -50,23 +61,19 @@ static int print_json(const label_report *r) {
     json_object_set_new(object, "hash", json_string(hash));
     json_object_set_new(object, "labels", rows);
     if (r->has_verdict) json_object_set_new(object, "verified", json_boolean(r->verified));
-    json_object_set_new(object, "timings_ms",
-                        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", ms_json(r->read_ms),
-                                  "device_start", ms_json(r->device_start_ms), "classify",
-                                  ms_json(r->timings.classify_ms), "emit", ms_json(r->timings.emit_ms), "readback",
-                                  ms_json(r->timings.readback_ms), "extract", ms_json(r->timings.total_ms), "write",
-                                  ms_json(r->write_ms), "total", ms_json(r->total_ms)));
+    json_object_set_new(object, "timings_ms", timings_json(r));
     json_object_set_new(object, "notices", notices_json());
     return json_report_print(object);
 }
 
 static void print_row(const label_report *r, const label_row *row) {
     const mesh_topology *t = &row->topology;
-    printf("  label %-5" PRIu32 " %" PRIu64 " triangles", row->label, row->triangle_count);
+    printf("  label %-5" PRIu32 " %s", row->label, counted(row->triangle_count, "triangle", "triangles").text);
     if (r->o->check) {
-        printf(", %s, %s, Euler characteristic %" PRId64 ", %" PRIu64 " components, area %.7g",
+        printf(", %s, %s, Euler characteristic %" PRId64 ", %s, area %.7g",
                t->nonmanifold_edges || t->nonmanifold_vertices || t->misoriented_edges ? "not a manifold" : "manifold",
-               t->boundary_edges ? "open" : "closed", t->euler_characteristic, t->components, t->area);
+               t->boundary_edges ? "open" : "closed", t->euler_characteristic,
+               counted(t->components, "component", "components").text, t->area);
         if (!t->unbalanced_edges) printf(", volume %.7g", t->volume);
     }
     if (row->path) printf(", %s", row->path);
@@ -79,10 +86,11 @@ static void print_text(const label_report *r) {
            r->field, r->field[0] ? " " : "", tc_type_name(r->type));
     part_report_text("part: ", r->grid);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
-    printf("surfaces of %zu labels\n", r->row_count);
-    printf("  mesh        %" PRIu64 " vertices, %" PRIu64 " triangles (%" PRIu64 " of zero area), through %" PRIu64
-           " cells\n",
-           r->vertex_count, r->triangle_count, r->degenerate_triangles, r->active_cell_count);
+    printf("%s of %s\n", r->row_count == 1 ? "surface" : "surfaces", counted(r->row_count, "label", "labels").text);
+    printf("  mesh        %s, %s (%" PRIu64 " of zero area), through %s\n",
+           counted(r->vertex_count, "vertex", "vertices").text,
+           counted(r->triangle_count, "triangle", "triangles").text, r->degenerate_triangles,
+           counted(r->active_cell_count, "cell", "cells").text);
     printf("  bounds     ");
     for (int end = 0; end < 2 && r->vertex_count; end++)
         for (int axis = 0; axis < 3; axis++)
@@ -95,10 +103,8 @@ static void print_text(const label_report *r) {
     printf("\n");
     for (size_t n = 0; n < r->row_count; n++) print_row(r, &r->rows[n]);
     if (r->has_verdict) printf("  verify      %s\n", r->verified ? "same bytes as the reference" : "FAILED");
-    if (r->o->output && !r->o->separate_labels)
-        printf("  written     %s\n", output_is_dash(r->o->output) ? "standard output" : r->o->output);
-    printf("read %.2f ms, device start %.2f ms, write %.2f ms, total %.2f ms\n", r->read_ms, r->device_start_ms,
-           r->write_ms, r->total_ms);
+    if (r->path) printf("  written     %s\n", output_is_dash(r->path) ? "standard output" : r->path);
+    run_times_text(&r->times);
 }
 
 int label_report_print(const label_report *r) {

@@ -7,6 +7,7 @@
 #include "command_line/options.h"
 #include "dataset/dataset.h"
 #include "mesh_check.h"
+#include "terminal/run_times.h"
 
 typedef struct label_row {
     uint32_t label;
@@ -29,8 +30,9 @@ typedef struct label_report {
     uint32_t slab_count;
     label_row *rows;
     size_t row_count;
+    char *path; /* of the file of all labels, once it is written, or NULL; from malloc */
     int has_verdict, verified;
-    double read_ms, device_start_ms, write_ms, total_ms;
+    run_times times;
 } label_report;
 
 /* Returns 0 or STATUS_FAILED. */
