@@ -75,10 +75,10 @@ inline_always ulong edges_kept(const slab *s, global const ulong *cells, uint y,
 /* Edges of a type with a vertex of the bound that the samples of a row own. */
 inline_always ulong edges_word(const slab *s, const bound *b, global const ulong *cells, uint y, uint z, uint w,
                                uint type) {
-    const uint up = type == 1 || type == 3 || type == 5, deep = type == 2 || type >= 4;
-    if (y + up >= s->ny || z + deep >= s->nz) return 0;
+    const uint next_y = type == 1 || type == 3 || type == 5, next_z = type == 2 || type >= 4;
+    if (y + next_y >= s->ny || z + next_z >= s->nz) return 0;
     const ulong even = even_cubes(s, y, z), valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
-    const sample_rows here = bound_row(s, b, y, z, w), there = bound_row(s, b, y + up, z + deep, w);
+    const sample_rows here = bound_row(s, b, y, z, w), there = bound_row(s, b, y + next_y, z + next_z, w);
     ulong crossed = (here.at ^ there.at) & valid;
     if (type == 0) crossed = (here.at ^ here.next) & has_x;
     if (type == 3 || type == 4) crossed = choose(even, here.at ^ there.next, here.next ^ there.at) & has_x;

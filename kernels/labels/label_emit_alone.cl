@@ -101,7 +101,7 @@ inline_always label_sides label_sides_make(const label_job *s, label_place p, gl
     samples64 corners[8], other;
     loop_unrolled for (uint n = 0; n < 8; n++) corners[n] =
         label_load(s, start + (n & 1) + (n & 2 ? dy : 0) + (n & 4 ? dz : 0), samples);
-    if (left <= 64) /* the row ends with the grid: nothing is behind its last sample */
+    if (left <= 64) /* the row ends with the grid: nothing is at x + 1 of its last sample */
         loop_unrolled for (uint n = 0; n < 8; n += 2) corners[n + 1] =
             lane64 < (samples64)(BITS)(left - 1) ? corners[n + 1] : corners[n];
     const samples64 first = corners[0];
@@ -137,31 +137,31 @@ inline_always uint label_next(uint at, uint type, uint brick, label_arrays in, c
 
 /* y1, z1: the brick's number among those beside, of the next row in y and in z. */
 inline_always void label_slots_make(const label_job *s, label_place p, uint own, label_arrays in, label_work *work) {
-    const uint up = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
-               deep = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
+    const uint next_y = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
+               next_z = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
     const uint y1 = label_row_find(s, p.y + 1, p.z, p.w, in.rows), z1 = label_row_find(s, p.y, p.z + 1, p.w, in.rows);
     const uint yz1 = label_row_find(s, p.y + 1, p.z + 1, p.w, in.rows);
     loop_unrolled for (uint type = 0; type < LABEL_WORDS; type++) label_slot(type, own, own, type, 0, in, work);
-    label_slot(EX_Y1, y1, own, 0, up, in, work);
-    label_slot(EZ_Y1, y1, own, 2, up, in, work);
-    label_slot(EXZ_Y1, y1, own, 4, up, in, work);
-    label_slot(EX_Z1, z1, own, 0, deep, in, work);
-    label_slot(EY_Z1, z1, own, 1, deep, in, work);
-    label_slot(EXY_Z1, z1, own, 3, deep, in, work);
-    label_slot(EX_YZ1, yz1, own, 0, up | deep, in, work);
+    label_slot(EX_Y1, y1, own, 0, next_y, in, work);
+    label_slot(EZ_Y1, y1, own, 2, next_y, in, work);
+    label_slot(EXZ_Y1, y1, own, 4, next_y, in, work);
+    label_slot(EX_Z1, z1, own, 0, next_z, in, work);
+    label_slot(EY_Z1, z1, own, 1, next_z, in, work);
+    label_slot(EXY_Z1, z1, own, 3, next_z, in, work);
+    label_slot(EX_YZ1, yz1, own, 0, next_y | next_z, in, work);
 }
 
 /* Of edges that the samples at 64 own. */
 inline_always void label_next_make(const label_job *s, label_place p, label_arrays in, label_work *work) {
-    const uint up = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
-               deep = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
+    const uint next_y = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
+               next_z = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
     const uint x1 = label_row_find(s, p.y, p.z, p.w + 1, in.rows);
     const uint xy1 = label_row_find(s, p.y + 1, p.z, p.w + 1, in.rows),
                xz1 = label_row_find(s, p.y, p.z + 1, p.w + 1, in.rows);
     work->next[EY] = label_next(x1, 1, 1, in, work), work->next[EZ] = label_next(x1, 2, 1, in, work);
     work->next[EYZ] = label_next(x1, 5, 1, in, work);
-    work->next[EZ_Y1] = label_next(xy1, 2, 1 | up, in, work),
-    work->next[EY_Z1] = label_next(xz1, 1, 1 | deep, in, work);
+    work->next[EZ_Y1] = label_next(xy1, 2, 1 | next_y, in, work),
+    work->next[EY_Z1] = label_next(xz1, 1, 1 | next_z, in, work);
 }
 
 /* --------------------------------------------------------------------------------------------------------- triangles
@@ -176,8 +176,8 @@ inline_always void label_triangles_flush(const label_job *s, label_mesh out, lab
 }
 
 /* Triangles of a cube with two labels, which are those of an isovalue between them: by slots of the numbers at the cube
- * and behind it. */
-inline_always void label_two_emit(uint x, uint odd, uint16 numbers, uint16 behind, global const uint *tables,
+ * and at x + 1. */
+inline_always void label_two_emit(uint x, uint odd, uint16 numbers, uint16 at_next_x, global const uint *tables,
                                   label_work *work) {
     const uint pattern = ((const uchar *)&work->patterns)[x];
     global const uchar *entry = (global const uchar *)(tables + LABEL_CUBES + LABEL_CASE_WORDS * (256 * odd + pattern));
@@ -186,11 +186,12 @@ inline_always void label_two_emit(uint x, uint odd, uint16 numbers, uint16 behin
     uint16 sides;
     sides.even = ((const BITS *)&work->inner)[x], sides.odd = ((const BITS *)&work->outer)[x];
 #ifdef WORD_SHUFFLES
-    *(words16 *)to = words_shuffled(numbers, behind, *(global const bytes16 *)(entry + 1), true);
-    if (count > 5) *(words16 *)(to + 15) = words_shuffled(numbers, behind, *(global const bytes16 *)(entry + 16), true);
+    *(words16 *)to = words_shuffled(numbers, at_next_x, *(global const bytes16 *)(entry + 1), true);
+    if (count > 5)
+        *(words16 *)(to + 15) = words_shuffled(numbers, at_next_x, *(global const bytes16 *)(entry + 16), true);
 #else
     uint slots[32];
-    vstore16(numbers, 0, slots), vstore16(behind, 1, slots);
+    vstore16(numbers, 0, slots), vstore16(at_next_x, 1, slots);
     for (uint n = 0; n < 3 * count; n++) to[n] = slots[entry[1 + n]];
 #endif
     *(words16 *)labels = sides;
@@ -240,13 +241,13 @@ inline_always void label_row_emit(const label_job *s, label_place p, uint own, l
     for (ulong rest = sides.active; rest; rest &= rest - 1) {
         const uint x = lowest_bit(rest);
         const uint8 low_steps = convert_uint8(low >> x & 1), high_steps = convert_uint8(high >> x & 1);
-        const uint16 behind = numbers + (uint16)(low_steps, high_steps);
+        const uint16 at_next_x = numbers + (uint16)(low_steps, high_steps);
         if (sides.more >> x & 1)
             label_more_emit(s, r, x, (odd + x) & 1, first + x, tables, work);
         else
-            label_two_emit(x, (odd + x) & 1, numbers, x == 63 ? vload16(0, work->next) : behind, tables, work);
+            label_two_emit(x, (odd + x) & 1, numbers, x == 63 ? vload16(0, work->next) : at_next_x, tables, work);
         if (work->triangle_count >= LABEL_BATCH) label_triangles_flush(s, out, work);
-        numbers = behind;
+        numbers = at_next_x;
     }
 }
 
@@ -258,15 +259,15 @@ inline_always void label_row_prefetch(uint brick, uint row, label_arrays in) {
     line_prefetch(in.bases + at);
 }
 
-/* Prefetches what kernel 1 has left of a brick's rows and of those behind it in y and z, and the samples. */
+/* Prefetches what kernel 1 has left of a brick's rows and of the next ones in y and z, and the samples. */
 inline_always void label_brick_prefetch(const label_job *s, uint brick, label_arrays in, global const BITS *samples) {
     const label_place p = label_place_of(s, brick, 0);
-    const uint up = p.y + BRICK_ROWS < s->ny ? s->words_x : 0;
-    const uint deep = p.z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
-    label_row_prefetch(brick + up + deep, 0, in);
+    const uint next_y = p.y + BRICK_ROWS < s->ny ? s->words_x : 0;
+    const uint next_z = p.z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
+    label_row_prefetch(brick + next_y + next_z, 0, in);
     for (uint rows = in.rows[brick]; rows; rows &= rows - 1) label_row_prefetch(brick, lowest_bit(rows), in);
-    for (uint z = 0; z < BRICK_PLANES; z++) label_row_prefetch(brick + up, BRICK_ROWS * z, in);
-    for (uint y = 0; y < BRICK_ROWS; y++) label_row_prefetch(brick + deep, y, in);
+    for (uint z = 0; z < BRICK_PLANES; z++) label_row_prefetch(brick + next_y, BRICK_ROWS * z, in);
+    for (uint y = 0; y < BRICK_ROWS; y++) label_row_prefetch(brick + next_z, y, in);
     label_samples_prefetch(s, brick, samples);
 }
 

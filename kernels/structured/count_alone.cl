@@ -17,17 +17,17 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words signs, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {
-        const uint across = w + (n & 1), up = y + (n & 2 ? BRICK_ROWS : 0), deep = z + (n & 4 ? BRICK_PLANES : 0);
-        if (across >= s->words_x || up >= s->ny || deep >= s->nz) continue;
-        const uint found = row_in_tile(t, up) && plane_in_tile(t, deep)
-                               ? signs.bricks[brick_index(s, up, deep, across)].sign
+        const uint next_x = w + (n & 1), next_y = y + (n & 2 ? BRICK_ROWS : 0), next_z = z + (n & 4 ? BRICK_PLANES : 0);
+        if (next_x >= s->words_x || next_y >= s->ny || next_z >= s->nz) continue;
+        const uint found = row_in_tile(t, next_y) && plane_in_tile(t, next_z)
+                               ? signs.bricks[brick_index(s, next_y, next_z, next_x)].sign
                                : SIGN_MIXED;
         if (found == sign) continue;
         if (found != SIGN_MIXED || ZEROS) return true;
-        const ulong columns = n & 1 ? 1 : word_valid(s, across);
+        const ulong columns = n & 1 ? 1 : word_valid(s, next_x);
         const uint planes = n & 4 ? 1 : min((uint)BRICK_PLANES, t.z1 - z);
-        const uint stride = row_in_tile(t, up) ? BRICK_ROWS : s->words_x; /* from plane to plane */
-        global const ulong *row = tile_row(s, t, up, deep, across, signs);
+        const uint stride = row_in_tile(t, next_y) ? BRICK_ROWS : s->words_x; /* from plane to plane */
+        global const ulong *row = tile_row(s, t, next_y, next_z, next_x, signs);
         lanes differ = 0;
         ulong differs = 0;
         for (uint plane = 0; plane < planes; plane++, row += stride)
@@ -35,7 +35,7 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
                 differs |= *row ^ uniform;
             else
                 differ |= vload8(0, row) ^ uniform;
-        if (n & 2 ? differs & columns : lanes_any(differ & rows_valid(s, up, across) & columns)) return true;
+        if (n & 2 ? differs & columns : lanes_any(differ & rows_valid(s, next_y, next_x) & columns)) return true;
     }
     return false;
 }
@@ -50,13 +50,13 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
 #if CLOSED
     if (sign == SIGN_INSIDE && bricks_at_border(s, cells, y, z, w, 1)) return true;
 #endif
-    const uint across = w + 1 < s->words_x ? 1 : 0, up = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
-    const uint deep = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
-    global const brick_state *here = signs.bricks + number, *behind = here + deep;
-    const uint differ = (here[across].sign ^ sign) | (here[up].sign ^ sign) | (here[up + across].sign ^ sign) |
-                        (behind[0].sign ^ sign) | (behind[across].sign ^ sign) | (behind[up].sign ^ sign) |
-                        (behind[up + across].sign ^ sign);
-    const bool halo = (!up && t.y1 < s->ny) || (!deep && t.z1 < s->nz); /* bricks of other tiles follow */
+    const uint next_x = w + 1 < s->words_x ? 1 : 0, next_y = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
+    const uint next_z = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
+    global const brick_state *here = signs.bricks + number, *at_next_z = here + next_z;
+    const uint differ = (here[next_x].sign ^ sign) | (here[next_y].sign ^ sign) | (here[next_y + next_x].sign ^ sign) |
+                        (at_next_z[0].sign ^ sign) | (at_next_z[next_x].sign ^ sign) | (at_next_z[next_y].sign ^ sign) |
+                        (at_next_z[next_y + next_x].sign ^ sign);
+    const bool halo = (!next_y && t.y1 < s->ny) || (!next_z && t.z1 < s->nz); /* bricks of other tiles follow */
     return (differ || halo) && neighbours_differ(s, t, y, z, w, signs, sign);
 }
 
@@ -81,7 +81,7 @@ inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, ti
 
 /* Columns of the brick, of the brick at higher x, and of the bricks at higher y of both. */
 typedef struct brick_columns {
-    column at, next, up, up_next;
+    column at, next, next_y, xy;
 } brick_columns;
 
 inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
@@ -98,19 +98,19 @@ inline_always global const ulong *column_row(column c, uint plane, bool after) {
 inline_always void plane_rows(const slab *s, brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
     lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
     lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
-    ulong up = *column_row(c.up, plane, after) & c.up.valid.s0;
-    ulong up_next = *column_row(c.up_next, plane, after) & c.up_next.valid.s0;
+    ulong next_y = *column_row(c.next_y, plane, after) & c.next_y.valid.s0;
+    ulong xy = *column_row(c.xy, plane, after) & c.xy.valid.s0;
     if (ZEROS) {
         const lanes zero = vload8(0, zeros_of(s, column_row(c.at, plane, after)));
         const lanes zero_next = vload8(0, zeros_of(s, column_row(c.next, plane, after)));
-        const ulong zero_up = *zeros_of(s, column_row(c.up, plane, after));
-        const ulong zero_up_next = *zeros_of(s, column_row(c.up_next, plane, after));
+        const ulong zero_y = *zeros_of(s, column_row(c.next_y, plane, after));
+        const ulong zero_xy = *zeros_of(s, column_row(c.xy, plane, after));
         *a = rows_with_zeros(at, next, zero, zero_next);
-        *b = rows_with_zeros(lanes_next_row(at, up), lanes_next_row(next, up_next), lanes_next_row(zero, zero_up),
-                             lanes_next_row(zero_next, zero_up_next));
+        *b = rows_with_zeros(lanes_next_row(at, next_y), lanes_next_row(next, xy), lanes_next_row(zero, zero_y),
+                             lanes_next_row(zero_next, zero_xy));
     } else {
         *a = rows_shifted(at, next);
-        *b = rows_shifted(lanes_next_row(at, up), lanes_next_row(next, up_next));
+        *b = rows_shifted(lanes_next_row(at, next_y), lanes_next_row(next, xy));
     }
 }
 
@@ -155,9 +155,9 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
  * nothing. */
 inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, uint count,
                                global const brick_range *ranges) {
-    const uint up = y + BRICK_ROWS < s->ny ? s->words_x : 0;
-    const uint deep = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
-    const uint across = w + count < s->words_x ? count : count - 1;
+    const uint next_y = y + BRICK_ROWS < s->ny ? s->words_x : 0;
+    const uint next_z = z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
+    const uint next_x = w + count < s->words_x ? count : count - 1;
     if (z + BRICK_PLANES >= s->z1 && s->z1 < s->nz) return false;
     if (!s->results.ranges_known && (y + BRICK_ROWS >= t.y1 || z + BRICK_PLANES >= t.z1)) return false;
     global const brick_range *here = ranges + s->results.range_offset + brick_index(s, y, z, w);
@@ -166,10 +166,11 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
     const bool closes = MISSING ? true : bricks_at_border(s, NULL, y, z, w, count);
     if (sign == SIGN_INSIDE && closes) return false;
 #endif
-    return sign != SIGN_MIXED && run_sign(&s->test, here + up, count) == sign &&
-           run_sign(&s->test, here + deep, count) == sign && run_sign(&s->test, here + up + deep, count) == sign &&
-           range_sign(&s->test, here[across]) == sign && range_sign(&s->test, here[up + across]) == sign &&
-           range_sign(&s->test, here[deep + across]) == sign && range_sign(&s->test, here[up + deep + across]) == sign;
+    return sign != SIGN_MIXED && run_sign(&s->test, here + next_y, count) == sign &&
+           run_sign(&s->test, here + next_z, count) == sign &&
+           run_sign(&s->test, here + next_y + next_z, count) == sign && range_sign(&s->test, here[next_x]) == sign &&
+           range_sign(&s->test, here[next_y + next_x]) == sign && range_sign(&s->test, here[next_z + next_x]) == sign &&
+           range_sign(&s->test, here[next_y + next_z + next_x]) == sign;
 }
 
 /* A group needs no local memory here. */

@@ -71,13 +71,13 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 
 /* ------------------------------------------------------------------------------------------------------------ signs */
 
-/* The words of the brick that lies 0 or 1 bricks further in x, y and z (across, up, deep); outside the grid all are 0.
- */
-inline_always global const ulong *words_of_brick(const slab *s, corner c, uint number, uint across, uint up, uint deep,
-                                                 row_results k1) {
-    bool exists = c.x + 64 * across < s->nx && c.y + BRICK_ROWS * up < s->ny && c.z + BRICK_PLANES * deep < s->nz;
+/* The words of a brick that is this one or the next, along x, y and z (next_x, next_y, next_z: 0 or 1); outside the
+ * grid all are 0. */
+inline_always global const ulong *words_of_brick(const slab *s, corner c, uint number, uint next_x, uint next_y,
+                                                 uint next_z, row_results k1) {
+    bool exists = c.x + 64 * next_x < s->nx && c.y + BRICK_ROWS * next_y < s->ny && c.z + BRICK_PLANES * next_z < s->nz;
     if (!exists) return brick_words(0, SIGN_OUTSIDE, k1.words);
-    number += (deep * s->bricks_y + up) * s->words_x + across;
+    number += (next_z * s->bricks_y + next_y) * s->words_x + next_x;
     return brick_words(number, k1.bricks[number].sign, k1.words);
 }
 
@@ -91,22 +91,22 @@ inline_always sample_rows plane_load(const slab *s, uint z, ulong valid, global 
 
 inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
     ulong valid = word_valid(s, c.x / 64);
-    for (uint up = 0; up < 2; up++) {
-        global const ulong *at = words_of_brick(s, c, number, 0, up, 0, k1);
-        global const ulong *next = words_of_brick(s, c, number, 1, up, 0, k1);
-        for (uint z = 0; z < BRICK_PLANES; z++) signs->rows[up][z] = plane_load(s, z, valid, at, next);
-        at = words_of_brick(s, c, number, 0, up, 1, k1), next = words_of_brick(s, c, number, 1, up, 1, k1);
-        signs->rows[up][BRICK_PLANES] = plane_load(s, 0, valid, at, next);
+    for (uint next_y = 0; next_y < 2; next_y++) {
+        global const ulong *at = words_of_brick(s, c, number, 0, next_y, 0, k1);
+        global const ulong *next = words_of_brick(s, c, number, 1, next_y, 0, k1);
+        for (uint z = 0; z < BRICK_PLANES; z++) signs->rows[next_y][z] = plane_load(s, z, valid, at, next);
+        at = words_of_brick(s, c, number, 0, next_y, 1, k1), next = words_of_brick(s, c, number, 1, next_y, 1, k1);
+        signs->rows[next_y][BRICK_PLANES] = plane_load(s, 0, valid, at, next);
     }
 }
 
 /* Rows 1 to 8 of plane z, where the brick has rows 0 to 7. */
-inline_always sample_rows signs_up(const brick_signs *signs, uint z) {
-    const sample_rows *here = &signs->rows[0][z], *up = &signs->rows[1][z];
-    sample_rows r = {lanes_next_row(here->at, up->at.s0), lanes_next_row(here->next, up->next.s0), 0, 0};
+inline_always sample_rows signs_next_y(const brick_signs *signs, uint z) {
+    const sample_rows *here = &signs->rows[0][z], *next_y = &signs->rows[1][z];
+    sample_rows r = {lanes_next_row(here->at, next_y->at.s0), lanes_next_row(here->next, next_y->next.s0), 0, 0};
     if (ZEROS) {
-        r.zero_at = lanes_next_row(here->zero_at, up->zero_at.s0);
-        r.zero_next = lanes_next_row(here->zero_next, up->zero_next.s0);
+        r.zero_at = lanes_next_row(here->zero_at, next_y->zero_at.s0);
+        r.zero_next = lanes_next_row(here->zero_next, next_y->zero_next.s0);
     }
     return r;
 }
@@ -132,8 +132,8 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 inline_always void crossed_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
                                  brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
-        cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_up(signs, n),
-                                   signs->rows[0][n + 1], signs_up(signs, n + 1));
+        cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_next_y(signs, n),
+                                   signs->rows[0][n + 1], signs_next_y(signs, n + 1));
         crossings edges = vertices_owned(s, &r, c.y, c.z + n, c.x / 64, at_border, k1.cells);
         lanes active = cubes_active(&r);
 #if MISSING
@@ -218,7 +218,8 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     const uint z = c.z + BRICK_PLANES, w = c.x / 64;
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
     if (z >= s->nz) return;
-    cube_rows r = cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_up(signs, BRICK_PLANES), none, none);
+    cube_rows r =
+        cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_next_y(signs, BRICK_PLANES), none, none);
     crossings edges = vertices_owned(s, &r, c.y, z, w, at_border, k1.cells);
     ulong crossed[4][BRICK_ROWS];
     vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
@@ -244,10 +245,10 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
         const bool last = n == BRICK_PLANES;
         const ulong even = even_cubes(s, y, c.z + n), has_z = last || c.z + n + 1 >= s->nz ? 0 : ~0ul;
-        const sample_rows *here = &signs->rows[1][n], *behind = last ? here : here + 1;
-        const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = behind->at.s0, c1 = behind->next.s0;
+        const sample_rows *here = &signs->rows[1][n], *at_z = last ? here : here + 1;
+        const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = at_z->at.s0, c1 = at_z->next.s0;
         const ulong zero = ZEROS ? here->zero_at.s0 : 0, zero_x = ZEROS ? here->zero_next.s0 : 0;
-        const ulong zero_z = ZEROS ? behind->zero_at.s0 : 0, zero_xz = ZEROS ? behind->zero_next.s0 : 0;
+        const ulong zero_z = ZEROS ? at_z->zero_at.s0 : 0, zero_xz = ZEROS ? at_z->zero_next.s0 : 0;
         ulong x = (a0 ^ a1) & ~(zero | zero_x) & has_x, z = (a0 ^ c0) & ~(zero | zero_z) & has_z;
         ulong xz = (even & (a0 ^ c1) & ~(zero | zero_xz)) | (~even & (a1 ^ c0) & ~(zero_x | zero_z));
         xz = DIAGONALS ? xz & has_x & has_z : 0;
@@ -293,30 +294,31 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
     for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
         const uint z = c.z + n;
         const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
-        const lanes a = next_column(signs->rows[0][n]), b = next_column(signs_up(signs, n));
-        const lanes za = next_zeros(signs->rows[0][n]), zb = next_zeros(signs_up(signs, n));
-        crossings edges = {{0, 0, 0, 0, 0, 0, 0}}, up = {{0, 0, 0, 0, 0, 0, 0}};
+        const lanes a = next_column(signs->rows[0][n]), b = next_column(signs_next_y(signs, n));
+        const lanes za = next_zeros(signs->rows[0][n]), zb = next_zeros(signs_next_y(signs, n));
+        crossings edges = {{0, 0, 0, 0, 0, 0, 0}}, next_y = {{0, 0, 0, 0, 0, 0, 0}};
         edges.type[1] = crossed(a, b, za, zb) & has_y;
-        edges.type[6] = za, up.type[6] = next_zeros(signs->rows[1][n]);
+        edges.type[6] = za, next_y.type[6] = next_zeros(signs->rows[1][n]);
         if (n < BRICK_PLANES && z + 1 < s->nz) {
-            const lanes behind = next_column(signs->rows[0][n + 1]), diagonal = next_column(signs_up(signs, n + 1));
-            const lanes zc = next_zeros(signs->rows[0][n + 1]), zd = next_zeros(signs_up(signs, n + 1));
-            edges.type[2] = crossed(a, behind, za, zc);
+            const lanes at_z = next_column(signs->rows[0][n + 1]), at_yz = next_column(signs_next_y(signs, n + 1));
+            const lanes zc = next_zeros(signs->rows[0][n + 1]), zd = next_zeros(signs_next_y(signs, n + 1));
+            edges.type[2] = crossed(a, at_z, za, zc);
             if (DIAGONALS)
                 edges.type[5] =
-                    choose(even_rows(s, c.y, z), crossed(a, diagonal, za, zd), crossed(b, behind, zb, zc)) & has_y;
-            up.type[2] = crossed(next_column(signs->rows[1][n]), next_column(signs->rows[1][n + 1]), up.type[6],
-                                 next_zeros(signs->rows[1][n + 1]));
+                    choose(even_rows(s, c.y, z), crossed(a, at_yz, za, zd), crossed(b, at_z, zb, zc)) & has_y;
+            next_y.type[2] = crossed(next_column(signs->rows[1][n]), next_column(signs->rows[1][n + 1]), next_y.type[6],
+                                     next_zeros(signs->rows[1][n + 1]));
         }
 #if MISSING
         crossings_keep(s, k1.cells, c.y, z, w, &edges);
-        crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &up);
+        crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &next_y);
 #endif
 #if CLOSED
-        edges.type[PLACE_TYPE] = za, up.type[PLACE_TYPE] = next_zeros(signs->rows[1][n]);
+        edges.type[PLACE_TYPE] = za, next_y.type[PLACE_TYPE] = next_zeros(signs->rows[1][n]);
         if (at_border) {
             edges.type[PLACE_TYPE] |= a & border_samples(s, k1.cells, c.y, z, w);
-            up.type[PLACE_TYPE] |= next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w);
+            next_y.type[PLACE_TYPE] |=
+                next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w);
         }
 #endif
         column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
@@ -325,8 +327,8 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
         if (VERTEX_TYPES > PLACE_TYPE)
             column_store(s, c.y, z, w, PLACE_TYPE, lanes_nonzero(edges.type[PLACE_TYPE]), c, k1, work);
         if (c.y + BRICK_ROWS >= s->ny) continue;
-        if (up.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
-        if (VERTEX_TYPES > PLACE_TYPE && up.type[PLACE_TYPE].s0)
+        if (next_y.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
+        if (VERTEX_TYPES > PLACE_TYPE && next_y.type[PLACE_TYPE].s0)
             column_store(s, c.y + BRICK_ROWS, z, w, PLACE_TYPE, 1, c, k1, work);
     }
 }

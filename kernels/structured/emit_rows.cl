@@ -62,12 +62,12 @@ inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_resu
     return ZEROS ? rows_with_zeros(at, next, zero, zero_next) : rows_shifted(at, next);
 }
 
-/* The cubes of a row. up, deep: whether the rows after it in y and in z are loaded; else they are 0. */
-inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool up, bool deep, row_results k1) {
+/* The cubes of a row. next_y, next_z: whether the rows after it in y and in z are loaded; else they are 0. */
+inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool next_y, bool next_z, row_results k1) {
     sample_rows a = row_of(s, y, z, w, k1), b = rows_shifted(0, 0), c = b, d = b;
-    if (up) b = row_of(s, y + 1, z, w, k1);
-    if (deep) c = row_of(s, y, z + 1, w, k1);
-    if (up && deep) d = row_of(s, y + 1, z + 1, w, k1);
+    if (next_y) b = row_of(s, y + 1, z, w, k1);
+    if (next_z) c = row_of(s, y, z + 1, w, k1);
+    if (next_y && next_z) d = row_of(s, y + 1, z + 1, w, k1);
     return cube_rows_of(s, y, z, w, a, b, c, d);
 }
 
@@ -149,9 +149,9 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
  * owned by the first sample of the next word. */
 inline_always uint vertex_number(const slab *s, uint y, uint z, uint w, uint n, uint bit, uint item, row_results k1,
                                  const local row_table *table) {
-    const uint type = item & 7, x = bit + (item >> 3 & 1), up = item >> 4 & 1, deep = item >> 5;
-    if (x == 64) return number_of(owner_of(s, y + up, z + deep, w + 1, k1), type);
-    n += up + TABLE_ROWS_Y * deep;
+    const uint type = item & 7, x = bit + (item >> 3 & 1), next_y = item >> 4 & 1, next_z = item >> 5;
+    if (x == 64) return number_of(owner_of(s, y + next_y, z + next_z, w + 1, k1), type);
+    n += next_y + TABLE_ROWS_Y * next_z;
     return number_of(table_owner(table, n), type) + (uint)popcount(table->crossed[type][n] & ((1ul << x) - 1));
 }
 
