@@ -1,8 +1,8 @@
 /*
  * interval_emit.cl - kernel interval_emit: vertices and tetrahedra of an interval volume
  *
- * Tetrahedra come from the table of cases; those of runs of cubes that lie within whole, whose numbers rise by one from
- * cube to cube, from the first two of them (interval_numbers.cl).
+ * Tetrahedra come from the table of cases; those of runs of cubes that lie wholly within, whose numbers rise by one
+ * from cube to cube, from the first two of them (interval_numbers.cl).
  */
 #ifndef INTERVAL_EMIT_CL
 #define INTERVAL_EMIT_CL
@@ -19,7 +19,7 @@ typedef struct interval_mesh {
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-/* The vertex at t on an edge, of the brick at a corner. */
+/* Stores the vertex on an edge of the brick whose first sample is `first`; is_sample: at the edge's first end. */
 inline_always void vertex_store(const slab *s, corner first, uint edge, bool is_sample, REAL isovalue, grid_arrays in,
                                 global float *out) {
     const ulong from =
@@ -60,7 +60,7 @@ inline_always void crossings_store(const slab *s, corner first, uint y, uint z, 
 
 /* ------------------------------------------------------------------------------------------------------- tetrahedra */
 
-/* A pattern of the corners of the cube at a bit, of words that are `at` and shifted. */
+/* Bit n: the bit that corner n of the cube at `bit` has in these words. */
 inline_always uint corners_at(const sample_rows rows[4], uint bit) {
     uint pattern = 0;
 #pragma unroll
@@ -80,7 +80,7 @@ inline_always global uint *cube_store(const places_row *at, const row_places *p,
     return out;
 }
 
-/* Cubes that lie within whole. */
+/* Cubes that lie wholly within. */
 inline_always ulong cubes_within(const interval_rows *r, ulong present) {
 #pragma unroll
     for (uint n = 0; n < 4; n++) present &= r->low[n].at & r->low[n].next & ~(r->high[n].at | r->high[n].next);
@@ -91,15 +91,15 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
                                   interval_sums sums, const interval_rows *r, global const ulong *cells, uint y, uint z,
                                   uint w, global const uchar *cases, global uint *out) {
     const ulong present = cubes_present(s, cells, y, z, w), even = even_cubes(s, y, z);
-    const ulong whole = cubes_within(r, present);
+    const ulong within = cubes_within(r, present);
     ulong left = cubes_reached(r, present);
     row_places p;
     if (!left) return;
     const places_row at = {s, job, low, high, sums, r, cells, y, z, w};
-    places_begin(&at, left, left & ~whole, &p);
+    places_begin(&at, left, left & ~within, &p);
     while (left) {
         const uint bit = lowest_bit(left), odd = (uint)(~even >> bit & 1);
-        const uint length = min(lowest_bit(~(whole >> bit)), 63 - bit);
+        const uint length = min(lowest_bit(~(within >> bit)), 63 - bit);
         if (length > 1) {
             out = run_store(&at, &p, bit, length, odd, cases, out);
             left &= ~(((1ul << length) - 1) << bit);

@@ -36,21 +36,21 @@ typedef struct interval_job {
 #define INTERVAL_VERTEX(block, row, type, at_x) (2 * INTERVAL_PLACE(block, row, type) + (at_x))
 enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
 
-/* The table of cases. First, for each of 2 parities x 5 tetrahedra, 256 bytes: that of a pattern of the cube's corners
- * is the sum of 3^m over the corners m of the tetrahedron that are in the pattern. A case is the byte of the corners
- * not below plus the byte of those above: a number to the base 3 whose digits are 0 below, 1 within, 2 above. Then, for
+/* The table of cases. First, for each of 2 parities x 5 tetrahedra, 256 bytes: by pattern of the cube's corners, the
+ * sum of 3^m over the corners m of the tetrahedron that are in the pattern. A case is the byte of the pattern "not
+ * below" plus that of "above": a number to the base 3 whose digits are 0 below, 1 within, 2 above. Then, for
  * each of the ten, 81 entries: the number of tetrahedra, the number of vertices, up to eight vertices
  * (INTERVAL_VERTEX), and for each tetrahedron four indices into these. */
 enum {
-    INTERVAL_ORDERED = 10,
+    INTERVAL_TETRAHEDRA = 10,
     INTERVAL_CASE_COUNT = 81,
     INTERVAL_ENTRY_VERTICES = 2,
     INTERVAL_VERTICES_MOST = 8,
     INTERVAL_ENTRY_CORNERS = INTERVAL_ENTRY_VERTICES + INTERVAL_VERTICES_MOST,
     INTERVAL_ENTRY_BYTES = INTERVAL_ENTRY_CORNERS + 6 * 4 + 2,
-    INTERVAL_DIGIT_BYTES = INTERVAL_ORDERED * 256,
-    INTERVAL_TABLE_BYTES = INTERVAL_DIGIT_BYTES + INTERVAL_ORDERED * INTERVAL_CASE_COUNT * INTERVAL_ENTRY_BYTES,
-    INTERVAL_WITHIN = 40 /* the case of a tetrahedron that lies within whole */
+    INTERVAL_DIGIT_BYTES = INTERVAL_TETRAHEDRA * 256,
+    INTERVAL_TABLE_BYTES = INTERVAL_DIGIT_BYTES + INTERVAL_TETRAHEDRA * INTERVAL_CASE_COUNT * INTERVAL_ENTRY_BYTES,
+    INTERVAL_WITHIN = 40 /* the case of a tetrahedron that lies wholly within */
 };
 
 /* The table of counts: entry 5 n + m says how many tetrahedra come of one with n corners not below and m above. */

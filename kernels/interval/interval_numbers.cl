@@ -109,11 +109,11 @@ inline_always uint place_first(const places_row *r, uint place, uint w) {
 }
 
 /* An entry of the table of cases: parity of a cube, tetrahedron, case. */
-inline_always global const uchar *interval_entry(global const uchar *cases, uint ordered, uint index) {
-    return cases + INTERVAL_DIGIT_BYTES + INTERVAL_ENTRY_BYTES * (INTERVAL_CASE_COUNT * ordered + index);
+inline_always global const uchar *interval_entry(global const uchar *cases, uint tetrahedron, uint index) {
+    return cases + INTERVAL_DIGIT_BYTES + INTERVAL_ENTRY_BYTES * (INTERVAL_CASE_COUNT * tetrahedron + index);
 }
 
-/* Corner m, of 40, of the ten tetrahedra of two cubes side by side that lie within whole. */
+/* Corner m, of 40, of the ten tetrahedra of two cubes side by side that lie wholly within. */
 inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
     global const uchar *entry = interval_entry(cases, 5 * (odd ^ (m >= 20)) + m / 4 % 5, INTERVAL_WITHIN);
     return entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m % 4]];
@@ -150,8 +150,8 @@ inline_always void places_of_bound(const places_row *r, const bound *b, const sa
     }
 }
 
-/* reached: cubes that have any tetrahedra; partial: those of them that are not within whole, so that their vertices are
- * on edges too. */
+/* reached: cubes that have any tetrahedra; partial: those of them that are not wholly within, so that their vertices
+ * are on edges too. */
 inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) {
     p->has_next = reached >> 63;
 #pragma unroll
@@ -182,8 +182,8 @@ inline_always global uint *tetrahedra_store(const places_row *r, const row_place
     return out + 4 * count;
 }
 
-/* Cubes that lie within whole, `length` of them from a bit on; the last is not the row's. Numbers rise by one from cube
- * to cube. */
+/* Cubes that lie wholly within, `length` of them from a bit on; none is cube 63, some of whose vertices are in the next
+ * word. Numbers rise by one from cube to cube. */
 inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,
                                      global const uchar *cases, global uint *out) {
     uint start[40];

@@ -119,7 +119,7 @@ inline_always label_sides label_sides_make(const label_job *s, label_place p, gl
     work->inner = (other & turned) | (first & ~turned);
     work->outer = (first & turned) | (other & ~turned);
     const label_sides sides = {~mask_word(inside == (bytes64)(char)-1) & label_cubes(s, p),
-                               ~mask_word(two) & label_first(left)};
+                               ~mask_word(two) & label_mask(left)};
     return sides;
 }
 

@@ -86,7 +86,7 @@ inline_always uint label_cell_triangles(label_cells c) {
 
 /* Bits of cubes that lie in the grid, in a row. */
 inline_always ulong label_cubes(const label_job *s, label_place p) {
-    return p.y + 1 < s->ny && p.z + 1 < s->nz ? label_first(s->nx - 64 * p.w - 1) : 0;
+    return p.y + 1 < s->ny && p.z + 1 < s->nz ? label_mask(s->nx - 64 * p.w - 1) : 0;
 }
 
 inline_always label_cells label_cells_in(label_cells c, ulong cubes) {

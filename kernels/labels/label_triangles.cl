@@ -4,7 +4,7 @@
 #ifndef LABEL_TRIANGLES_CL
 #define LABEL_TRIANGLES_CL
 
-#include "label_row.cl"
+#include "label_row_numbers.cl"
 
 /* The numbers of a cube's vertices: made where a triangle names them, so no memory is needed for them. */
 typedef struct label_numbers {

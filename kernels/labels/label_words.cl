@@ -61,7 +61,7 @@ inline_always ulong label_select(ulong even, ulong if_even, ulong if_odd) {
 }
 
 /* Bits of the first `count` samples. */
-inline_always ulong label_first(uint count) { return count >= 64 ? ~0ul : (1ul << count) - 1; }
+inline_always ulong label_mask(uint count) { return count >= 64 ? ~0ul : (1ul << count) - 1; }
 
 #if WORK_ITEMS == 1
 #include "label_words_alone.cl"

@@ -24,7 +24,7 @@ inline_always void label_edges_make(const label_job *s, label_place p, global co
                                     ulong e[LABEL_EDGES]) {
     const bool has_y = p.y + 1 < s->ny, has_z = p.z + 1 < s->nz;
     const uint left = s->nx - 64 * p.w;
-    const ulong even = label_even(s, p.y, p.z), all = label_first(left), along = label_first(left - 1);
+    const ulong even = label_even(s, p.y, p.z), all = label_mask(left), along = label_mask(left - 1);
     const ulong in_y = has_y ? all : 0, in_z = has_z ? all : 0, in_yz = in_y & in_z;
     const ulong start = label_start(s, p.y, p.z, p.w), dy = has_y ? s->nx : 0, dz = has_z ? (ulong)s->nx * s->ny : 0;
     const samples64 a = label_load(s, start, samples), a1 = label_load(s, start + 1, samples);
@@ -68,7 +68,7 @@ inline_always void label_samples_prefetch(const label_job *s, uint brick, global
 inline_always bool label_brick_uniform(const label_job *s, uint brick, global const BITS *samples) {
     const label_place p = label_place_of(s, brick, 0);
     const uint left = s->nx - 64 * p.w, y1 = min(p.y + BRICK_ROWS + 1, s->ny), z1 = min(p.z + BRICK_PLANES + 1, s->nz);
-    const ulong all = label_first(left);
+    const ulong all = label_mask(left);
     const BITS label = samples[label_start(s, p.y, p.z, p.w)];
     for (uint z = p.z; z < z1; z++)
         for (uint y = p.y; y < y1; y++) {

@@ -103,7 +103,7 @@ typedef struct face_corners {
 
 /* Where each half of the face is cut by itself: a half with one or three corners inside gives one triangle, with two it
  * gives two, or one where the third corner is a vertex. */
-inline_always lanes halves_triangles(face_corners c, lanes faces) {
+inline_always lanes face_halves_triangles(face_corners c, lanes faces) {
     const lanes two_of_u = ((c.p & c.q) | (c.p & c.u) | (c.q & c.u)) & ~(c.p & c.q & c.u);
     const lanes two_of_v = ((c.p & c.q) | (c.p & c.v) | (c.q & c.v)) & ~(c.p & c.q & c.v);
     const lanes outside_u = ~(c.zero_p | c.zero_q | c.zero_u), outside_v = ~(c.zero_p | c.zero_q | c.zero_v);
@@ -113,7 +113,7 @@ inline_always lanes halves_triangles(face_corners c, lanes faces) {
 
 /* Where the face is cut as a whole: a polygon of its inside corners and crossed sides, or two where the diagonal
  * separates the two corners inside. */
-inline_always lanes whole_triangles(face_corners c, lanes faces) {
+inline_always lanes face_triangles(face_corners c, lanes faces) {
     const lanes corners = lanes_popcount(c.p & faces) + lanes_popcount(c.q & faces) + lanes_popcount(c.u & faces) +
                           lanes_popcount(c.v & faces);
     const lanes sides = lanes_popcount((c.p ^ c.u) & faces) + lanes_popcount((c.u ^ c.q) & faces) +
@@ -142,7 +142,7 @@ inline_always lanes border_triangles(const cube_rows *r, const border_faces *f) 
                                 choose(e, p[c1], p[c0]),       choose(e, p[c2], p[c3]),
                                 choose(e, zero[c0], zero[c1]), choose(e, zero[c3], zero[c2]),
                                 choose(e, zero[c1], zero[c0]), choose(e, zero[c2], zero[c3])};
-        sum += DIAGONALS ? halves_triangles(c, f->at[face]) : whole_triangles(c, f->at[face]);
+        sum += DIAGONALS ? face_halves_triangles(c, f->at[face]) : face_triangles(c, f->at[face]);
     }
     return sum;
 }

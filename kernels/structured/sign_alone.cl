@@ -1,5 +1,5 @@
 /*
- * sign_alone.cl - signs of bricks where a work-item has bricks to itself: it visits strips of bricks, to read samples
+ * sign_alone.cl - signs of bricks where a work-item has bricks to itself: it visits blocks of bricks, to read samples
  * in long runs, 64 at a time
  */
 #ifndef SIGN_ALONE_CL
@@ -78,24 +78,24 @@ inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint coun
     for (uint n = 0; n < 64 * count; n += 64 / sizeof(BITS)) line_prefetch(row + n);
 }
 
-#define STRIP_BRICKS   64
+#define BLOCK_BRICKS   64
 #define PREFETCH_BYTES 4096
 
-/* Bricks visited together: `rows` rows of `count` bricks, at most STRIP_BRICKS in all. Each plane is read row after
+/* Bricks visited together: `rows` rows of `count` bricks, at most BLOCK_BRICKS in all. Each plane is read row after
  * row. Where `count` bricks make whole rows of the grid, that is one long run, which memory serves faster than short
  * ones. */
-typedef struct strip {
+typedef struct visit_block {
     uint y, z, w; /* of the first word */
     uint rows, count;
-} strip;
+} visit_block;
 
-/* Makes words, ranges and signs of a strip on the first visit. Prefetches what is read PREFETCH_BYTES later, also in
- * the next plane or the next strip, as hardware prefetch stops at page ends. */
-inline_always void strip_visit(const slab *s, strip p, global const BITS *samples, global ulong *words,
+/* Makes words, ranges and signs of a block on the first visit. Prefetches what is read PREFETCH_BYTES later, also in
+ * the next plane or the next block, as hardware prefetch stops at page ends. */
+inline_always void block_visit(const slab *s, visit_block p, global const BITS *samples, global ulong *words,
                                global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
     const uint rows = p.rows * BRICK_ROWS, rows_ahead = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
-    ulong word[STRIP_BRICKS][BRICK_WORDS];
-    line_keys low[STRIP_BRICKS], high[STRIP_BRICKS];
+    ulong word[BLOCK_BRICKS][BRICK_WORDS];
+    line_keys low[BLOCK_BRICKS], high[BLOCK_BRICKS];
     for (uint n = 0; n < p.rows * p.count; n++) low[n] = (BITS) ~(BITS)0, high[n] = 0;
     for (uint plane = 0; plane < BRICK_PLANES; plane++) {
         const uint z = p.z + plane, have = z < s->z1 ? min(rows, s->ny - p.y) : 0;
@@ -103,7 +103,7 @@ inline_always void strip_visit(const slab *s, strip p, global const BITS *sample
         global const BITS *ahead = samples + row_start(s, p.y, z) + 64ul * p.w + rows_ahead * (ulong)s->nx;
         for (uint row = 0; row < rows; row++, ahead += s->nx) {
             const uint first = row / BRICK_ROWS * p.count, brick_row = BRICK_ROWS * plane + row % BRICK_ROWS;
-            if (row + rows_ahead == rows) /* from here on in the next plane or strip */
+            if (row + rows_ahead == rows) /* from here on in the next plane or block */
                 ahead = samples + row_start(s, last ? p.y + rows : p.y, last ? p.z : z + 1) + 64ul * p.w;
             for (uint n = 0; n < p.count && row < have; n++) {
                 loop_unrolled for (uint m = 0; m < 64; m += 64 / sizeof(BITS)) line_prefetch(ahead + 64 * n + m);
@@ -200,11 +200,11 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
         layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
         return;
     }
-    const uint most = min(s->words_x, (uint)STRIP_BRICKS), step = STRIP_BRICKS / most * BRICK_ROWS;
+    const uint most = min(s->words_x, (uint)BLOCK_BRICKS), step = BLOCK_BRICKS / most * BRICK_ROWS;
     for (uint y = y0; y < y1; y += step)
         for (uint w = 0; w < s->words_x; w += most) {
-            strip p = {y, z, w, (min(step, y1 - y) + BRICK_ROWS - 1) / BRICK_ROWS, min(most, s->words_x - w)};
-            strip_visit(s, p, samples, words, bricks, ranges, nonfinite);
+            visit_block p = {y, z, w, (min(step, y1 - y) + BRICK_ROWS - 1) / BRICK_ROWS, min(most, s->words_x - w)};
+            block_visit(s, p, samples, words, bricks, ranges, nonfinite);
         }
 }
 

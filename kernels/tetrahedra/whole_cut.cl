@@ -16,9 +16,10 @@ inline_always void diagonals_prefetch(const complex_job *c, uint a, global const
         line_prefetch(table + (edge_hash(candidate_points(active + a, lowest_bit(rest), cases)) & c->table_mask));
 }
 
-/* Enters those diagonals of a cell that are edges. Bit n of the result: candidate n is one. */
-inline_always uint diagonals_enter(const complex_job *c, uint a, global const active_cell *active,
-                                   global const uchar *cases, volatile global uint *table, global uint *entries) {
+/* Looks up the diagonals of a cell in the table of edges, and stores their entries; an entry that is found has the
+ * earliest of its slots. Bit n of the result: candidate n is an edge. */
+inline_always uint diagonals_find(const complex_job *c, uint a, global const active_cell *active,
+                                  global const uchar *cases, volatile global uint *table, global uint *entries) {
     uint found = 0;
     for (uint rest = diagonals_of(a, active, cases); rest; rest &= rest - 1) {
         const uint n = lowest_bit(rest), slot = slot_of(c, a, n);
@@ -44,7 +45,7 @@ kernel void whole_cut(complex_job c, global active_cell *active, global const uc
         for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
             if (WORK_ITEMS == 1 && n + FETCH_AHEAD / 2 < count)
                 diagonals_prefetch(&c, first + n + FETCH_AHEAD / 2, active, cases, table);
-            const uint found = diagonals_enter(&c, first + n, active, cases, table, entries);
+            const uint found = diagonals_find(&c, first + n, active, cases, table, entries);
             active[first + n].owned = found;
             cut += found != 0;
         }

@@ -16,8 +16,9 @@ typedef struct block_span {
 
 /* What is known of a vertex while its list is found. */
 typedef struct vertex_state {
-    uint64_t sum;   /* of its followers less that of those before it, mixed; 0: they are the same, or collide, with
-                       a probability of 2^-64: then the vertex is smoothed as an inner one, on every machine */
+    uint64_t sum; /* of the hashes of vertices after it in its triangles, less those of the vertices before it; 0: both
+                     are the same set, or collide, with a probability of 2^-64: then the vertex is smoothed as an
+                     inner one, on every machine */
     uint32_t count; /* of its triangles */
     uint32_t place; /* where its next entry goes */
 } vertex_state;

@@ -1,8 +1,8 @@
 /*
- * Each sweep makes new positions of all old ones, so neither threads nor the order of vertices change a bit. The box of
- * a vertex lies along the grid's axes, around the place where it was made. Three arrays are enough: the places, a
- * second one, and the mesh's own positions, to which the last sweep leads. Positions are read as four components, of
- * which the last means nothing.
+ * Each sweep reads only old positions and writes new ones, so neither threads nor the order of vertices change a bit.
+ * The box of a vertex lies along the grid's axes, around the place where it was made. Three arrays are enough: the
+ * places, a second one, and the mesh's own positions, to which the last sweep leads. Positions are read as four
+ * components, of which the last means nothing.
  */
 #include "labels/smooth.h"
 

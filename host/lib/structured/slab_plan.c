@@ -81,8 +81,8 @@ uint32_t plan_zero_bricks(const slab_plan *plan) {
     return plan->needs.zeros ? (uint32_t)(UNIFORM_BRICKS + plan_window_layers(plan) * plan_bricks_per_layer(plan)) : 0;
 }
 
-/* Larger on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere about 16 K samples.
- * Never so large that groups run out of tiles. */
+/* Tiles are larger on CPUs, where one work-item sweeps whole layers and their halo is read twice; elsewhere they have
+ * about 16 K samples; tile_bricks of the scan decides instead of both. Never so large that groups run out of tiles. */
 void slab_plan_tiles(const tc_context *context, const tc_grid *grid, slab_plan *plan) {
     uint64_t rows = (uint64_t)plan->bricks_y * plan->slab_layers;
     uint64_t wanted = (grid->scan.tile_bricks + plan->words_x - 1ull) / plan->words_x;
@@ -219,7 +219,7 @@ static bool plan_whole(const tc_context *context, const tc_grid *grid, plan_need
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, plan_needs needs) {
     uint64_t bytes;
     plan_whole(context, grid, needs, &bytes);
-    return (bytes + 2) / 3 * 4;
+    return (bytes + 2) / 3 * 4; /* the mesh has a quarter */
 }
 
 /* The mesh has half of the budget where the grid is not whole, a quarter or more where it is; emission goes on with a

@@ -297,8 +297,8 @@ static tc_status seam_tell(run *r) {
     return status;
 }
 
-/* Numbers the vertices of the layer behind as the next piece does: of that layer only planes are there which decide
- * where the vertices of its first plane lie in their bricks. */
+/* Gives the vertices of the layer behind the numbers of the next piece. This piece has only some planes of that layer:
+ * enough for where vertices of its first plane lie in their bricks, not for how many lie before. */
 static tc_status seam_take(run *r) {
     const uint32_t *seam = r->grid->seams.next;
     brick_state *states = NULL;

@@ -100,7 +100,7 @@ static tc_status tables_provide(interval_run *r) {
     uint8_t *table = calloc(1, INTERVAL_TABLE_BYTES);
     if (!table) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the cases of tetrahedra");
     interval_cases_derive(cases);
-    for (unsigned n = 0; n < INTERVAL_ORDERED; n++)
+    for (unsigned n = 0; n < INTERVAL_TETRAHEDRA; n++)
         ordered_table(cases, tetrahedron_order(n / TETRAHEDRA_PER_CUBE, n % TETRAHEDRA_PER_CUBE), r->grid->mirrored,
                       table + 256 * n,
                       table + INTERVAL_DIGIT_BYTES + (size_t)INTERVAL_ENTRY_BYTES * INTERVAL_CASES * n);

@@ -1,10 +1,10 @@
 /*
- * label_row.cl - a row of cubes as kernel 2 of label maps emits it: words and numbers that its cubes need
+ * label_row_numbers.cl - a row of cubes as kernel 2 of label maps emits it: words and numbers that its cubes need
  *
  * The number of a vertex is where its row begins, what its type has before, and a population count.
  */
-#ifndef LABEL_ROW_CL
-#define LABEL_ROW_CL
+#ifndef LABEL_ROW_NUMBERS_CL
+#define LABEL_ROW_NUMBERS_CL
 
 #include "label_classify.cl"
 
