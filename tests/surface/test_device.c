@@ -32,10 +32,6 @@ static int always_copy; /* whether contexts on the device copy samples and meshe
 static tc_method method;
 static int closed;
 
-/* Subjects share few kinds of kernels, as PoCL takes long to build one: bytes, with normals where the passes of snap
- * are built with them, and floats with normals. */
-static int bytes_have_normals(void) { return method == TC_METHOD_SNAP; }
-
 /* What is wrong with a mesh of the tetrahedra. */
 static const char *walk_fault(const tc_grid_options *grid, double isovalue, const tc_mesh_data *mesh) {
     return method == TC_METHOD_TETRA && !closed ? mesh_fault(grid, isovalue, mesh) : NULL;
@@ -79,8 +75,8 @@ static double subject_value(int kind, const int64_t p[3]) {
     return kind == GENTLE_MISSING ? (double)p[0] - 2.2 * (double)p[1] + 2 * wave_at(p) : wave_at(p);
 }
 
-static void subject_open(int kind, const char *name, tc_type type, const int64_t dims[3], double isovalue,
-                         int normals) {
+/* Few kinds of kernels serve all, as PoCL takes long to build one: bytes without normals, floats with them. */
+static void subject_open(int kind, const char *name, tc_type type, const int64_t dims[3], double isovalue) {
     subject *s = &subjects[kind];
     int64_t n = 0;
     s->name = name;
@@ -89,7 +85,7 @@ static void subject_open(int kind, const char *name, tc_type type, const int64_t
     memcpy(s->grid.dims, dims, sizeof s->grid.dims);
     s->grid.type = type;
     s->how.isovalue = isovalue;
-    s->how.normals = normals;
+    s->how.normals = type == TC_F32;
     s->how.method = method;
     s->how.closed = closed;
     void *samples = malloc((size_t)(dims[0] * dims[1] * dims[2]) * tc_type_bytes(type));
@@ -160,10 +156,8 @@ static void test_work_shapes(int first, int end) {
     }
 }
 
-/* The quick tier tries one of them with snap, whose passes do not divide: PoCL takes long to build them for each. */
 static void test_divisions(void) {
-    const bool one = method == TC_METHOD_SNAP && tier_is_quick();
-    for (int division = one ? 3 : 1; division <= 3; division++) {
+    for (int division = 1; division <= 3; division++) {
         tc_context_options options;
         tc_expert_options expert;
         tc_context *context = NULL;
@@ -417,7 +411,7 @@ static void test_memory_per_sample(void) {
         grid.has_nodata = missing;
         grid.nodata = 3;
         how.isovalue = 250;
-        how.normals = missing || bytes_have_normals();
+        how.normals = missing;
         how.method = method;
         how.closed = closed;
         tc_context *context = context_open(&options);
@@ -445,15 +439,14 @@ int main(int argc, char **argv) {
     tc_context_options options;
     tc_expert_options expert;
     random_state = 1996;
-    subject_open(WAVES, "waves", TC_U8, (int64_t[3]){130, 21, 30}, 127.5, bytes_have_normals());
-    subject_open(MISSING, "waves with missing samples", TC_F32, (int64_t[3]){70, 18, 22}, 0.1, 1);
-    subject_open(EXTREMES, "all floats", TC_F32, (int64_t[3]){20, 19, 18}, 1e-3, 1);
-    subject_open(HALVES, "crossings half way between floats", TC_F32, (int64_t[3]){2, 9, 9}, 0x93p-149, 1);
+    subject_open(WAVES, "waves", TC_U8, (int64_t[3]){130, 21, 30}, 127.5);
+    subject_open(MISSING, "waves with missing samples", TC_F32, (int64_t[3]){70, 18, 22}, 0.1);
+    subject_open(EXTREMES, "all floats", TC_F32, (int64_t[3]){20, 19, 18}, 1e-3);
+    subject_open(HALVES, "crossings half way between floats", TC_F32, (int64_t[3]){2, 9, 9}, 0x93p-149);
     const bool large = method == TC_METHOD_SNAP; /* its windows of slabs are five layers and more */
-    subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, large ? 160 : 46, large ? 297 : 97}, 127.5,
-                 bytes_have_normals());
+    subject_open(GENTLE, "gentle waves", TC_U8, (int64_t[3]){67, large ? 160 : 46, large ? 297 : 97}, 127.5);
     subject_open(GENTLE_MISSING, "gentle waves with missing samples", TC_F32,
-                 (int64_t[3]){65, large ? 92 : 31, large ? 137 : 58}, 0.1, 1);
+                 (int64_t[3]){65, large ? 92 : 31, large ? 137 : 58}, 0.1);
     options_init(&options, &expert);
     expert.always_copy = always_copy;
     tc_context *reference = reference_open(), *device = context_open(&options);
