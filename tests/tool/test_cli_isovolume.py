@@ -133,7 +133,7 @@ class Isovolume(GridCase):
         self.assertEqual(whole["fields"][0]["name"], "samples")
         self.assertTrue(60 < whole["fields"][0]["mean"][0] < 130)
         self.assertIn("samples", read_vtu(self.path("w.vtu")))
-        self.refuses(2, "isovolume", self.volume, "--range", "60,130", "--carry", "x", says="no name, and is called samples")
+        self.refuses(2, "isovolume", self.volume, "--range", "60,130", "--carry", "x", says="no name: leave out --carry, or call it samples")
         volume, integral, _ = measure(read_vtu(out), "x")
         self.assertAlmostEqual(integral, found["fields"][1]["integral"][0], places=4)
         self.assertAlmostEqual(volume, found["volume"], places=4)
