@@ -139,8 +139,10 @@ static int choose(const dataset *d, const char *path, const char *option, const 
         status = fail(STATUS_INPUT, "%s: %sthe array '%.60s' is left out: %s", path,
                       count ? "" : "holds no field that can be read: ", absent->name, absent->reason);
     else if (!count)
-        status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
-                      d->block_count > 1 ? " that every block has" : "");
+        status =
+            fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour%s", path,
+                 d->block_count > 1 ? " that every block has" : "",
+                 strcmp(d->format, "Plot3D") ? "" : "; a Plot3D grid's values are in its solution: name both files");
     else if (is_unknown && count == 1 && !names[0][0])
         status =
             fail(STATUS_USAGE,
