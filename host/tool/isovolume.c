@@ -14,10 +14,12 @@
 #include "input/input.h"
 #include "isovolume/joined_volume.h"
 #include "isovolume/volume_report.h"
+#include "input/statistics.h"
 #include "library_status.h"
 #include "mesh_write.h"
 #include "output.h"
 #include "progress.h"
+#include "shortest.h"
 #include "terminal/notice.h"
 
 #include <stdio.h>
@@ -138,6 +140,21 @@ static int write_volume(volume_job *j, const joined_volume *v, volume_report *r)
     return status;
 }
 
+/* A volume of nothing, with the range of the samples. */
+static int tell_empty(const volume_job *j, const volume_report *r) {
+    double range[2];
+    if (r->tetrahedron_count || !notice_wanted()) return 0;
+    sample_array *arrays = input_samples(&j->data, &j->field);
+    if (!arrays) return STATUS_FAILED;
+    if (statistics_extent(arrays, j->data.block_count, range))
+        notice("range %s: no part of the grid lies within: samples are %s to %s", r->range->text,
+               shortest_number(range[0]).text, shortest_number(range[1]).text);
+    else
+        notice("range %s: no part of the grid lies within: every sample is missing", r->range->text);
+    free(arrays);
+    return 0;
+}
+
 static int finish_volume(volume_job *j, const tc_interval_volume_options *how, const joined_volume *v,
                          volume_report *r) {
     int is_good = 1, status = joined_volume_measure(v, &j->carried, r);
@@ -146,7 +163,6 @@ static int finish_volume(volume_job *j, const tc_interval_volume_options *how, c
     if (r->has_verdict && !r->verified) is_good = 0;
     if (!status && j->o->check) status = check_volume(v, r, &is_good);
     if (!status) status = progress_status();
-    if (!status && !r->tetrahedron_count) notice("range %s: no part of the grid lies within", r->range->text);
     j->failed_count += !status && !is_good;
     return !status && is_good && j->o->output ? write_volume(j, v, r) : status;
 }
@@ -169,6 +185,7 @@ static int make_volume(volume_job *j, volume_report *r) {
     }
     if (!status && !j->o->count) status = finish_volume(j, &how, &v, r);
     joined_volume_release(&v);
+    if (!status) status = tell_empty(j, r);
     return status ? status : progress_status();
 }
 

@@ -237,6 +237,8 @@ FILES = {
     "host/picture/picture": ["test_cli_preview"],
     "host/picture/": ["test_picture"],
     "host/tool/labels/": ["test_cli_labels"],
+    "host/tool/labels.c": ["test_cli_labels"],
+    "host/tool/command_line/name_pattern.c": ["test_cli_labels"],
     "host/tool/extract/surface_simplify.c": ["test_simplified"],
     "host/tool/extract/surface_preview.c": ["test_cli_preview"],
     "host/tool/info/slice_preview.c": ["test_cli_preview"],

@@ -109,7 +109,7 @@ def test_help(script):
     choices = set(re.findall(r"'(--[-\w]+)=?\[.*?\]:\w+:\(([^)]+)\)'", text))
     expect({name for name, _ in choices} >= {"--method", "--type", "--format", "--engine", "--endian", "--blocks"},
            f"options with names to choose from: {choices}")
-    shown = run(TOOL, "extract", "--help").stdout + run(TOOL, "generate", "--help").stdout
+    shown = "".join(run(TOOL, command, "--help").stdout for command in ("extract", "generate", "isovolume"))
     for name, names in choices:
         told = "".join(re.findall(rf"^ +{name} .*\n(?: {{20,}}.*\n)*", shown, re.MULTILINE))
         for one in names.split():

@@ -85,6 +85,9 @@ class Blocks(GridCase):
             self.assertEqual((vertices, faces), (whole, whole_faces))
         self.assertEqual(len([name for name in self.files() if "_b" in name]), 6)
 
+    def test_grid_alone(self):
+        self.refuses(4, "extract", self.inputs[0], "--iso", "1", says="values are in its solution: name both files")
+
     def test_separate_has_the_figures_of_joined(self):
         for more in ([], ["--drop-degenerate"], ["--soup"], ["--normals", "--carry", "momentum-x"]):
             extract = ["extract", *self.inputs, "--field", "density", "--iso", "0.5", "--engine", "reference", "--check",

@@ -133,7 +133,7 @@ class Isovolume(GridCase):
         self.assertEqual(whole["fields"][0]["name"], "samples")
         self.assertTrue(60 < whole["fields"][0]["mean"][0] < 130)
         self.assertIn("samples", read_vtu(self.path("w.vtu")))
-        self.refuses(2, "isovolume", self.volume, "--range", "60,130", "--carry", "x", says="no name, and is called samples")
+        self.refuses(2, "isovolume", self.volume, "--range", "60,130", "--carry", "x", says="no name: leave out --carry, or call it samples")
         volume, integral, _ = measure(read_vtu(out), "x")
         self.assertAlmostEqual(integral, found["fields"][1]["integral"][0], places=4)
         self.assertAlmostEqual(volume, found["volume"], places=4)
@@ -152,7 +152,9 @@ class Isovolume(GridCase):
             self.refuses(2, "isovolume", self.volume, *how, says=says)
         self.refuses(4, "isovolume", self.path("absent.nrrd"), "--range", "1,2", "-o", out)
         empty = self.expect(0, "isovolume", self.volume, "--range", "1000,2000", "-o", out, *self.engine)
-        self.assertRegex(empty.stderr, "no part of the grid lies within")
+        self.assertRegex(empty.stderr, r"no part of the grid lies within: samples are [\d.]+ to [\d.]+$")
+        counted = self.report(self.volume, "--range", "1000,2000", "--count")
+        self.assertRegex(counted["notices"][0], "lies within: samples are")
         self.assertEqual(len(read_vtu(out)["Points"]), 0)
 
     def test_unstructured(self):

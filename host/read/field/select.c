@@ -139,12 +139,15 @@ static int choose(const dataset *d, const char *path, const char *option, const 
         status = fail(STATUS_INPUT, "%s: %sthe array '%.60s' is left out: %s", path,
                       count ? "" : "holds no field that can be read: ", absent->name, absent->reason);
     else if (!count)
-        status = fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour", path,
-                      d->block_count > 1 ? " that every block has" : "");
+        status =
+            fail(STATUS_INPUT, "%s: holds no field%s: there is nothing to contour%s", path,
+                 d->block_count > 1 ? " that every block has" : "",
+                 strcmp(d->format, "Plot3D") ? "" : "; a Plot3D grid's values are in its solution: name both files");
     else if (is_unknown && count == 1 && !names[0][0])
-        status = fail(STATUS_USAGE,
-                      "%s: no field is named '%s': its only one has no name, and is called " FIELD_WITHOUT_NAME, path,
-                      wanted);
+        status =
+            fail(STATUS_USAGE,
+                 "%s: no field is named '%s': its only one has no name: leave out %.*s, or call it " FIELD_WITHOUT_NAME,
+                 path, wanted, (int)strcspn(option, " "), option);
     else if (is_unknown)
         status = fail(STATUS_USAGE, "%s: no field%s is named '%s'; %s one of: %s", path,
                       d->block_count > 1 ? " of every block" : "", wanted, option, list);

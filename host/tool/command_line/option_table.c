@@ -59,8 +59,6 @@ const option option_table[] = {
     {"--output", "-o", "FILE", COMMAND_ISOVOLUME, VALUE_TEXT, IN(output), NULL,
      "unstructured grid to write: .vtu (left out: only the report); % in FILE\n"
      "stands for the range as typed, %% for a percent sign; - is standard output"},
-    {"--format", NULL, "F", COMMAND_ISOVOLUME | COMMAND_TETRAHEDRALIZE, VALUE_FORMAT, IN(format), complex_choices,
-     "vtu, whatever FILE ends in"},
     {"--output", "-o", "FILE", COMMAND_EXTRACT, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl, .obj, .off, .glb, .npz, .vtkhdf or .html,\n"
      "a page that shows it in a browser (left out: only the report); % in FILE\n"
@@ -90,6 +88,8 @@ const option option_table[] = {
      "standard output"},
     {"--output", "-o", "FILE", COMMAND_TETRAHEDRALIZE, VALUE_TEXT, IN(output), NULL,
      "unstructured grid to write: .vtu; - is standard output"},
+    {"--format", NULL, "F", COMMAND_ISOVOLUME | COMMAND_TETRAHEDRALIZE, VALUE_FORMAT, IN(format), complex_choices,
+     "vtu, whatever FILE ends in"},
     {"--output", "-o", "FILE", COMMAND_JOIN, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .stl or .vtkhdf"},
     {"--format", NULL, "F", COMMAND_JOIN, VALUE_FORMAT, IN(format), pieces_choices,
@@ -115,7 +115,8 @@ const option option_table[] = {
      "averaged to the points between them; point:NAME and cell:NAME choose where\n"
      "both have a field of that name (else that of the points)"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_ISOVOLUME, VALUE_TEXT, IN(carry), NULL,
-     "fields to have at the vertices; their means and integrals are reported"},
+     "fields to have at the vertices; their means and integrals are reported;\n"
+     "samples: the field of a file that names none"},
     {"--carry", NULL, "NAME[,NAME...]", COMMAND_EXTRACT, VALUE_TEXT, IN(carry), NULL,
      "other fields, interpolated onto the vertices (PLY, VTP, NPZ, VTKHDF); a\n"
      "name that the file needs itself, as Normals, gets _ at its end"},
