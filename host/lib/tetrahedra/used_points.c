@@ -55,8 +55,8 @@ static void shares_search(void *shared) {
 
 tc_status used_points_provide(tc_grid *grid) {
     complex_grid *c = grid->complex;
-    search s = {.grid = grid, .c = c, .has_gaps = complex_has_gaps(grid)};
     if (c->used_points) return TC_OK;
+    search s = {.grid = grid, .c = c, .has_gaps = complex_has_gaps(grid)};
     uint64_t *words = calloc((size_t)point_word_count(c) + 1, sizeof *words);
     if (!words) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the points that tetrahedra have");
     s.used = (_Atomic uint64_t *)words;
