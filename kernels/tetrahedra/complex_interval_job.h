@@ -7,8 +7,7 @@
  * An edge in the list of edges is two points, one on either side of the bound: the lower first where the low bound
  * crosses it, the higher first where the high one does. Where a work-item has a tile to itself, the list has most edges
  * of the tile once, from the tile's first slot on, and slots name their edges: in 16 bits, so that a tile has no more
- * than VOLUME_TILE_MOST clusters. Else edge n is that of slot n, and
- * those that do not exist are two zeros.
+ * than VOLUME_TILE_MOST clusters. Else edge n is that of slot n, and those that do not exist are two zeros.
  */
 #ifndef COMPLEX_INTERVAL_JOB_H
 #define COMPLEX_INTERVAL_JOB_H
@@ -32,11 +31,10 @@ typedef struct volume_points {
 
 /* The state buffer: its head, then the tiles of three scans, of the same tiles of clusters. */
 enum {
-    VOLUME_TICKETS, /* one for each kernel */
-    VOLUME_INVALID =
-        VOLUME_TICKETS + VOLUME_KERNELS, /* not 0: a tetrahedron has a point number that is not below point_count */
-    VOLUME_FULL,                         /* not 0: the table of edges is too small */
-    VOLUME_SAMPLES,                      /* totals */
+    VOLUME_TICKETS,                                   /* one for each kernel */
+    VOLUME_INVALID = VOLUME_TICKETS + VOLUME_KERNELS, /* not 0: a point number is not below point_count */
+    VOLUME_FULL,                                      /* not 0: the table of edges is too small */
+    VOLUME_SAMPLES,                                   /* totals */
     VOLUME_TETRAHEDRA,
     VOLUME_CUTS,
     VOLUME_FOURS, /* cuts with four crossed edges */
