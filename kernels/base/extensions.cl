@@ -113,6 +113,19 @@ inline_always uint items_keep(uint16 items, ulong mask, uint *out) {
 
 #endif
 
+/* Bit n: element n of the mask is set. */
+inline_always uint mask8(int8 mask) {
+#ifdef MASK_REGISTERS
+    return (uint)__builtin_ia32_cvtd2mask256(mask);
+#elif defined(__AVX2__)
+    return (uint)__builtin_ia32_movmskps256(as_float8(mask));
+#else
+    const int8 bit = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    const int4 four = bit.lo | bit.hi;
+    return (uint)(four.x | four.y | four.z | four.w);
+#endif
+}
+
 #ifdef WORD_SHUFFLES
 
 /* Bit n: the highest bit of element n. */

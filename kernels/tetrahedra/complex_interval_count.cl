@@ -1,10 +1,9 @@
 /*
  * complex_interval_count.cl - kernel complex_interval_count: which points are vertices, how many tetrahedra each
- * cluster gives, and prefix sums of both
+ * cluster gives, where both bounds cut it, and prefix sums of these
  *
- * Words of points and clusters are counted together: item n is word n, of 64 points, and cluster n. A cluster that lies
- * on one side of a bound, by its range, has no patterns of it; of others kernel 1 has found them. So samples are read
- * again at points only, and where a bound is lacking and samples are missing.
+ * Words of points and clusters are counted together: item n is word n, of 64 points, and cluster n. A first visit reads
+ * the samples of all clusters and keeps their ranges; later ones only those of clusters that a bound may pass through.
  */
 #ifndef COMPLEX_INTERVAL_COUNT_CL
 #define COMPLEX_INTERVAL_COUNT_CL
@@ -14,17 +13,21 @@
 
 /* What the kernel reads and writes. */
 typedef struct volume_count {
-    const complex_job *low, *high; /* the jobs of the two surfaces */
+    const complex_job *low, *high; /* of the two bounds */
     const volume_job *v;
     complex_arrays in;
-    global const brick_range *ranges;
+    global brick_range *ranges;
     global const ulong *used; /* a bit for each point that a present tetrahedron has */
     global const uchar *cases;
-    global const cluster_state *low_clusters, *high_clusters;
     global volume_cluster *clusters;
     global volume_points *points;
     global uint *head;
 } volume_count;
+
+/* The tiles of a scan. */
+inline_always global uint *scan_tiles(global uint *state, const volume_job *v, uint scan) {
+    return state + VOLUME_HEAD_WORDS + TILE_WORDS * scan * v->tile_count;
+}
 
 inline_always bool not_below(BITS bits, const volume_count *a) {
     return !a->v->has_low || bits_inside(bits, &a->low->test);
@@ -33,6 +36,8 @@ inline_always bool not_below(BITS bits, const volume_count *a) {
 inline_always bool is_above(BITS bits, const volume_count *a) {
     return a->v->has_high && bits_inside(bits, &a->high->test);
 }
+
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 #if WORK_ITEMS == 1
 
@@ -63,34 +68,101 @@ inline_always ulong points_within(uint n, const volume_count *a) {
     return within;
 }
 
+/* --------------------------------------------------------------------------------------------------------- clusters */
+
 /* The bits of all points of a cluster's tetrahedra. */
 inline_always ulong cluster_points(uint n, const volume_count *a) { return ~0ul >> (64 - 4 * cluster_size(a->low, n)); }
 
-/* The same of those without missing samples, by reading all of them. */
-inline_always ulong cluster_present(uint n, const volume_count *a) {
-    global const uint *points = a->in.tetrahedra + (ulong)CLUSTER_POINTS * n;
-    const uint count = 4 * cluster_size(a->low, n);
-    ulong missing = 0;
-    for (uint m = 0; m < count; m++) missing |= (ulong)bits_missing(a->in.samples[points[m]], &a->low->test) << m;
-    return cluster_points(n, a) & ~(nibbles_any(missing) * 15);
+/* What has been read of a cluster: which of its points are inside by either bound, or missing; the range of its
+ * samples. */
+typedef struct cluster_signs {
+    ulong low, high, missing;
+    brick_range range;
+} cluster_signs;
+
+#if WORK_ITEMS == 1
+
+inline_always cluster_signs signs_read(uint n, const volume_count *a) {
+    cluster_signs s = {0, 0, 0, {0, 0}};
+    BITS16 least = (BITS) ~(BITS)0, most = 0;
+    loop_unrolled for (uint m = 0; m < CLUSTER_POINTS / 16; m++) {
+        const BITS16 bits = cluster_samples(a->low, n, m, a->in);
+        s.low |= (ulong)mask_pack(inside_mask(bits, &a->low->test)) << (16 * m);
+        s.high |= (ulong)mask_pack(inside_mask(bits, &a->high->test)) << (16 * m);
+#if FLOATING
+        s.missing |= (ulong)mask_pack(missing_mask(bits, &a->low->test)) << (16 * m);
+#endif
+        if (a->low->ranges_known) continue;
+        const BITS16 keys = keys16(bits, &a->low->test);
+        least = min(least, keys), most = max(most, keys);
+    }
+    if (!a->low->ranges_known) s.range = keys_range(least, most);
+    return s;
 }
 
-/* Where its points are. A surface that may pass through the cluster has told by its patterns, which are 0 of tetrahedra
- * with missing samples. */
-inline_always volume_cluster cluster_sides(uint n, const volume_count *a) {
-    volume_cluster found = {0, 0, 0, 0};
-    uint low = SIGN_INSIDE, high = SIGN_OUTSIDE;
-    if (a->v->has_low) low = range_sign(&a->low->test, a->ranges[n]);
-    if (a->v->has_high) high = range_sign(&a->high->test, a->ranges[n]);
-    if (low == SIGN_OUTSIDE || high == SIGN_INSIDE) return found;
-    if (high == SIGN_MIXED) found.high = a->high_clusters[n].patterns;
-    if (low == SIGN_MIXED)
-        found.low = a->low_clusters[n].patterns;
-    else if (a->low->ranges_known && range_finite(a->ranges[n]))
-        found.low = cluster_points(n, a);
-    else
-        found.low = cluster_present(n, a);
+#else
+
+inline_always cluster_signs signs_read(uint n, const volume_count *a) {
+    global const uint *points = a->in.tetrahedra + (ulong)CLUSTER_POINTS * n;
+    const uint count = 4 * cluster_size(a->low, n);
+    cluster_signs s = {0, 0, 0, {0, 0}};
+    BITS least = (BITS) ~(BITS)0, most = 0;
+    for (uint m = 0; m < count; m++) {
+        const BITS bits = a->in.samples[points[m]], key = key_of(bits, &a->low->test);
+        s.low |= (ulong)bits_inside(bits, &a->low->test) << m;
+        s.high |= (ulong)bits_inside(bits, &a->high->test) << m;
+#if FLOATING
+        s.missing |= (ulong)bits_missing(bits, &a->low->test) << m;
+#endif
+        least = min(least, key), most = max(most, key);
+    }
+    s.range.low = key_upper(least), s.range.high = key_upper(most);
+    return s;
+}
+
+#endif
+
+inline_always volume_cluster cluster_of(uint n, const cluster_signs *s, const volume_count *a) {
+    const ulong present = cluster_points(n, a) & ~(nibbles_any(s->missing) * 15);
+    const volume_cluster found = {(a->v->has_low ? s->low : ~0ul) & present, (a->v->has_high ? s->high : 0) & present,
+                                  0, 0};
     return found;
+}
+
+/* The side of either bound that all of a cluster's samples are on, by their range. */
+inline_always uint low_side(uint n, const volume_count *a) {
+    return a->v->has_low ? range_sign(&a->low->test, a->ranges[n]) : SIGN_INSIDE;
+}
+
+inline_always uint high_side(uint n, const volume_count *a) {
+    return a->v->has_high ? range_sign(&a->high->test, a->ranges[n]) : SIGN_OUTSIDE;
+}
+
+/* Checks the cluster's point numbers, and keeps its range. A recount cannot use ranges, as another group may not have
+ * stored them yet. */
+inline_always volume_cluster cluster_first(uint n, const volume_count *a, bool recount) {
+    const volume_cluster none = {0, 0, 0, 0};
+    if (!cluster_valid(a->low, n, a->in)) {
+        atomic_or(&a->head[VOLUME_INVALID], 1u);
+        return none;
+    }
+    const cluster_signs s = signs_read(n, a);
+    if (!recount) a->ranges[n] = s.range;
+    return cluster_of(n, &s, a);
+}
+
+/* Where a cluster's points are. */
+inline_always volume_cluster cluster_sides(uint n, const volume_count *a, bool recount) {
+    volume_cluster found = {0, 0, 0, 0};
+    if (!a->low->ranges_known) return cluster_first(n, a, recount);
+    const uint low = low_side(n, a), high = high_side(n, a);
+    if (low == SIGN_OUTSIDE || high == SIGN_INSIDE) return found;
+    if (low == SIGN_INSIDE && high == SIGN_OUTSIDE && range_finite(a->ranges[n])) {
+        found.low = cluster_points(n, a);
+        return found;
+    }
+    const cluster_signs s = signs_read(n, a);
+    return cluster_of(n, &s, a);
 }
 
 /* The pattern of tetrahedron m of a cluster, as the table of cases has it. */
@@ -98,82 +170,141 @@ inline_always uint pattern_of(const volume_cluster *c, uint m) {
     return (uint)(c->low >> 4 * m & 15) << 4 | (uint)(c->high >> 4 * m & 15);
 }
 
-/* Tetrahedra with a point that is above and below: the caller has changed them or samples in between. They are left
- * out. The lowest bit of four for each, here and in what follows. */
-inline_always ulong cluster_changed(const volume_cluster *c) { return nibbles_any(c->high & ~c->low); }
+/* The tetrahedra of a cluster that lie within in part. The lowest bit of four for each, here and in what follows. */
+inline_always ulong cluster_reached(const volume_cluster *c) { return nibbles_any(c->low) & nibbles_any(~c->high); }
 
-/* The tetrahedra of a cluster that lie within in part. */
-inline_always ulong cluster_reached(const volume_cluster *c) {
-    return nibbles_any(c->low) & nibbles_any(~c->high) & ~cluster_changed(c);
+/* Tetrahedra of x that have one point, two or three points in it. */
+typedef struct point_counts {
+    uint ones, twos, threes;
+} point_counts;
+
+inline_always point_counts counts_of(ulong x) {
+    const ulong mixed = nibbles_mixed(x), odd = x ^ x >> 1, is_odd = (odd ^ odd >> 2) & mixed;
+    const ulong pair = x & x >> 1, most = (pair | pair >> 2) & is_odd; /* two neighbours of four, so three */
+    const point_counts counts = {(uint)popcount(is_odd & ~most), (uint)popcount(mixed & ~is_odd), (uint)popcount(most)};
+    return counts;
 }
 
+/* Few clusters are cut by both bounds, and how many tetrahedra one gives depends only on how many of its points are not
+ * below, and how many above. */
 inline_always uint cluster_tetrahedra(const volume_cluster *c, global const uchar *cases) {
+    const bool low_cuts = nibbles_mixed(c->low) != 0;
     uint sum = 0;
-    if (!nibbles_mixed(c->low) && !c->high) return (uint)popcount(nibbles_any(c->low));
-    for (ulong rest = cluster_reached(c); rest; rest &= rest - 1) sum += cases[pattern_of(c, lowest_bit(rest) / 4)];
-    return sum;
+    if (!low_cuts && !c->high) return (uint)popcount(nibbles_any(c->low));
+    if (low_cuts && c->high) {
+        for (ulong rest = cluster_reached(c); rest; rest &= rest - 1) sum += cases[pattern_of(c, lowest_bit(rest) / 4)];
+        return sum;
+    }
+    const point_counts n = counts_of(low_cuts ? c->low : c->high);
+    const ulong whole = nibbles_any(c->low) & ~nibbles_mixed(c->low) & ~nibbles_any(c->high);
+    const uint first = low_cuts ? 0x10 : 0xf1, second = low_cuts ? 0x30 : 0xf3, third = low_cuts ? 0x70 : 0xf7;
+    return (uint)popcount(whole) + n.ones * cases[first] + n.twos * cases[second] + n.threes * cases[third];
 }
 
-/* Vertices at points and tetrahedra of a tile; recount: nothing is stored. */
-inline_always uint2 volume_tile_count(tile_tools tools, uint number, const volume_count *a, bool recount) {
+/* Of a bound: the tetrahedra that it cuts, and those of them with four crossed edges, as two points are on either
+ * side. */
+inline_always uint2 cluster_cuts(const volume_cluster *c) {
+    const point_counts low = counts_of(c->low), high = counts_of(c->high);
+    return (uint2)(low.ones + low.twos + low.threes + high.ones + high.twos + high.threes, low.twos + high.twos);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ tiles */
+
+#if WORK_ITEMS == 1
+
+/* Clusters are prefetched in two stages: their tetrahedra so many clusters before, samples half as many before. */
+enum { COUNT_AHEAD = 16 };
+
+inline_always bool is_read(uint n, const volume_count *a) {
+    return n < a->low->cluster_count && (low_side(n, a) == SIGN_MIXED || high_side(n, a) == SIGN_MIXED);
+}
+
+inline_always void count_prefetch(uint n, const volume_count *a) {
+    if (!a->low->ranges_known) return;
+    if (is_read(n + COUNT_AHEAD, a)) points_prefetch(a->low, n + COUNT_AHEAD, a->in);
+    if (is_read(n + COUNT_AHEAD / 2, a)) cluster_prefetch(a->low, n + COUNT_AHEAD / 2, a->in);
+}
+
+#else
+#define count_prefetch(n, a)
+#endif
+
+/* The sums of a tile; recount: nothing is stored. */
+inline_always uint4 volume_tile_count(tile_scan scan, uint number, const volume_count *a, bool recount) {
     const uint items = 1u << a->v->tile_shift;
-    uint2 running = 0;
+    uint2 volume = 0, cuts = 0;
     for (uint start = 0; start < items; start += WORK_ITEMS) {
         const uint m = start + (uint)get_local_id(0), n = number * items + m;
         const bool has_points = m < items && n < a->v->word_count, has_cluster = m < items && n < a->low->cluster_count;
         volume_points points = {0, 0, 0};
         volume_cluster cluster = {0, 0, 0, 0};
+        count_prefetch(n, a);
         if (has_points) points.within = points_within(n, a);
-        if (has_cluster) cluster = cluster_sides(n, a);
+        if (has_cluster) cluster = cluster_sides(n, a, recount);
         const uint2 own = (uint2)((uint)popcount(points.within), cluster_tetrahedra(&cluster, a->cases));
-        const uint2 before = group_prefix(own, &running, tools.scan.sums);
+        const uint2 before = group_prefix(own, &volume, scan.sums);
         points.before = before.x, cluster.tetrahedra = before.y;
+        cluster.cuts = group_prefix(cluster_cuts(&cluster), &cuts, scan.sums).x;
         if (has_points && !recount) a->points[n] = points;
         if (has_cluster && !recount) a->clusters[n] = cluster;
     }
-    return running;
+    return (uint4)(volume, cuts);
 }
 
-inline_always void volume_tile_settle(tile_tools tools, uint number, const volume_count *a) {
+/* The scan of a tile's first two sums, or of its other two. */
+inline_always tile_scan scan_of(tile_scan scan, const volume_count *a, uint which) {
+    scan.tiles = scan_tiles(a->head, a->v, which);
+    return scan;
+}
+
+inline_always void volume_tile_post(tile_scan scan, uint number, const volume_count *a, uint4 sums) {
+    tile_post(scan_of(scan, a, SCAN_VOLUME), number, sums.xy);
+    tile_post(scan_of(scan, a, SCAN_CUTS), number, sums.zw);
+}
+
+inline_always void volume_tile_settle(tile_scan scan, uint number, const volume_count *a, uint which) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(tools.scan, number, look, &unposted)) {
-        tile_post(tools.scan, unposted, volume_tile_count(tools, unposted, a, true));
+    while (!tile_settle(scan_of(scan, a, which), number, look, &unposted)) {
+        volume_tile_post(scan, unposted, a, volume_tile_count(scan, unposted, a, true));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == a->v->tile_count) {
-        a->head[VOLUME_SAMPLES] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
-        a->head[VOLUME_TETRAHEDRA] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
-    }
+    if (get_local_id(0) != 0 || number + 1 != a->v->tile_count) return;
+    global const uint *tiles = scan_tiles(a->head, a->v, which);
+    a->head[which == SCAN_VOLUME ? VOLUME_SAMPLES : VOLUME_CUTS] = tile_before(tiles, number + 1, TILE_VERTICES);
+    a->head[which == SCAN_VOLUME ? VOLUME_TETRAHEDRA : VOLUME_FOURS] = tile_before(tiles, number + 1, TILE_TRIANGLES);
+}
+
+inline_always void volume_tile_settle_both(tile_scan scan, uint number, const volume_count *a) {
+    volume_tile_settle(scan, number, a, SCAN_VOLUME);
+    volume_tile_settle(scan, number, a, SCAN_CUTS);
 }
 
 /* state: head and tiles, cleared. */
 kernel void complex_interval_count(complex_job low, complex_job high, volume_job v, global const BITS *samples,
-                                   global const uint *tetrahedra, global const brick_range *ranges,
-                                   global const ulong *used, global const uchar *cases,
-                                   global const cluster_state *low_clusters, global const cluster_state *high_clusters,
-                                   global volume_cluster *clusters, global volume_points *points, global uint *state) {
+                                   global const uint *tetrahedra, global brick_range *ranges, global const ulong *used,
+                                   global const uchar *cases, global volume_cluster *clusters,
+                                   global volume_points *points, global uint *state) {
     local uint shared[4];
     local uint2 sums[WORK_ITEMS + 1];
-    tile_tools tools = {&low, {low.spin_limit, state + VOLUME_HEAD_WORDS, shared, sums}};
-    const volume_count a = {
-        &low,          &high,    &v,     {samples + low.sample_offset, tetrahedra + low.tetrahedron_offset},
-        ranges,        used,     cases,  low_clusters,
-        high_clusters, clusters, points, state};
+    const tile_scan scan = {low.spin_limit, scan_tiles(state, &v, SCAN_VOLUME), shared, sums};
+    const volume_count a = {&low,   &high, &v,    {samples + low.sample_offset, tetrahedra + low.tetrahedron_offset},
+                            ranges, used,  cases, clusters,
+                            points, state};
     own_tiles own = {NO_TILE, NO_TILE};
     uint number = 0;
     while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKET_COUNT], shared);
+        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_COUNT], shared);
         if (number < v.tile_count) {
-            tile_post(tools.scan, number, volume_tile_count(tools, number, &a, false));
+            volume_tile_post(scan, number, &a, volume_tile_count(scan, number, &a, false));
             if (SETTLES_LATER)
-                own_append(&own, number, tools.scan.tiles);
+                own_append(&own, number, scan.tiles);
             else
-                volume_tile_settle(tools, number, &a);
+                volume_tile_settle_both(scan, number, &a);
         }
     }
-    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tools.scan.tiles[TILE_WORDS * n + TILE_NEXT])
-        volume_tile_settle(tools, n, &a);
+    for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = scan.tiles[TILE_WORDS * n + TILE_NEXT])
+        volume_tile_settle_both(scan, n, &a);
 }
 
 #endif

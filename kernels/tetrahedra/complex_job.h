@@ -98,9 +98,22 @@ enum {
 };
 
 enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, COMPLEX_KERNELS };
-enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS };           /* of cells: after joining, before it */
-enum { KERNEL_CAPS_COUNT = WHOLE_KERNELS, KERNEL_CAPS_EMIT, CLOSED_KERNELS }; /* of closed surfaces: the last two */
-enum { KERNEL_VOLUME_COUNT = CLOSED_KERNELS, KERNEL_VOLUME_CROSSINGS, KERNEL_VOLUME_EMIT, ALL_COMPLEX_KERNELS };
+enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS }; /* of cells: after joining, before it */
+enum {
+    KERNEL_CAPS_COUNT = WHOLE_KERNELS,
+    KERNEL_CAPS_EMIT,
+    ALL_COMPLEX_KERNELS
+}; /* of closed surfaces: the last two */
+/* Of interval volumes: all of theirs. */
+enum {
+    KERNEL_VOLUME_COUNT,
+    KERNEL_VOLUME_LIST,
+    KERNEL_VOLUME_JOIN,
+    KERNEL_VOLUME_NUMBER,
+    KERNEL_VOLUME_CROSSINGS,
+    KERNEL_VOLUME_EMIT,
+    VOLUME_KERNELS
+};
 enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT }; /* the others have their own numbers */
 
 #define EDGE_NONE 0xffffffffu

@@ -56,9 +56,10 @@ typedef struct complex_buffers {
     device_buffer cap_numbers, cap_firsts, cap_tiles; /* closed surfaces */
 } complex_buffers;
 
-/* What an interval volume of a complex takes beside its two surfaces: what kernel 1 finds, the volume. */
+/* What an interval volume of a complex takes: what is counted, crossed edges, numbers of vertices, the volume. */
 typedef struct volume_buffers {
     device_buffer clusters, points, used, state, cases;
+    device_buffer edges, slots, entries, table, numbers;
     device_buffer positions, tetrahedra;
 } volume_buffers;
 
@@ -86,7 +87,6 @@ typedef struct workspace {
     device_buffer cells; /* grids with missing samples */
     device_buffer state, scratch;
     complex_buffers complex;
-    complex_buffers complex_high; /* the surface of an interval volume's high bound */
     volume_buffers volume;
     label_buffers labels;
     interval_buffers interval;

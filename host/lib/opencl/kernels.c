@@ -32,14 +32,19 @@ tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out) {
     return status;
 }
 
+static tc_status volume_kernels_get(tc_context *context, kernel_kind kind, sized_kernel *out) {
+    const program *p;
+    tc_status status = vetted_program_get(context, PROGRAM_COMPLEX_INTERVAL, kind, &p);
+    for (int n = 0; n < VOLUME_KERNELS && !status; n++) out[n] = kernel_of(p, n);
+    return status;
+}
+
 tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[ALL_COMPLEX_KERNELS]) {
     const bool whole = kind.method == TC_METHOD_HYBRID;
     const program *p;
+    if (kind.interval) return volume_kernels_get(context, kind, out);
     tc_status status = vetted_program_get(context, whole ? PROGRAM_WHOLE : PROGRAM_COMPLEX, kind, &p);
     for (int n = 0; n < (whole ? WHOLE_KERNELS : COMPLEX_KERNELS) && !status; n++) out[n] = kernel_of(p, n);
-    if (!status && kind.interval) status = vetted_program_get(context, PROGRAM_COMPLEX_INTERVAL, kind, &p);
-    for (int n = KERNEL_VOLUME_COUNT; n <= KERNEL_VOLUME_EMIT && kind.interval && !status; n++)
-        out[n] = kernel_of(p, n - KERNEL_VOLUME_COUNT);
     if (status || !kind.closed) return status;
     status = vetted_program_get(context, PROGRAM_COMPLEX_CAPS, kind, &p);
     for (int n = KERNEL_CAPS_COUNT; n <= KERNEL_CAPS_EMIT && !status; n++) out[n] = kernel_of(p, n - KERNEL_CAPS_COUNT);

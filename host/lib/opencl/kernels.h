@@ -24,7 +24,8 @@ typedef struct kernels {
 /* Of structured grids: kernel 1, and kernel 2 too where the kind emits; of interval volumes their own instead. */
 tc_status kernels_get(tc_context *context, kernel_kind kind, kernels *out);
 
-/* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID. */
+/* Of complexes: all of them, in the order of complex_job.h; of cells that are kept whole by TC_METHOD_HYBRID; of
+ * interval volumes their own instead. */
 tc_status complex_kernels_get(tc_context *context, kernel_kind kind, sized_kernel out[ALL_COMPLEX_KERNELS]);
 
 /* Of label maps: kernel 1 and kernel 2. */

@@ -136,7 +136,8 @@ static const program_sources programs[PROGRAM_COUNT] = {
         {{"caps_count", "caps_emit"},
          {[VARIANT_ALONE] = kernel_complex_caps_alone, [VARIANT_GROUPS] = kernel_complex_caps_groups}},
     [PROGRAM_COMPLEX_INTERVAL] =
-        {{"complex_interval_count", "complex_interval_crossings", "complex_interval_emit"},
+        {{"complex_interval_count", "complex_interval_list", "complex_interval_join", "complex_interval_number",
+          "complex_interval_crossings", "complex_interval_emit"},
          {[VARIANT_ALONE] = kernel_complex_interval_alone, [VARIANT_GROUPS] = kernel_complex_interval_groups}},
     [PROGRAM_LABELS] = {{"label_classify", "label_emit"},
                         {[VARIANT_ALONE] = kernel_labels_alone, [VARIANT_GROUPS] = kernel_labels_groups}},

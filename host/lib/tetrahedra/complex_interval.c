@@ -16,182 +16,227 @@ static tc_status table_provide(volume_run *v) {
     if (v->work->cases.memory) return TC_OK;
     uint8_t *table = volume_table_make();
     if (!table) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the cases of tetrahedra");
-    tc_status status = surface_table_provide(&v->bounds[BOUND_LOW], &v->work->cases, table, VOLUME_TABLE_BYTES);
+    tc_status status = surface_table_provide(&v->run, &v->work->cases, table, VOLUME_TABLE_BYTES);
     free(table);
     return status;
 }
 
-static tc_status bound_begin(volume_run *v, int bound) {
-    complex_grid *c = v->grid->complex;
-    workspace *work = &v->context->work;
-    tc_extract_options surface;
-    tc_extract_options_init(&surface);
-    if (v->exists[bound]) surface.isovalue = bound == BOUND_LOW ? v->options->low : v->options->high;
-    v->bounds[bound] = (complex_run){.grid = v->grid,
-                                     .complex = c,
-                                     .part = &c->part,
-                                     .context = v->context,
-                                     .work = bound == BOUND_LOW ? &work->complex : &work->complex_high,
-                                     .interval = true,
-                                     .is_cut = v->is_cut};
-    return complex_run_open(&v->bounds[bound], &surface);
+/* The test of a bound; of one that there is not, any. */
+static isovalue_test test_of(const volume_run *v, int bound) {
+    const double value = bound == BOUND_LOW ? v->options->low : v->options->high;
+    const double isovalue = v->exists[bound] ? value : 0;
+    return isovalue_test_of(inside_range_of(v->grid->type, isovalue), isovalue);
 }
 
 tc_status volume_begin(volume_run *v, tc_grid *grid, const tc_interval_volume_options *options,
                        const bool exists[BOUND_COUNT], bool is_cut) {
+    complex_grid *c = grid->complex;
+    tc_context *context = grid->context;
+    tc_extract_options surface;
+    tc_extract_options_init(&surface);
     *v = (volume_run){.grid = grid,
-                      .context = grid->context,
+                      .context = context,
                       .options = options,
                       .exists = {exists[BOUND_LOW], exists[BOUND_HIGH]},
                       .is_cut = is_cut,
-                      .work = &grid->context->work.volume};
-    tc_status status = TC_OK;
-    for (int n = 0; n < BOUND_COUNT && !status; n++) status = bound_begin(v, n);
-    v->start_ms = clock_ms();
+                      .run = {.grid = grid,
+                              .complex = c,
+                              .part = &c->part,
+                              .context = context,
+                              .work = &context->work.complex,
+                              .interval = true,
+                              .is_cut = is_cut},
+                      .work = &context->work.volume};
+    tc_status status = complex_run_open(&v->run, &surface);
+    for (int n = 0; n < BOUND_COUNT; n++) v->tests[n] = test_of(v, n);
+    v->start_ms = v->run.start_ms;
     return status ? status : table_provide(v);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ count */
 
-tc_status volume_bound_classify(volume_run *v, int bound) {
-    complex_run *r = &v->bounds[bound];
-    r->job = complex_job_of(r, complex_cluster_count(r->part->tetrahedron_count));
-    r->head[HEAD_VERTICES] = 0;
-    if (!v->exists[bound]) return TC_OK;
-    tc_status status = surface_classify(r);
-    return !status && r->job.active_count ? surface_number(r) : status;
-}
-
-uint32_t volume_bound_vertices(const volume_run *v, int bound) { return v->bounds[bound].head[HEAD_VERTICES]; }
-
 /* Sizes of the kernels' work; points of a slab keep their numbers. */
-static void job_describe(volume_run *v) {
-    const complex_job *low = &v->bounds[BOUND_LOW].job;
+static void jobs_describe(volume_run *v) {
     const uint64_t words = v->is_cut ? 0 : point_word_count(v->grid->complex);
-    const uint64_t items = words > low->cluster_count ? words : low->cluster_count;
+    const uint32_t clusters = complex_cluster_count(v->run.part->tetrahedron_count);
+    const uint64_t items = words > clusters ? words : clusters;
     v->job = (volume_job){.has_low = v->exists[BOUND_LOW], .has_high = v->exists[BOUND_HIGH]};
+    for (int n = 0; n < BOUND_COUNT; n++) {
+        v->jobs[n] = complex_job_of(&v->run, clusters);
+        v->jobs[n].test = v->tests[n];
+    }
     v->job.word_count = (uint32_t)words;
-    while (UINT32_C(1) << v->job.tile_shift < low->tile_clusters) v->job.tile_shift++;
+    v->job.tile_shift = complex_interval_tile_shift(v->grid);
     v->job.tile_count = (uint32_t)((items + (UINT64_C(1) << v->job.tile_shift) - 1) >> v->job.tile_shift);
 }
 
 static uint64_t state_bytes(const volume_run *v) {
-    return 4 * (VOLUME_HEAD_WORDS + (uint64_t)TILE_WORDS * v->job.tile_count);
+    return 4 * (VOLUME_HEAD_WORDS + (uint64_t)VOLUME_SCANS * TILE_WORDS * v->job.tile_count);
 }
 
-/* A buffer of a surface; where there is no such surface another one, which nothing is read from. */
+/* A buffer; where there is none another one, which nothing is read from. */
 static const cl_mem *memory_of(const volume_run *v, const device_buffer *buffer) {
     return buffer->memory ? &buffer->memory : &v->work->state.memory;
 }
 
-static tc_status buffers_reserve(volume_run *v) {
-    complex_run *r = &v->bounds[BOUND_LOW];
+static tc_status count_reserve(volume_run *v) {
+    complex_run *r = &v->run;
     volume_buffers *w = v->work;
     const complex_grid *c = v->grid->complex;
+    const uint64_t words = v->job.word_count;
     tc_status status =
-        surface_reserve(r, &w->clusters, sizeof(volume_cluster) * (uint64_t)r->job.cluster_count, "clusters");
-    if (!status) status = surface_reserve(r, &w->points, sizeof(volume_points) * (uint64_t)v->job.word_count, "points");
+        surface_reserve(r, &w->clusters, sizeof(volume_cluster) * (uint64_t)v->jobs[0].cluster_count, "clusters");
     if (!status) status = surface_reserve(r, &w->state, state_bytes(v), "the scan");
-    if (!status && !v->is_cut) status = surface_reserve(r, &w->used, 8 * (uint64_t)v->job.word_count, "points");
+    if (!status) status = surface_fill(r, &w->state, 0, 0, state_bytes(v));
     if (status || v->is_cut) return status;
-    return buffer_upload(v->context, &w->used, c->used_points, 8 * (uint64_t)v->job.word_count, "points");
+    status = surface_reserve(r, &w->points, sizeof(volume_points) * words, "points");
+    if (!status) status = surface_reserve(r, &w->numbers, 4 * 64 * words, "points");
+    if (!status) status = surface_reserve(r, &w->used, 8 * words, "points");
+    return status ? status : buffer_upload(v->context, &w->used, c->used_points, 8 * words, "points");
+}
+
+static tc_status volume_launch(volume_run *v, int kernel, const kernel_argument *arguments, cl_uint count) {
+    static const char *const names[VOLUME_KERNELS] = {
+        "kernel complex_interval_count",  "kernel complex_interval_list",      "kernel complex_interval_join",
+        "kernel complex_interval_number", "kernel complex_interval_crossings", "kernel complex_interval_emit"};
+    return kernel_launch(v->context, v->run.kernels[kernel], names[kernel], arguments, count);
+}
+
+static tc_status head_read(volume_run *v) {
+    cl_int error = cl->EnqueueReadBuffer(v->context->queue, v->work->state.memory, CL_TRUE, 0, sizeof v->head, v->head,
+                                         0, NULL, NULL);
+    return error ? context_fail(v->context, "reading totals", error) : TC_OK;
 }
 
 static tc_status count_launch(volume_run *v) {
     volume_buffers *w = v->work;
-    const complex_run *low = &v->bounds[BOUND_LOW], *high = &v->bounds[BOUND_HIGH];
-    const complex_part *part = low->part;
-    const kernel_argument arguments[] = {ARGUMENT(low->job),
-                                         ARGUMENT(high->job),
-                                         ARGUMENT(v->job),
-                                         ARGUMENT(part->samples.memory),
-                                         ARGUMENT(part->tetrahedra.memory),
-                                         ARGUMENT(part->ranges.memory),
-                                         ARGUMENT(*memory_of(v, &w->used)),
-                                         ARGUMENT(w->cases.memory),
-                                         ARGUMENT(*memory_of(v, &low->work->clusters)),
-                                         ARGUMENT(*memory_of(v, &high->work->clusters)),
-                                         ARGUMENT(w->clusters.memory),
-                                         ARGUMENT(w->points.memory),
-                                         ARGUMENT(w->state.memory)};
-    tc_status status = kernel_launch(v->context, low->kernels[KERNEL_VOLUME_COUNT], "kernel complex_interval_count",
-                                     arguments, sizeof arguments / sizeof *arguments);
-    cl_int error = status ? CL_SUCCESS
-                          : cl->EnqueueReadBuffer(v->context->queue, w->state.memory, CL_TRUE, 0, sizeof v->head,
-                                                  v->head, 0, NULL, NULL);
-    return error ? context_fail(v->context, "reading totals", error) : status;
+    const complex_part *part = v->run.part;
+    const kernel_argument arguments[] = {
+        ARGUMENT(v->jobs[BOUND_LOW]),        ARGUMENT(v->jobs[BOUND_HIGH]),     ARGUMENT(v->job),
+        ARGUMENT(part->samples.memory),      ARGUMENT(part->tetrahedra.memory), ARGUMENT(part->ranges.memory),
+        ARGUMENT(*memory_of(v, &w->used)),   ARGUMENT(w->cases.memory),         ARGUMENT(w->clusters.memory),
+        ARGUMENT(*memory_of(v, &w->points)), ARGUMENT(w->state.memory)};
+    tc_status status = volume_launch(v, KERNEL_VOLUME_COUNT, arguments, sizeof arguments / sizeof *arguments);
+    if (!status) status = head_read(v);
+    if (!status && v->head[VOLUME_INVALID]) status = complex_point_fail(v->grid->complex);
+    if (!status) v->run.part->ranges_known = true;
+    return status;
 }
 
 tc_status volume_count(volume_run *v) {
-    for (int n = 0; n < BOUND_COUNT; n++) v->bounds[n].job.ranges_known = v->bounds[n].part->ranges_known;
-    job_describe(v);
-    tc_status status = buffers_reserve(v);
-    if (!status) status = surface_fill(&v->bounds[BOUND_LOW], &v->work->state, 0, 0, state_bytes(v));
-    if (!status) status = count_launch(v);
-    const uint64_t vertices =
-        (uint64_t)v->head[VOLUME_SAMPLES] + volume_bound_vertices(v, BOUND_LOW) + volume_bound_vertices(v, BOUND_HIGH);
-    if (status || vertices || v->is_cut || !v->head[VOLUME_TETRAHEDRA]) return status;
-    return (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
+    jobs_describe(v);
+    tc_status status = count_reserve(v);
+    return status ? status : count_launch(v);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ edges */
+
+/* Crossed edges of both bounds, counted once for each tetrahedron. */
+static uint64_t crossed_count(const volume_run *v) { return 3ull * v->head[VOLUME_CUTS] + v->head[VOLUME_FOURS]; }
+
+static tc_status table_reserve(volume_run *v, uint64_t entries) {
+    v->job.table_mask = (uint32_t)(entries - 1);
+    v->job.probe_limit = entries >= 2 * crossed_count(v) ? v->job.table_mask : 256;
+    return surface_reserve(&v->run, &v->work->table, 4 * entries, "the table of edges");
+}
+
+static tc_status edges_reserve(volume_run *v) {
+    complex_run *r = &v->run;
+    volume_buffers *w = v->work;
+    const uint64_t slots = 4ull * v->head[VOLUME_CUTS];
+    tc_status status = surface_reserve(r, &w->edges, VOLUME_EDGE_BYTES * slots, "crossed edges");
+    if (!status) status = surface_reserve(r, &w->entries, 4 * slots, "crossed edges");
+    if (status || v->context->launch.work_items > 1) return status;
+    return surface_reserve(r, &w->slots, VOLUME_SLOT_BYTES * slots, "crossed edges");
+}
+
+static tc_status edges_list(volume_run *v) {
+    volume_buffers *w = v->work;
+    const kernel_argument arguments[] = {ARGUMENT(v->jobs[BOUND_LOW]),
+                                         ARGUMENT(v->job),
+                                         ARGUMENT(v->run.part->tetrahedra.memory),
+                                         ARGUMENT(w->cases.memory),
+                                         ARGUMENT(w->clusters.memory),
+                                         ARGUMENT(w->edges.memory),
+                                         ARGUMENT(*memory_of(v, &w->slots)),
+                                         ARGUMENT(w->table.memory),
+                                         ARGUMENT(w->state.memory)};
+    return volume_launch(v, KERNEL_VOLUME_LIST, arguments, sizeof arguments / sizeof *arguments);
+}
+
+/* Enters the edges of the list into the table, and numbers their vertices. */
+static tc_status edges_join(volume_run *v) {
+    volume_buffers *w = v->work;
+    const kernel_argument join[] = {ARGUMENT(v->job), ARGUMENT(w->edges.memory), ARGUMENT(w->table.memory),
+                                    ARGUMENT(w->entries.memory), ARGUMENT(w->state.memory)};
+    const kernel_argument number[] = {ARGUMENT(v->jobs[0].spin_limit), ARGUMENT(v->job),
+                                      ARGUMENT(w->edges.memory),       ARGUMENT(w->table.memory),
+                                      ARGUMENT(w->entries.memory),     ARGUMENT(w->state.memory)};
+    tc_status status = volume_launch(v, KERNEL_VOLUME_JOIN, join, sizeof join / sizeof *join);
+    if (!status) status = volume_launch(v, KERNEL_VOLUME_NUMBER, number, sizeof number / sizeof *number);
+    return status ? status : head_read(v);
+}
+
+/* Enlarges the table, and resets what the attempt with the smaller table has changed. */
+static tc_status table_enlarge(volume_run *v, uint64_t entries) {
+    const volume_buffers *w = v->work;
+    tc_status status = table_reserve(v, entries);
+    if (!status) status = surface_fill(&v->run, &w->table, EDGE_NONE, 0, 4 * entries);
+    if (!status) status = surface_fill(&v->run, &w->state, 0, 4 * (VOLUME_TICKETS + KERNEL_VOLUME_JOIN), 8);
+    return status ? status : surface_fill(&v->run, &w->state, 0, 4 * VOLUME_FULL, 4);
+}
+
+/* In most complexes an edge has five tetrahedra: a table three eighths as large as the crossed edges, each counted for
+ * every tetrahedron, is then little more than half full. Where that overflows, a table that always suffices is used. */
+tc_status volume_number(volume_run *v) {
+    uint64_t entries = 64;
+    while (8 * entries < 3 * crossed_count(v)) entries *= 2;
+    if (!v->head[VOLUME_CUTS]) return TC_OK;
+    tc_status status = edges_reserve(v);
+    if (!status) status = table_reserve(v, entries);
+    if (!status) status = edges_list(v);
+    if (!status) status = edges_join(v);
+    if (status || !v->head[VOLUME_FULL]) return status;
+    while (entries < 2 * crossed_count(v)) entries *= 2;
+    status = table_enlarge(v, entries);
+    return status ? status : edges_join(v);
 }
 
 /* -------------------------------------------------------------------------------------------------------- emission */
 
-static tc_status crossings_launch(volume_run *v, int bound) {
-    const complex_run *r = &v->bounds[bound];
-    const complex_buffers *w = r->work;
-    const cl_uint first = bound == BOUND_LOW ? v->job.low_first : v->job.high_first;
-    const cl_ulong offset = 3 * (cl_ulong)(first - v->job.window);
-    const kernel_argument arguments[] = {ARGUMENT(r->job),
-                                         ARGUMENT(first),
-                                         ARGUMENT(offset),
-                                         ARGUMENT(r->part->samples.memory),
-                                         ARGUMENT(r->part->points.memory),
-                                         ARGUMENT(w->active.memory),
-                                         ARGUMENT(w->cases.memory),
-                                         ARGUMENT(w->state.memory),
-                                         ARGUMENT(w->tiles.memory),
-                                         ARGUMENT(w->table.memory),
-                                         ARGUMENT(w->entries.memory),
-                                         ARGUMENT(v->work->positions.memory)};
-    if (!v->exists[bound] || !r->job.active_count) return TC_OK;
-    return kernel_launch(v->context, r->kernels[KERNEL_VOLUME_CROSSINGS], "kernel complex_interval_crossings",
-                         arguments, sizeof arguments / sizeof *arguments);
+static tc_status vertices_launch(volume_run *v) {
+    const volume_buffers *w = v->work;
+    const complex_part *part = v->run.part;
+    const kernel_argument arguments[] = {
+        ARGUMENT(v->jobs[BOUND_LOW]),       ARGUMENT(v->jobs[BOUND_HIGH]),         ARGUMENT(v->job),
+        ARGUMENT(part->samples.memory),     ARGUMENT(part->points.memory),         ARGUMENT(*memory_of(v, &w->points)),
+        ARGUMENT(*memory_of(v, &w->edges)), ARGUMENT(*memory_of(v, &w->entries)),  ARGUMENT(*memory_of(v, &w->numbers)),
+        ARGUMENT(w->state.memory),          ARGUMENT(*memory_of(v, &w->positions))};
+    return volume_launch(v, KERNEL_VOLUME_CROSSINGS, arguments, sizeof arguments / sizeof *arguments);
 }
 
 tc_status volume_emit(volume_run *v) {
     const volume_buffers *w = v->work;
-    const complex_run *low = &v->bounds[BOUND_LOW], *high = &v->bounds[BOUND_HIGH];
-    const kernel_argument arguments[] = {ARGUMENT(low->job),
-                                         ARGUMENT(high->job),
+    const kernel_argument arguments[] = {ARGUMENT(v->jobs[BOUND_LOW]),
                                          ARGUMENT(v->job),
-                                         ARGUMENT(low->part->tetrahedra.memory),
-                                         ARGUMENT(low->part->points.memory),
+                                         ARGUMENT(v->run.part->tetrahedra.memory),
                                          ARGUMENT(w->cases.memory),
                                          ARGUMENT(w->clusters.memory),
-                                         ARGUMENT(w->points.memory),
+                                         ARGUMENT(*memory_of(v, &w->numbers)),
+                                         ARGUMENT(*memory_of(v, &w->slots)),
+                                         ARGUMENT(*memory_of(v, &w->entries)),
+                                         ARGUMENT(*memory_of(v, &w->edges)),
                                          ARGUMENT(w->state.memory),
-                                         ARGUMENT(*memory_of(v, &low->work->clusters)),
-                                         ARGUMENT(*memory_of(v, &low->work->state)),
-                                         ARGUMENT(*memory_of(v, &low->work->entries)),
-                                         ARGUMENT(*memory_of(v, &low->work->table)),
-                                         ARGUMENT(*memory_of(v, &high->work->clusters)),
-                                         ARGUMENT(*memory_of(v, &high->work->state)),
-                                         ARGUMENT(*memory_of(v, &high->work->entries)),
-                                         ARGUMENT(*memory_of(v, &high->work->table)),
-                                         ARGUMENT(w->positions.memory),
                                          ARGUMENT(w->tetrahedra.memory)};
-    tc_status status = TC_OK;
-    for (int n = 0; n < BOUND_COUNT && !status; n++) status = crossings_launch(v, n);
-    if (!status)
-        status = kernel_launch(v->context, low->kernels[KERNEL_VOLUME_EMIT], "kernel complex_interval_emit", arguments,
-                               sizeof arguments / sizeof *arguments);
+    tc_status status = vertices_launch(v);
+    if (!status) status = volume_launch(v, KERNEL_VOLUME_EMIT, arguments, sizeof arguments / sizeof *arguments);
     cl_int error = cl->Finish(v->context->queue);
     return !status && error ? context_fail(v->context, "kernel complex_interval_emit", error) : status;
 }
 
 /* Whether a buffer has room on the device; else the complex is cut. */
 static tc_status room_check(volume_run *v, uint64_t bytes, const char *name) {
-    if (surface_fits(&v->bounds[BOUND_LOW], bytes)) return TC_OK;
+    if (surface_fits(&v->run, bytes)) return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for the %s of its interval volume",
                            name);
 }
@@ -228,20 +273,20 @@ static tc_status one_piece_emit(volume_run *v, tc_interval_volume *interval) {
 /* ------------------------------------------------------------------------------------------------------------ calls */
 
 static interval_size size_of(const volume_run *v) {
-    return (interval_size){
-        {v->head[VOLUME_SAMPLES], volume_bound_vertices(v, BOUND_LOW), volume_bound_vertices(v, BOUND_HIGH)},
-        v->head[VOLUME_TETRAHEDRA]};
+    return (interval_size){{v->head[VOLUME_SAMPLES], v->head[VOLUME_LOW], v->head[VOLUME_HIGH]},
+                           v->head[VOLUME_TETRAHEDRA]};
 }
 
 /* share: of the whole call, for progress. */
 static tc_status one_piece_count(volume_run *v, tc_grid *grid, const tc_interval_volume_options *options,
                                  const bool exists[BOUND_COUNT], double share) {
     tc_status status = volume_begin(v, grid, options, exists, false);
-    for (int n = 0; n < BOUND_COUNT && !status; n++) {
-        status = volume_bound_classify(v, n);
-        if (!status) status = context_progress(v->context, "classify", share * (n + 1) / 3);
-    }
     if (!status) status = volume_count(v);
+    if (!status) status = context_progress(v->context, "classify", 0.4 * share);
+    if (!status) status = volume_number(v);
+    const interval_size size = size_of(v);
+    if (!status && size.tetrahedra && !interval_first(&size, BLOCK_COUNT))
+        status = (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
     return status ? status : context_progress(v->context, "classify", share);
 }
 
@@ -261,7 +306,7 @@ static tc_status one_piece_make(tc_grid *grid, const tc_interval_volume_options 
         interval->timings.total_ms = clock_ms() - v.start_ms - interval->timings.readback_ms;
         interval->timings.emit_ms = interval->timings.total_ms - *classify_ms;
     }
-    *too_large = v.bounds[BOUND_LOW].too_large || v.bounds[BOUND_HIGH].too_large;
+    *too_large = v.run.too_large;
     return status;
 }
 

@@ -64,6 +64,29 @@ static void entry_make(const interval_case cases[INTERVAL_CASES], const uint8_t 
     }
 }
 
+/* The edges that a bound crosses, by its pattern. */
+static void edges_make(uint8_t *edges) {
+    memset(edges, VOLUME_NO_EDGE, 16 * 4);
+    for (unsigned pattern = 0; pattern < 16; pattern++) {
+        unsigned count = 0;
+        for (unsigned e = 0; e < 6; e++) {
+            const uint8_t *ends = tetrahedron_edges[e];
+            if ((pattern >> ends[0] & 1) != (pattern >> ends[1] & 1)) edges[4 * pattern + count++] = (uint8_t)e;
+        }
+    }
+}
+
+/* The same as lanes of words. */
+static void lanes_make(const uint8_t *edges, uint8_t *lanes) {
+    for (unsigned pattern = 0; pattern < 16; pattern++)
+        for (unsigned n = 0; n < 4; n++) {
+            const uint8_t edge = edges[4 * pattern + n];
+            lanes[16 * pattern + 2 * n] = edge;
+            lanes[16 * pattern + 2 * n + 1] = (uint8_t)(8 + edge);
+            lanes[16 * pattern + 8 + n] = (uint8_t)(16 + edge);
+        }
+}
+
 uint8_t *volume_table_make(void) {
     _Static_assert((int)VOLUME_CASES == (int)INTERVAL_CASES && 1 + 4 * INTERVAL_PARTS_MOST <= VOLUME_ENTRY_BYTES,
                    "kernels read them so");
@@ -71,6 +94,8 @@ uint8_t *volume_table_make(void) {
     uint8_t *table = calloc(1, VOLUME_TABLE_BYTES);
     if (!table) return NULL;
     interval_cases_derive(cases);
+    edges_make(table + VOLUME_EDGES_OF);
+    lanes_make(table + VOLUME_EDGES_OF, table + VOLUME_LANES);
     for (unsigned pattern = 0; pattern < VOLUME_PATTERNS; pattern++) {
         unsigned number = 0;
         for (unsigned n = 4; n-- > 0;) number = 3 * number + (pattern >> (4 + n) & 1) + (pattern >> n & 1);

@@ -43,8 +43,8 @@ static bool slab_possible(const volume_slabs *t, uint32_t slab_index) {
     const brick_range *ranges = t->slabs->ranges + slab_first_cluster(t->slabs, slab_index);
     for (uint32_t n = 0; n < slab_cluster_count(t->grid->complex, t->slabs, slab_index) && t->slabs->ranges_known;
          n++) {
-        const bool below = v->exists[BOUND_LOW] && ranges[n].high < v->bounds[BOUND_LOW].test.key_outside;
-        const bool above = v->exists[BOUND_HIGH] && ranges[n].low >= v->bounds[BOUND_HIGH].test.key_inside;
+        const bool below = v->exists[BOUND_LOW] && ranges[n].high < v->tests[BOUND_LOW].key_outside;
+        const bool above = v->exists[BOUND_HIGH] && ranges[n].low >= v->tests[BOUND_HIGH].key_inside;
         if (!below && !above) return true;
     }
     return !t->slabs->ranges_known;
@@ -52,15 +52,18 @@ static bool slab_possible(const volume_slabs *t, uint32_t slab_index) {
 
 static tc_status slab_count(volume_slabs *t, uint32_t slab_index, bool ranges_known) {
     tc_status status = complex_slab_load(t->grid, t->slabs, &t->local, slab_index, ranges_known);
-    for (int n = 0; n < BOUND_COUNT && !status; n++) status = volume_bound_classify(&t->v, n);
+    if (!status) status = volume_count(&t->v);
     if (!status && !ranges_known && t->grid->complex->part.ranges_known)
         status = complex_slab_ranges_keep(t->grid, t->slabs, slab_index);
-    return status ? status : volume_count(&t->v);
+    return status ? status : volume_number(&t->v);
 }
 
 static slab_size size_of(const volume_run *v) {
-    return (slab_size){{volume_bound_vertices(v, BOUND_LOW), volume_bound_vertices(v, BOUND_HIGH)},
-                       v->head[VOLUME_TETRAHEDRA]};
+    return (slab_size){{v->head[VOLUME_LOW], v->head[VOLUME_HIGH]}, v->head[VOLUME_TETRAHEDRA]};
+}
+
+static uint64_t crossing_count(slab_size size) {
+    return (uint64_t)size.vertices[BOUND_LOW] + size.vertices[BOUND_HIGH];
 }
 
 static tc_status slab_classify(volume_slabs *t, uint32_t slab_index) {
@@ -68,10 +71,8 @@ static tc_status slab_classify(volume_slabs *t, uint32_t slab_index) {
     tc_status status = slab_count(t, slab_index, t->slabs->ranges_known);
     if (!status) t->sizes[slab_index] = size_of(&t->v);
     t->tetrahedra += t->sizes[slab_index].tetrahedra;
-    for (int n = 0; n < BOUND_COUNT && !status; n++)
-        if (t->sizes[slab_index].vertices[n])
-            status = complex_slab_edges_join(&t->v.bounds[n], t->local.numbers, &t->joined[n]);
-    return status;
+    if (status || !crossing_count(t->sizes[slab_index])) return status;
+    return volume_slab_join(&t->v, t->local.numbers, t->joined);
 }
 
 /* before, after: where this stage begins and ends in the whole call, for progress. */
@@ -82,7 +83,7 @@ static tc_status slabs_classify(volume_slabs *t, double before, double after) {
         status = slab_classify(t, n);
         if (!status) status = context_progress(t->v.context, "classify", before + (after - before) * (n + 1) / count);
     }
-    if (!status && (t->v.exists[BOUND_LOW] || t->v.exists[BOUND_HIGH])) t->slabs->ranges_known = true;
+    if (!status) t->slabs->ranges_known = true;
     return status;
 }
 
@@ -95,10 +96,6 @@ static void points_emit(volume_slabs *t) {
     for (uint64_t n = 0; n < words; n++)
         for (uint64_t rest = t->within.words[n]; rest; rest &= rest - 1, out += 3)
             memcpy(out, t->grid->complex->points + 3 * (64 * n + (uint64_t)__builtin_ctzll(rest)), CHANNEL_BYTES);
-}
-
-static uint64_t crossing_count(slab_size size) {
-    return (uint64_t)size.vertices[BOUND_LOW] + size.vertices[BOUND_HIGH];
 }
 
 static tc_status positions_allocate(volume_slabs *t) {
@@ -155,7 +152,7 @@ static void slab_append(volume_slabs *t, slab_size size) {
 
 static tc_status slab_launch(volume_slabs *t, slab_size size) {
     volume_run *v = &t->v;
-    complex_run *r = &v->bounds[BOUND_LOW];
+    complex_run *r = &v->run;
     v->job.low_first = v->job.window = r->part->point_count;
     v->job.high_first = v->job.low_first + size.vertices[BOUND_LOW];
     tc_status status = surface_reserve(r, &v->work->positions, CHANNEL_BYTES * crossing_count(size), "vertices");

@@ -39,51 +39,64 @@ uint32_t complex_tile_actives(const tc_grid *grid) {
     return grid->context->launch.work_items == 1 && !grid->scan.tile_bricks ? 1024 : complex_tile_clusters(grid);
 }
 
-/* Arrays, and what kernel 1 works on beside them. */
-static device_need part_need(const tc_grid *grid, uint64_t points, uint64_t tetrahedra) {
-    const tc_context *context = grid->context;
-    const uint64_t clusters = complex_cluster_count(tetrahedra), page = context->in_place ? PAGE_BYTES : 0;
-    const uint64_t tiles = clusters / complex_tile_clusters(grid) + 1;
+uint32_t complex_interval_tile_shift(const tc_grid *grid) {
+    const uint32_t clusters = complex_tile_clusters(grid);
+    const uint32_t most = grid->context->launch.work_items == 1 ? VOLUME_TILE_MOST : UINT32_MAX;
+    uint32_t shift = 0;
+    while (UINT32_C(1) << shift < (clusters < most ? clusters : most)) shift++;
+    return shift;
+}
+
+/* A part's arrays, ranges of its clusters, and the 16 cases. */
+static device_need arrays_need(const tc_grid *grid, uint64_t points, uint64_t tetrahedra) {
+    const uint64_t clusters = complex_cluster_count(tetrahedra), page = grid->context->in_place ? PAGE_BYTES : 0;
     device_need need = {0, 0};
     need_add(&need, page + 16 * tetrahedra);
     need_add(&need, page + 12 * points);
     need_add(&need, page + tc_type_bytes(grid->type) * points);
     need_add(&need, sizeof(brick_range) * clusters);
-    need_add(&need, sizeof(cluster_state) * clusters);
-    need_add(&need, 4 * clusters); /* those that are active */
-    need_add(&need, 4 * (HEAD_WORDS + TILE_WORDS * tiles));
     need_add(&need, 16 * CASE_BYTES);
     return need;
 }
 
-/* The largest surface, without its mesh. */
-static void edges_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+/* What kernel 1 works on beside them. */
+static void classify_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
+    const uint64_t clusters = complex_cluster_count(tetrahedra), tiles = clusters / complex_tile_clusters(grid) + 1;
+    need_add(need, sizeof(cluster_state) * clusters);
+    need_add(need, 4 * clusters); /* those that are active */
+    need_add(need, 4 * (HEAD_WORDS + TILE_WORDS * tiles));
+}
+
+/* The table of so many crossed edges. */
+static void table_add(uint64_t crossed, device_need *need) {
     uint64_t entries = 64;
-    while (entries < 8 * tetrahedra) entries *= 2;
-    need_add(need, sizeof(active_tetrahedron) * tetrahedra);
-    need_add(need, 16 * tetrahedra); /* entries of its edges */
-    need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
+    while (entries < 2 * crossed) entries *= 2;
     need_add(need, 4 * entries);
 }
 
+/* The largest surface. */
 static void surface_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
-    edges_add(grid, tetrahedra, need);
+    classify_add(grid, tetrahedra, need);
+    need_add(need, sizeof(active_tetrahedron) * tetrahedra);
+    need_add(need, 16 * tetrahedra); /* entries of its edges */
+    need_add(need, 4 * TILE_WORDS * (tetrahedra / complex_tile_actives(grid) + 1));
+    table_add(4 * tetrahedra, need);
     need_add(need, 4 * CHANNEL_BYTES * tetrahedra);
     need_add(need, 2 * TRIANGLE_BYTES * tetrahedra);
 }
 
-/* The largest interval volume of a slab. */
+/* The largest interval volume of a slab: both bounds cut all tetrahedra. */
 static void interval_add(const tc_grid *grid, uint64_t tetrahedra, device_need *need) {
-    const uint64_t clusters = complex_cluster_count(tetrahedra), tiles = clusters / complex_tile_clusters(grid) + 1;
-    edges_add(grid, tetrahedra, need);
-    edges_add(grid, tetrahedra, need);
-    need_add(need, (sizeof(cluster_state) + 4) * clusters); /* of the second bound */
-    need_add(need, 4 * (HEAD_WORDS + TILE_WORDS * tiles));
-    need_add(need, 16 * CASE_BYTES);
+    const uint64_t clusters = complex_cluster_count(tetrahedra), slots = 2 * 4 * tetrahedra;
+    const uint64_t tiles = (clusters >> complex_interval_tile_shift(grid)) + 1;
     need_add(need, sizeof(volume_cluster) * clusters);
-    need_add(need, 4 * (VOLUME_HEAD_WORDS + TILE_WORDS * tiles));
+    need_add(need, 4 * (VOLUME_HEAD_WORDS + VOLUME_SCANS * TILE_WORDS * tiles));
     need_add(need, VOLUME_TABLE_BYTES);
-    need_add(need, 2 * 4 * CHANNEL_BYTES * tetrahedra);
+    need_add(need, VOLUME_EDGE_BYTES * slots);
+    need_add(need, 4 * slots); /* entries */
+    if (grid->context->launch.work_items == 1) need_add(need, VOLUME_SLOT_BYTES * slots);
+    table_add(slots, need);
+    need_add(need, CHANNEL_BYTES * slots);
     need_add(need, 6 * TETRAHEDRON_BYTES * tetrahedra);
 }
 
@@ -93,8 +106,9 @@ static bool need_fits(const tc_context *context, device_need need) {
 
 bool complex_fits(const tc_grid *grid) {
     const complex_grid *c = grid->complex;
-    return c->tetrahedron_count <= whole_tetrahedra_most &&
-           need_fits(grid->context, part_need(grid, c->point_count, c->tetrahedron_count));
+    device_need need = arrays_need(grid, c->point_count, c->tetrahedron_count);
+    classify_add(grid, c->tetrahedron_count, &need);
+    return c->tetrahedron_count <= whole_tetrahedra_most && need_fits(grid->context, need);
 }
 
 bool complex_interval_sums_fit(const tc_grid *grid) { return grid->complex->tetrahedron_count <= slab_tetrahedra_most; }
@@ -104,7 +118,7 @@ static device_need slab_need(const tc_grid *grid, uint64_t clusters, bool points
     uint64_t tetrahedra = CLUSTER_TETRAHEDRA * clusters, points = c->point_count;
     if (tetrahedra > c->tetrahedron_count) tetrahedra = c->tetrahedron_count;
     if (!points_whole && 4 * tetrahedra < points) points = 4 * tetrahedra;
-    device_need need = part_need(grid, points, tetrahedra);
+    device_need need = arrays_need(grid, points, tetrahedra);
     if (interval)
         interval_add(grid, tetrahedra, &need);
     else

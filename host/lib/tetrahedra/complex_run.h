@@ -33,6 +33,9 @@ uint32_t complex_cluster_count(uint64_t tetrahedron_count);
 uint32_t complex_tile_clusters(const tc_grid *grid);
 uint32_t complex_tile_actives(const tc_grid *grid);
 
+/* Of interval volumes: a tile has so many clusters, as a power of two. */
+uint32_t complex_interval_tile_shift(const tc_grid *grid);
+
 /* Whether kernel 1 can run over the complex whole. */
 bool complex_fits(const tc_grid *grid);
 
@@ -89,7 +92,7 @@ typedef struct complex_run {
     complex_job job;
     uint32_t head[HEAD_WORDS];
     bool keeps_cells;
-    bool interval;   /* a bound of an interval volume */
+    bool interval;   /* for an interval volume */
     bool is_cut;     /* into slabs, which fit */
     bool too_large;  /* the surface of a complex that is not cut does not fit */
     double start_ms; /* kernels are built by then */
@@ -180,6 +183,10 @@ typedef struct joined_edges {
 /* Adds those of a slab whose vertices are numbered. names: the grid's numbers of the slab's points; NULL: the same. */
 tc_status complex_slab_edges_join(const complex_run *r, const uint32_t *names, joined_edges *j);
 void joined_edges_release(joined_edges *j);
+
+/* Makes room for the numbers of so many vertices more, and adds one, of the edge between two points of the slab. */
+tc_status joined_edges_reserve(joined_edges *j, uint64_t vertices);
+tc_status joined_edges_add(joined_edges *j, const uint32_t *names, uint32_t a, uint32_t b);
 
 /* Copies the positions of a slab's vertices that are new, of which `done` have been copied before; how many it is then.
  */

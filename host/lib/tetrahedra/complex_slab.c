@@ -85,31 +85,42 @@ static void *room_enlarge(void *memory, uint64_t *room, uint64_t count, size_t i
     return grown;
 }
 
+static tc_status join_fail(void) {
+    return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory for the vertices of all slabs");
+}
+
+tc_status joined_edges_reserve(joined_edges *j, uint64_t vertices) {
+    const uint64_t numbers = j->number_count + vertices;
+    if (numbers <= j->number_room) return TC_OK;
+    void *grown = room_enlarge(j->numbers, &j->number_room, numbers, sizeof *j->numbers);
+    if (grown) j->numbers = grown;
+    return grown ? TC_OK : join_fail();
+}
+
+tc_status joined_edges_add(joined_edges *j, const uint32_t *names, uint32_t a, uint32_t b) {
+    const uint32_t p = names ? names[a] : a, q = names ? names[b] : b;
+    tc_status status = edge_numbers_find(&j->edges, p < q ? p : q, p < q ? q : p, &j->numbers[j->number_count]);
+    if (!status) j->number_count++;
+    return status;
+}
+
 /* Makes room for the active tetrahedra and vertex numbers of a slab. */
 static tc_status lists_reserve(joined_edges *j, uint64_t active, uint64_t vertices) {
-    const uint64_t numbers = j->number_count + vertices;
     void *grown = j->active;
     if (active > j->active_room) grown = room_enlarge(j->active, &j->active_room, active, sizeof *j->active);
     if (grown) j->active = grown;
-    if (grown && numbers > j->number_room) {
-        grown = room_enlarge(j->numbers, &j->number_room, numbers, sizeof *j->numbers);
-        if (grown) j->numbers = grown;
-    }
-    return grown ? TC_OK : (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory for the vertices of all slabs");
+    return grown ? joined_edges_reserve(j, vertices) : join_fail();
 }
 
 /* Numbers the vertices that an active tetrahedron owns. */
 static tc_status vertices_join(joined_edges *j, const uint32_t *names, uint8_t cases[16][CASE_BYTES],
                                const active_tetrahedron *a) {
-    for (uint32_t rest = a->owned; rest; rest &= rest - 1) {
+    tc_status status = TC_OK;
+    for (uint32_t rest = a->owned; rest && !status; rest &= rest - 1) {
         const uint8_t *ends = cases[a->pattern] + CASE_ENDS + 2 * __builtin_ctz(rest);
-        const uint32_t p = names ? names[a->points[ends[0]]] : a->points[ends[0]];
-        const uint32_t q = names ? names[a->points[ends[1]]] : a->points[ends[1]];
-        tc_status status = edge_numbers_find(&j->edges, p < q ? p : q, p < q ? q : p, &j->numbers[j->number_count]);
-        if (status) return status;
-        j->number_count++;
+        status = joined_edges_add(j, names, a->points[ends[0]], a->points[ends[1]]);
     }
-    return TC_OK;
+    return status;
 }
 
 tc_status complex_slab_edges_join(const complex_run *r, const uint32_t *names, joined_edges *j) {
