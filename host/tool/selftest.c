@@ -144,8 +144,8 @@ static const char *first_failed(const selftest_results *all, int group) {
 static void print_group(const selftest_results *all, int group) {
     const verdict v = judge(all, group);
     progress_clear();
-    printf("%-30s %3d trials  %s\n", group == VECTORS ? "vectors" : trial_groups[group].title, v.trial_count,
-           v.failed_count ? "FAILED" : "ok");
+    printf("%-30s %3d %-6s  %s\n", group == VECTORS ? "vectors" : trial_groups[group].title, v.trial_count,
+           v.trial_count == 1 ? "trial" : "trials", v.failed_count ? "FAILED" : "ok");
     if (v.failed_count) printf("  %d failed; the first: %s: %s\n", v.failed_count, first_failed(all, group), v.text);
     fflush(stdout);
 }

@@ -71,7 +71,7 @@ class Vectors(SelftestCase):
         self.assertEqual([f.get("type") for f in root.iter("failure")], ["wrong", "wrong"])
         text = self.expect(3, "selftest", "--vectors", self.vectors(spoiled)).stdout.splitlines()
         self.assertEqual(text[-1], "FAIL")
-        self.assertRegex(text[1], "vectors +1 trials +FAILED")
+        self.assertRegex(text[1], "vectors +1 trial +FAILED")
 
     def test_no_vectors(self):
         good = self.right("noise 2 2 2 u8")[0]

@@ -79,6 +79,7 @@ class Isovolume(GridCase):
         how = ["--verify"] if tool_case.HAS_DEVICE else []
         report = self.report(self.volume, "--range", "60,130", "-o", out, "--check", *how)
         found = report["volumes"][0]
+        self.assertEqual(set(report["timings_ms"]), {"read", "device_start", "build", "upload", "write", "total"})
         keys = MADE_KEYS | CHECK_KEYS | {"output"} | ({"verified"} if how else set())
         self.assertEqual(set(found), keys)
         self.assertEqual(found["range"], [60, 130])

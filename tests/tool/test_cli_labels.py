@@ -211,6 +211,16 @@ class Files(LabelCase):
             told = "".join(self.labels(self.raw_blocks(), *more)["notices"])
             self.assertEqual("fit by --smooth 0 alone" in told, is_told, more)
 
+    def test_times(self):
+        """Kernels take part of the device's start, and of nothing else."""
+        for engine in self.engines():
+            times = self.report("labels", *self.raw_blocks(), "--engine", engine)["timings_ms"]
+            self.assertEqual(set(times), {"read", "device_start", "build", "upload", "classify", "emit", "readback",
+                                          "extract", "write", "total"})
+            self.assertLessEqual(times["build"], times["device_start"])
+            self.assertLessEqual(times["device_start"] + times["extract"], times["total"])
+            self.assertEqual(times["build"] > 0, engine == "opencl")
+
     def test_one_label(self):
         text = self.expect(0, "labels", *self.raw_blocks(), "--labels", "7", "--check", "--engine", "reference").stdout
         self.assertRegex(text, r"(?m)^surface of 1 label$")

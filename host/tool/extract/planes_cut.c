@@ -1,5 +1,6 @@
 #include "planes_cut.h"
 
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "parts/part_header.h"
@@ -22,8 +23,8 @@ int planes_cut_check(const options *o, const team *t, int64_t nz, int64_t count)
         return fail(STATUS_USAGE, "--cut cost is for ranks, which count together: give parts planes to begin at");
     if (cut->kind != CUT_PLANES) return 0;
     if (cut->count != (size_t)count - 1)
-        return fail(STATUS_USAGE, "--cut names %zu planes, where all but the first of %zu %s begin; there are %" PRId64,
-                    cut->count, cut->count + 1, what, count);
+        return fail(STATUS_USAGE, "--cut names %s, where all but the first of %zu %s begin; there are %" PRId64,
+                    counted(cut->count, "plane", "planes").text, cut->count + 1, what, count);
     for (size_t n = 0; n < cut->count; n++) {
         const int64_t plane = cut->planes[n], before = n ? cut->planes[n - 1] : 0;
         if (plane < before || plane > nz)
