@@ -175,16 +175,16 @@ inline_always void run_words_make(const slab *s, uint y0, uint z0, uint w, uint 
  */
 inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, global const BITS *samples,
                                     global ulong *words, global brick_state *bricks, global const brick_range *ranges) {
-    uint asked = 0, asked_y = y0, asked_w = 0;
+    uint pending = 0, pending_y = y0, pending_w = 0;
     for (uint y = y0; y < y1; y += BRICK_ROWS)
         for (uint w = 0; w < s->words_x; w += RUN_BRICKS_X) {
             uint count = min((uint)RUN_BRICKS_X, s->words_x - w);
             uint mixed = run_sign_again(s, y, z, w, count, samples, bricks, ranges);
             if (!mixed) continue;
-            run_words_make(s, asked_y, z, asked_w, asked, samples, words);
-            asked = mixed, asked_y = y, asked_w = w;
+            run_words_make(s, pending_y, z, pending_w, pending, samples, words);
+            pending = mixed, pending_y = y, pending_w = w;
         }
-    run_words_make(s, asked_y, z, asked_w, asked, samples, words);
+    run_words_make(s, pending_y, z, pending_w, pending, samples, words);
 }
 
 /* A group needs no local memory here. */

@@ -210,12 +210,12 @@ inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e, uint 
     uint inside = 0;
     for (uint m = 0; m < 3; m++) inside |= (uint)(e.numbers[f.points[m]] != EDGE_NONE) << m;
     if (!triangle) inside |= (uint)(e.numbers[f.points[3]] != EDGE_NONE) << 3;
-    const bool has = cap_splits(c, &f, inside, e.in);
+    const bool splits = cap_splits(c, &f, inside, e.in);
     const uint3 first = (uint3)(f.points[0], f.points[1], f.points[2]);
     const uint3 second = (uint3)(f.points[0], f.points[2], f.points[3]);
-    if (!triangle && !has) quadrilateral_emit(c, (uint4)(first, f.points[3]), inside, e, &out, wrong);
-    if (has) triangle_emit(c, first, inside & 7, e, &out, wrong);
-    if (has && !triangle) triangle_emit(c, second, second_half(inside), e, &out, wrong);
+    if (!triangle && !splits) quadrilateral_emit(c, (uint4)(first, f.points[3]), inside, e, &out, wrong);
+    if (splits) triangle_emit(c, first, inside & 7, e, &out, wrong);
+    if (splits && !triangle) triangle_emit(c, second, second_half(inside), e, &out, wrong);
 }
 
 /* Emits the border's vertices and triangles behind the surface's. */

@@ -24,7 +24,7 @@ enum { VERTICES = 64, LOOP_MOST = 12 };
 static unsigned vertex_between(unsigned a, unsigned b) { return a < b ? 8 * a + b : 8 * b + a; }
 
 static unsigned vertex_of_place(unsigned place) {
-    const owned_edge e = cube_edges[place];
+    const owned_vertex e = cube_edges[place];
     unsigned corner = (unsigned)(e.dx + 2 * e.dy + 4 * e.dz);
     return vertex_between(corner, corner ^ 1u << e.type);
 }
@@ -136,10 +136,10 @@ static bool patch_of(const cube_case *c, unsigned pattern, patch *p) {
     memset(p, 0, sizeof *p);
     for (unsigned n = 0; n < c->triangle_count; n++)
         for (unsigned m = 0; m < 3; m++) {
-            if (c->edges[n][m] >= CUBE_EDGES || c->edges[n][(m + 1) % 3] >= CUBE_EDGES) return false;
-            if (cube_edges[c->edges[n][m]].type > EDGE_Z || cube_edges[c->edges[n][(m + 1) % 3]].type > EDGE_Z)
+            if (c->vertices[n][m] >= CUBE_EDGES || c->vertices[n][(m + 1) % 3] >= CUBE_EDGES) return false;
+            if (cube_edges[c->vertices[n][m]].type > EDGE_Z || cube_edges[c->vertices[n][(m + 1) % 3]].type > EDGE_Z)
                 return false;
-            unsigned from = vertex_of_place(c->edges[n][m]), to = vertex_of_place(c->edges[n][(m + 1) % 3]);
+            unsigned from = vertex_of_place(c->vertices[n][m]), to = vertex_of_place(c->vertices[n][(m + 1) % 3]);
             if (from == to || !is_crossed(from, pattern)) return false;
             p->passed[from][to]++;
             p->used[from] = true;
@@ -187,7 +187,7 @@ static const char *topology_fault(const cube_case *c, const patch *p, const spli
             if (s->component[a] != s->component[b]) return "two components of the tetrahedra's surface are joined";
             euler[s->component[a]]--;
         }
-    for (unsigned n = 0; n < c->triangle_count; n++) euler[s->component[vertex_of_place(c->edges[n][0])]]++;
+    for (unsigned n = 0; n < c->triangle_count; n++) euler[s->component[vertex_of_place(c->vertices[n][0])]]++;
     for (unsigned v = 0; v < VERTICES; v++) {
         if (euler[v] != s->euler[v]) return "a component has another Euler characteristic than the tetrahedra's";
         if (euler[v] != 0 && euler[v] != 1) return "a component is no disk";
@@ -309,7 +309,8 @@ static void test_tables_are_the_known_ones(void) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (unsigned n = 0; n < 512; n++) {
         const cube_case *c = &cases[0][n / 256][n % 256];
-        for (unsigned m = 0; m < 3u * c->triangle_count; m++) hash = (hash ^ c->edges[m / 3][m % 3]) * 0x100000001b3u;
+        for (unsigned m = 0; m < 3u * c->triangle_count; m++)
+            hash = (hash ^ c->vertices[m / 3][m % 3]) * 0x100000001b3u;
     }
     EXPECT(hash == KNOWN_HASH, "the tables have hash %llx", (unsigned long long)hash);
 }
@@ -319,8 +320,8 @@ static void test_mirrored(void) {
         const cube_case *plain = &cases[0][n / 256][n % 256], *turned = &cases[1][n / 256][n % 256];
         EXPECT(plain->triangle_count == turned->triangle_count, "case %u has other triangles where mirrored", n);
         for (unsigned t = 0; t < plain->triangle_count; t++)
-            EXPECT(plain->edges[t][0] == turned->edges[t][0] && plain->edges[t][1] == turned->edges[t][2] &&
-                       plain->edges[t][2] == turned->edges[t][1],
+            EXPECT(plain->vertices[t][0] == turned->vertices[t][0] && plain->vertices[t][1] == turned->vertices[t][2] &&
+                       plain->vertices[t][2] == turned->vertices[t][1],
                    "case %u: triangle %u mirrored is not itself turned over", n, t);
     }
 }
@@ -331,7 +332,7 @@ static void test_mirrored(void) {
 enum { PAIR_VERTICES = 3 * 27 };
 
 static unsigned pair_vertex(unsigned place, unsigned axis, unsigned second) {
-    const owned_edge e = cube_edges[place];
+    const owned_vertex e = cube_edges[place];
     unsigned at[3] = {e.dx, e.dy, e.dz};
     at[axis] += second;
     return 3 * (at[0] + 3 * at[1] + 9 * at[2]) + e.type;
@@ -364,8 +365,8 @@ static const char *pair_fault(const cube_case table[2][256], unsigned axis, unsi
         const cube_case *c = &table[parity ^ second][pair_pattern(signs, axis, second)];
         for (unsigned n = 0; n < c->triangle_count; n++)
             for (unsigned m = 0; m < 3; m++)
-                passed[pair_vertex(c->edges[n][m], axis, second)]
-                      [pair_vertex(c->edges[n][(m + 1) % 3], axis, second)]++;
+                passed[pair_vertex(c->vertices[n][m], axis, second)]
+                      [pair_vertex(c->vertices[n][(m + 1) % 3], axis, second)]++;
     }
     for (unsigned p = 0; p < PAIR_VERTICES; p++)
         for (unsigned q = 0; q < p; q++) {
@@ -397,17 +398,17 @@ static void test_faults_are_found(void) {
         c.triangle_count++;
         for (unsigned t = 0; t < c.triangle_count; t++) {
             for (unsigned place = 0; place < CUBE_EDGES; place++) {
-                uint8_t *corner = &c.edges[t][random_below(3)], old = *corner;
+                uint8_t *corner = &c.vertices[t][random_below(3)], old = *corner;
                 if (place == old) continue;
                 *corner = (uint8_t)place;
                 EXPECT(case_fault(&c, parity, pattern, false), "case %u: triangle %u with edge %u for %u is not found",
                        n, t, place, old);
                 *corner = old;
             }
-            uint8_t first = c.edges[t][0];
-            c.edges[t][0] = c.edges[t][1], c.edges[t][1] = first;
+            uint8_t first = c.vertices[t][0];
+            c.vertices[t][0] = c.vertices[t][1], c.vertices[t][1] = first;
             EXPECT(case_fault(&c, parity, pattern, false), "case %u: triangle %u turned over is not found", n, t);
-            c.edges[t][1] = c.edges[t][0], c.edges[t][0] = first;
+            c.vertices[t][1] = c.vertices[t][0], c.vertices[t][0] = first;
         }
     }
 }

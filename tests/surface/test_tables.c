@@ -222,7 +222,7 @@ static void test_cases_wind_outward(void) {
 /* The corners that edge n of cube_edges joins, from its owner and type; diagonals join the cube's even samples. */
 static split_edge ends_of(unsigned n, unsigned parity) {
     static const unsigned axes_of_type[6] = {1, 2, 4, 3, 5, 6};
-    owned_edge e = cube_edges[n];
+    owned_vertex e = cube_edges[n];
     unsigned a = (unsigned)(e.dx + 2 * e.dy + 4 * e.dz), axes = axes_of_type[e.type];
     if (e.type >= EDGE_XY && split_corner_is_odd(a) != parity) {
         unsigned first = axes & (~axes + 1);
@@ -236,7 +236,7 @@ static void test_cube_edges(void) {
         unsigned joined[8] = {0};
         for (unsigned n = 0; n < CUBE_EDGES; n++) {
             split_edge e = ends_of(n, parity);
-            owned_edge found = edge_between(e.a, e.b);
+            owned_vertex found = edge_between(e.a, e.b);
             EXPECT(!memcmp(&found, &cube_edges[n], sizeof found), "edge_between(%u, %u) is not edge %u", e.a, e.b, n);
             EXPECT((n < 13) == (cube_edges[n].dx == 0), "edge %u is numbered in the wrong column", n);
             joined[e.a] |= 1u << e.b;
@@ -262,7 +262,7 @@ static void expect_cube_case(const cube_case *c, unsigned parity, unsigned patte
         unsigned count = split_triangle_count(split_inside_count(corners, pattern));
         split_edge triangles[2][3] = {{{0, 0}}};
         for (unsigned n = 0; n < count && next < CUBE_TRIANGLES_MAX; n++, next++)
-            for (unsigned m = 0; m < 3; m++) triangles[n][m] = ends_of(c->edges[next][m] % CUBE_EDGES, parity);
+            for (unsigned m = 0; m < 3; m++) triangles[n][m] = ends_of(c->vertices[next][m] % CUBE_EDGES, parity);
         const char *fault = split_fault(corners, pattern, triangles, mirrored);
         EXPECT(!fault, "parity %u, pattern %02x, tetrahedron %u: %s", parity, pattern, t, fault);
     }
@@ -282,8 +282,8 @@ static void test_cube_cases(void) {
     for (unsigned n = 0; n < 512; n++) {
         const cube_case *plain = &cases[0][n / 256][n % 256], *turned = &cases[1][n / 256][n % 256];
         for (unsigned t = 0; t < plain->triangle_count; t++)
-            EXPECT(plain->edges[t][0] == turned->edges[t][0] && plain->edges[t][1] == turned->edges[t][2] &&
-                       plain->edges[t][2] == turned->edges[t][1],
+            EXPECT(plain->vertices[t][0] == turned->vertices[t][0] && plain->vertices[t][1] == turned->vertices[t][2] &&
+                       plain->vertices[t][2] == turned->vertices[t][1],
                    "parity %u, pattern %02x: triangle %u mirrored is not itself turned over", n / 256, n % 256, t);
     }
 }

@@ -9,14 +9,14 @@ _Static_assert((int)LABEL_ROW_TYPES == (int)LABEL_TYPES, "kernels count them so"
 _Static_assert((int)LABEL_SHARED_TYPES == (int)LABEL_TYPE_INNER, "kernels share them so");
 
 /* The word of a row that has the vertex, and whether it is the next sample's along x. */
-static uint32_t vertex_word(owned_edge v) {
+static uint32_t vertex_word(owned_vertex v) {
     const uint32_t first = v.dy && v.dz ? LABEL_WORD_YZ1 : v.dy ? LABEL_WORD_Y1 : v.dz ? LABEL_WORD_Z1 : 0;
     return LABEL_VERTEX(first + v.type, (uint32_t)v.dx);
 }
 
 /* The slot of an edge of a cube: that of the same edge at the cube's own x, or so many more. */
 static uint8_t edge_slot(unsigned edge) {
-    const owned_edge *e = &cube_edges[edge];
+    const owned_vertex *e = &cube_edges[edge];
     unsigned same = 0;
     while (cube_edges[same].dy != e->dy || cube_edges[same].dz != e->dz || cube_edges[same].type != e->type) same++;
     return (uint8_t)(same + (e->dx ? LABEL_SLOT_NEXT : 0));
@@ -36,7 +36,7 @@ static void cubes_make(bool mirrored, uint32_t *words) {
     for (unsigned n = 0; n < 2 * CASES_TWO_SIGNS; n++) {
         cube_case *c = &cases[n];
         for (unsigned at = 0; at < 3u * c->triangle_count; at++)
-            c->edges[at / 3][at % 3] = edge_slot(c->edges[at / 3][at % 3]);
+            c->vertices[at / 3][at % 3] = edge_slot(c->vertices[at / 3][at % 3]);
     }
     memcpy(words, cases, sizeof cases);
 }

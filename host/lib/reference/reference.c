@@ -221,10 +221,10 @@ static uint32_t *triangle_next(const reference *r) {
     return (uint32_t *)r->mesh->triangles.memory + 3 * r->triangle_count;
 }
 
-static void triangle_emit(reference *r, const int64_t cube[3], const owned_edge vertices[3]) {
+static void triangle_emit(reference *r, const int64_t cube[3], const owned_vertex vertices[3]) {
     uint32_t *triangle = triangle_next(r);
     for (unsigned m = 0; m < 3 && triangle; m++) {
-        const owned_edge v = vertices[m];
+        const owned_vertex v = vertices[m];
         triangle[m] = *vertex_id(r, (int64_t[3]){cube[0] + v.dx, cube[1] + v.dy, cube[2] + v.dz}, v.type);
     }
     r->triangle_count++;
@@ -236,13 +236,13 @@ typedef struct cube_signs {
 } cube_signs;
 
 /* On an edge of a tetrahedron whose ends differ: a snapped sample counts as outside, and is the vertex. */
-static owned_edge vertex_between(cube_signs signs, unsigned a, unsigned b) {
+static owned_vertex vertex_between(cube_signs signs, unsigned a, unsigned b) {
     if (signs.snapped >> a & 1) return cube_vertex(CUBE_EDGES + a);
     if (signs.snapped >> b & 1) return cube_vertex(CUBE_EDGES + b);
     return edge_between(a, b);
 }
 
-static bool same_vertex(owned_edge a, owned_edge b) { return memcmp(&a, &b, sizeof a) == 0; }
+static bool same_vertex(owned_vertex a, owned_vertex b) { return memcmp(&a, &b, sizeof a) == 0; }
 
 /* Triangles by the 16 cases of a tetrahedron; those of which two vertices fall together are left out. The kernels have
  * them from the table of cubes that is derived of these, so that each checks the other. */
@@ -251,7 +251,7 @@ static void tetrahedron_emit(reference *r, const int64_t cube[3], const uint8_t 
     for (unsigned v = 0; v < 4; v++) index |= (signs.inside >> corners[v] & 1) << v;
     const tetrahedron_case *c = &tetrahedron_cases[index];
     for (unsigned n = 0; n < c->triangle_count; n++) {
-        owned_edge vertices[3];
+        owned_vertex vertices[3];
         for (unsigned m = 0; m < 3; m++) {
             const uint8_t *ends = tetrahedron_edges[c->triangles[n][r->grid->mirrored ? (3 - m) % 3 : m]];
             vertices[m] = vertex_between(signs, corners[ends[0]], corners[ends[1]]);
@@ -270,8 +270,8 @@ static void tetrahedra_emit(reference *r, const int64_t cube[3], cube_signs sign
 static void case_emit(reference *r, const int64_t cube[3], cube_signs signs) {
     const cube_case *c = &r->cases[cube_parity(r, cube)][signs.inside];
     for (unsigned n = 0; n < c->triangle_count; n++) {
-        owned_edge vertices[3];
-        for (unsigned m = 0; m < 3; m++) vertices[m] = cube_vertex(c->edges[n][m]);
+        owned_vertex vertices[3];
+        for (unsigned m = 0; m < 3; m++) vertices[m] = cube_vertex(c->vertices[n][m]);
         triangle_emit(r, cube, vertices);
     }
 }
@@ -313,7 +313,7 @@ static void cap_emit(reference *r, const int64_t cube[3], unsigned face, cube_si
     }
     const cap_case *c = &r->caps[cube_parity(r, cube)][face][digits];
     for (unsigned n = 0; n < c->triangle_count; n++) {
-        owned_edge vertices[3];
+        owned_vertex vertices[3];
         for (unsigned m = 0; m < 3; m++) vertices[m] = cube_vertex(c->vertices[n][m]);
         triangle_emit(r, cube, vertices);
     }

@@ -59,7 +59,7 @@ static uint32_t vertex_number(const interval_run *v, const int64_t cube[3], cons
     }
     const int bound = vertex < INTERVAL_HIGH ? BOUND_LOW : BOUND_HIGH;
     const uint8_t *ends = tetrahedron_edges[vertex - (bound == BOUND_LOW ? INTERVAL_LOW : INTERVAL_HIGH)];
-    const owned_edge e = edge_between(corners[ends[0]], corners[ends[1]]);
+    const owned_vertex e = edge_between(corners[ends[0]], corners[ends[1]]);
     const int64_t owner[3] = {cube[0] + e.dx, cube[1] + e.dy, cube[2] + e.dz};
     return v->first[bound] + *vertex_id(&v->bounds[bound], owner, e.type);
 }

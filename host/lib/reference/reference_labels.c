@@ -136,12 +136,12 @@ static void row_vertices(labels_run *r, int64_t x0, int64_t x1, int64_t y, int64
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
-static uint32_t vertex_number(const labels_run *r, const int64_t cube[3], owned_edge v) {
+static uint32_t vertex_number(const labels_run *r, const int64_t cube[3], owned_vertex v) {
     return *vertex_id(r, (int64_t[3]){cube[0] + v.dx, cube[1] + v.dy, cube[2] + v.dz}, v.type);
 }
 
 /* The label that comes first is on the inner side; the interface is turned over where that is the outer corner's. */
-static void interface_emit(labels_run *r, const int64_t cube[3], const owned_edge *owners, const label_interface *i,
+static void interface_emit(labels_run *r, const int64_t cube[3], const owned_vertex *owners, const label_interface *i,
                            const uint32_t labels[4]) {
     const bool turned = label_precedes(labels[i->outer], labels[i->inner]);
     for (unsigned n = 1; n + 1 < i->vertex_count; n++, r->triangle_count++) {

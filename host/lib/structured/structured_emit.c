@@ -58,7 +58,7 @@ static tc_status window_read(run *r, const tc_mesh *mesh, const mesh_window *w, 
 }
 
 /* The slot of a vertex in kernel 2 where a work-item has a brick to itself. */
-static uint8_t slot_of(owned_edge v, bool of_eight) {
+static uint8_t slot_of(owned_vertex v, bool of_eight) {
     static const struct {
         uint8_t slot, dx, dy, dz, type;
     } slots[2][CASE_SLOTS] = {
@@ -76,7 +76,7 @@ static uint8_t slot_of(owned_edge v, bool of_eight) {
  * slot. The type of vertices at samples follows those of edges. */
 static uint8_t vertex_item(const run *r, uint8_t vertex) {
     const int types = methods[r->method].vertex_types;
-    owned_edge v = cube_vertex(vertex);
+    owned_vertex v = cube_vertex(vertex);
     if (v.type == VERTEX_SAMPLE && types < VERTEX_SAMPLE) v.type = (uint8_t)types;
     if (r->context->launch.work_items > 1) return (uint8_t)EDGE_ITEM(v.dx, v.dy, v.dz, v.type);
     return slot_of(v, NUMBER_TYPES(types) == 8);
@@ -87,7 +87,7 @@ static void vertices_name(const run *r, cube_case *cases, size_t count) {
     for (size_t n = 0; n < count; n++)
         for (int triangle = 0; triangle < CUBE_TRIANGLES_MAX; triangle++)
             for (int corner = 0; corner < 3; corner++)
-                cases[n].edges[triangle][corner] = vertex_item(r, cases[n].edges[triangle][corner]);
+                cases[n].vertices[triangle][corner] = vertex_item(r, cases[n].vertices[triangle][corner]);
 }
 
 /* The entries of faces on the border. */
@@ -96,7 +96,7 @@ static void caps_make(const run *r, cube_case *out) {
     methods[r->method].derive_caps(caps, r->grid->mirrored);
     for (size_t n = 0; n < CAP_ENTRIES; n++) {
         out[n] = (cube_case){.triangle_count = caps[n].triangle_count};
-        memcpy(out[n].edges, caps[n].vertices, sizeof caps[n].vertices);
+        memcpy(out[n].vertices, caps[n].vertices, sizeof caps[n].vertices);
     }
 }
 

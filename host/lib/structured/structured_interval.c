@@ -64,7 +64,7 @@ static uint8_t vertex_name(const ordered_tetrahedron *t, unsigned vertex) {
     }
     const unsigned block = vertex < INTERVAL_HIGH ? INTERVAL_LOW_BOUND : INTERVAL_HIGH_BOUND;
     const uint8_t *ends = tetrahedron_edges[(vertex - INTERVAL_LOW) % 6];
-    const owned_edge e = edge_between(t->corners[ends[0]], t->corners[ends[1]]);
+    const owned_vertex e = edge_between(t->corners[ends[0]], t->corners[ends[1]]);
     return (uint8_t)INTERVAL_VERTEX(block, e.dy + 2u * e.dz, e.type, e.dx);
 }
 

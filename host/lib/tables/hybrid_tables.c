@@ -58,7 +58,7 @@ static void face_sides(unsigned parity, unsigned pattern, const uint8_t corners[
 
 /* Twice the middle of an edge along an axis. */
 static int middle(unsigned edge, unsigned axis) {
-    const owned_edge e = cube_edges[edge];
+    const owned_vertex e = cube_edges[edge];
     const unsigned start[3] = {e.dx, e.dy, e.dz};
     return (int)(2 * start[axis] + (e.type == axis));
 }
@@ -78,7 +78,7 @@ static int32_t cube_chord_cost(const void *context, uint8_t a, uint8_t b) {
 
 /* Adds the disk of a loop. */
 static void disk_add(const loop *l, int mirrored, cube_case *out) {
-    uint8_t(*triangles)[3] = out->edges + out->triangle_count;
+    uint8_t(*triangles)[3] = out->vertices + out->triangle_count;
     const unsigned count = loop_triangulate(l->edges, (int)l->count, cube_chord_cost, NULL, triangles);
     for (unsigned n = 0; n < count && mirrored; n++) {
         const uint8_t corner = triangles[n][1];

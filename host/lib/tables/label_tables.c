@@ -36,12 +36,12 @@ static unsigned half_of(unsigned corners, unsigned low, unsigned axes, unsigned 
 
 /* The owner of the vertex on a face of a tetrahedron: half of a face of the cube, or one that lies within the cube and
  * then has the number inner. */
-static owned_edge face_owner(unsigned parity, unsigned corners, unsigned inner) {
+static owned_vertex face_owner(unsigned parity, unsigned corners, unsigned inner) {
     unsigned low, axes, diagonal = 0;
-    if (!cube_face_of(corners, &low, &axes)) return (owned_edge){0, 0, 0, (uint8_t)(LABEL_TYPE_INNER + inner)};
+    if (!cube_face_of(corners, &low, &axes)) return (owned_vertex){0, 0, 0, (uint8_t)(LABEL_TYPE_INNER + inner)};
     for (unsigned n = 0; n < 4; n++) diagonal |= 1u << tetrahedron_corners[parity][0][n];
     const unsigned half = half_of(corners, low, axes, diagonal), plane = axes == 3 ? 0 : axes == 5 ? 1 : 2;
-    return (owned_edge){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), (uint8_t)(LABEL_TYPE_FACES + 2 * plane + half)};
+    return (owned_vertex){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), (uint8_t)(LABEL_TYPE_FACES + 2 * plane + half)};
 }
 
 /* Within the cube are the faces of its middle tetrahedron. The one beside the tetrahedron at a corner is that which
@@ -53,14 +53,14 @@ static unsigned middle_face(unsigned parity, unsigned corner) {
 }
 
 /* The place of a type, as corners of the cube at its owner: known where a tetrahedron of that cube has it. */
-static void place_vertex(label_tables *t, unsigned parity, owned_edge owner, unsigned corners) {
+static void place_vertex(label_tables *t, unsigned parity, owned_vertex owner, unsigned corners) {
     if (!owner.dx && !owner.dy && !owner.dz) add_place(t, parity, owner.type, corners, 0);
 }
 
 /* Edges and faces at x + 1, y + 1 or z + 1 are those of the next cube, which finds them at its own first sample. */
 static void vertices_derive(label_tables *t, unsigned parity, unsigned tetrahedron) {
     const uint8_t *corners = tetrahedron_corners[parity][tetrahedron];
-    owned_edge *owners = t->owners[parity][tetrahedron];
+    owned_vertex *owners = t->owners[parity][tetrahedron];
     unsigned all = 0;
     for (unsigned n = 0; n < 4; n++) all |= 1u << corners[n];
     for (unsigned e = 0; e < 6; e++) {
@@ -74,7 +74,7 @@ static void vertices_derive(label_tables *t, unsigned parity, unsigned tetrahedr
         owners[LABEL_FACE + n] = face_owner(parity, face, inner);
         place_vertex(t, parity, owners[LABEL_FACE + n], face);
     }
-    owners[LABEL_CELL] = (owned_edge){0, 0, 0, (uint8_t)(LABEL_TYPE_CELLS + tetrahedron)};
+    owners[LABEL_CELL] = (owned_vertex){0, 0, 0, (uint8_t)(LABEL_TYPE_CELLS + tetrahedron)};
     place_vertex(t, parity, owners[LABEL_CELL], all);
 }
 

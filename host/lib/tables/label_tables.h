@@ -55,9 +55,9 @@ typedef struct label_corners {
 } label_corners;
 
 typedef struct label_tables {
-    label_case cases[LABEL_PATTERNS];                          /* patterns that no labels make have no interfaces */
-    owned_edge owners[2][TETRAHEDRA_PER_CUBE][LABEL_VERTICES]; /* [parity][tetrahedron][vertex] */
-    label_corners corners[2][LABEL_TYPES];                     /* [parity of the cube at the owner][type] */
+    label_case cases[LABEL_PATTERNS];                            /* patterns that no labels make have no interfaces */
+    owned_vertex owners[2][TETRAHEDRA_PER_CUBE][LABEL_VERTICES]; /* [parity][tetrahedron][vertex] */
+    label_corners corners[2][LABEL_TYPES];                       /* [parity of the cube at the owner][type] */
     float offsets[2][LABEL_TYPES][3]; /* from the owner to the middle of those, in index space */
 } label_tables;
 

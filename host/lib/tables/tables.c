@@ -26,7 +26,7 @@ const tetrahedron_case tetrahedron_cases[16] = {
     {0, {{0, 0, 0}, {0, 0, 0}}}, /* all inside */
 };
 
-const owned_edge cube_edges[CUBE_EDGES] = {
+const owned_vertex cube_edges[CUBE_EDGES] = {
     {0, 0, 0, EDGE_X},  {0, 0, 0, EDGE_Y}, {0, 0, 0, EDGE_Z},  {0, 0, 0, EDGE_XY}, {0, 0, 0, EDGE_XZ},
     {0, 0, 0, EDGE_YZ}, {0, 1, 0, EDGE_X}, {0, 1, 0, EDGE_Z},  {0, 1, 0, EDGE_XZ}, /* row y + 1 */
     {0, 0, 1, EDGE_X},  {0, 0, 1, EDGE_Y}, {0, 0, 1, EDGE_XY},                     /* row z + 1 */
@@ -34,15 +34,15 @@ const owned_edge cube_edges[CUBE_EDGES] = {
     {1, 0, 0, EDGE_Y},  {1, 0, 0, EDGE_Z}, {1, 0, 0, EDGE_YZ}, {1, 1, 0, EDGE_Z},  {1, 0, 1, EDGE_Y}, /* at x + 1 */
 };
 
-owned_edge edge_between(unsigned corner_a, unsigned corner_b) {
+owned_vertex edge_between(unsigned corner_a, unsigned corner_b) {
     static const uint8_t type_of_axes[8] = {
         [1] = EDGE_X, [2] = EDGE_Y, [4] = EDGE_Z, [3] = EDGE_XY, [5] = EDGE_XZ, [6] = EDGE_YZ};
     unsigned low = corner_a & corner_b;
-    return (owned_edge){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), type_of_axes[corner_a ^ corner_b]};
+    return (owned_vertex){low & 1, low >> 1 & 1, (uint8_t)(low >> 2), type_of_axes[corner_a ^ corner_b]};
 }
 
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b) {
-    const owned_edge e = edge_between(corner_a, corner_b);
+    const owned_vertex e = edge_between(corner_a, corner_b);
     uint8_t n = 0;
     while (cube_edges[n].dx != e.dx || cube_edges[n].dy != e.dy || cube_edges[n].dz != e.dz ||
            cube_edges[n].type != e.type)
@@ -50,10 +50,10 @@ uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b) {
     return n;
 }
 
-owned_edge cube_vertex(unsigned index) {
+owned_vertex cube_vertex(unsigned index) {
     if (index < CUBE_EDGES) return cube_edges[index];
     const unsigned corner = (index - CUBE_EDGES) & 7;
-    return (owned_edge){corner & 1, corner >> 1 & 1, (uint8_t)(corner >> 2), VERTEX_SAMPLE};
+    return (owned_vertex){corner & 1, corner >> 1 & 1, (uint8_t)(corner >> 2), VERTEX_SAMPLE};
 }
 
 /* On an edge whose ends differ; one that ends in a corner of `zeros` has its vertex there. */
@@ -73,7 +73,7 @@ static void cube_case_derive(cube_case *out, unsigned parity, unsigned inside, u
         for (unsigned v = 0; v < 4; v++) index |= (inside >> corners[v] & 1) << v;
         const tetrahedron_case *c = &tetrahedron_cases[index];
         for (unsigned n = 0; n < c->triangle_count; n++) {
-            uint8_t *edges = out->edges[out->triangle_count];
+            uint8_t *edges = out->vertices[out->triangle_count];
             for (unsigned m = 0; m < 3; m++) {
                 const uint8_t *ends = tetrahedron_edges[c->triangles[n][mirrored ? (3 - m) % 3 : m]];
                 edges[m] = vertex_between(zeros, corners[ends[0]], corners[ends[1]]);

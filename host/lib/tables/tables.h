@@ -40,28 +40,29 @@ typedef struct tetrahedron_case {
 
 extern const tetrahedron_case tetrahedron_cases[16];
 
-/* The edge between two corners of one cube: the sample that owns it, by its offset, and its type. */
-typedef struct owned_edge {
+/* A vertex of a cube, on an edge between two of its corners or at one: the sample that owns it, by its offset, and its
+ * type. */
+typedef struct owned_vertex {
     uint8_t dx, dy, dz;
     uint8_t type;
-} owned_edge;
+} owned_vertex;
 
-owned_edge edge_between(unsigned corner_a, unsigned corner_b);
+owned_vertex edge_between(unsigned corner_a, unsigned corner_b);
 
 /* The 18 edges of a cube: those owned by samples at x (rows (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1)), then those
  * owned by samples at x + 1. */
-extern const owned_edge cube_edges[CUBE_EDGES];
+extern const owned_vertex cube_edges[CUBE_EDGES];
 
 /* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
 /* The place of a vertex of a cube: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
-owned_edge cube_vertex(unsigned index);
+owned_vertex cube_vertex(unsigned index);
 
-/* What all tetrahedra of a cube emit, derived from the tables above; edges are indices as cube_vertex has them. */
+/* What all tetrahedra of a cube emit, derived from the tables above; vertices are indices as cube_vertex has them. */
 typedef struct cube_case {
     uint8_t triangle_count;
-    uint8_t edges[CUBE_TRIANGLES_MAX][3];
+    uint8_t vertices[CUBE_TRIANGLES_MAX][3];
     uint8_t padding;
 } cube_case; /* 32 bytes, as the emit kernel reads it */
 
