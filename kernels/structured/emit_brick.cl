@@ -92,6 +92,10 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
     for (uint z = 0; z < BRICK_PLANES + EDGES_BEFORE; z++)
         for (uint y = 0; y <= BRICK_ROWS + EDGES_BEFORE; y++)
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + (ulong)(int)brick.x;
+    if (ZEROS) {
+        snapped_turn(s, false, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
+        snapped_turn(s, true, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
+    }
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
         batch_gather(s, work->list + first, batch, in, work);

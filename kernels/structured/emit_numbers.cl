@@ -47,7 +47,7 @@ typedef struct brick_work {
 #ifdef REAL
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
-    long link_offsets[LINK_EVEN];
+    snapped_list snapped;
     uint link_codes[LINK_EVEN];
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
     float positions[3 * BATCH_EDGES];
@@ -64,7 +64,6 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 #undef SLOT
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
-    if (ZEROS) link_offsets(s, work->link_offsets);
     for (uint n = 0; n < LINK_EVEN && ZEROS; n++) work->link_codes[n] = link_code(n);
 #endif
 }
@@ -159,22 +158,25 @@ inline_always void neighbour_row_number(uint *number, ulong crossed, uint first)
 }
 
 /* Lists and numbers the samples of a row that are vertices in their own places; row: the place of the first one, in
- * EDGE_CODE. */
+ * EDGE_CODE. Snapped samples on no border of the grid get their edges later. */
 inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong places, uint row, uint first, uint count,
                                uint *number, grid_arrays in, brick_work *work) {
 #ifdef REAL
     const ulong zeros = !ZEROS ? 0 : CLOSED ? work->zero_corners[z][2 * y] & places : places;
-    uchar to[64 + 16];
-    row_snapped_to(s, c.x, c.y + y, c.z + z, zeros, work->link_offsets, in.samples, to);
+    const ulong inner = samples_inner(s, c.y + y, c.z + z, c.x / 64);
 #endif
-    for (; places; places &= places - 1) {
+    for (; places; places &= places - 1, count++) {
         const uint bit = lowest_bit(places);
         number[NUMBER_STEP * bit + PLACE_TYPE] = first + count;
 #ifdef REAL
-        const bool is_zero = CLOSED ? zeros >> bit & 1 : ZEROS;
-        work->list[count] = row + bit + (is_zero ? work->link_codes[to[bit]] : EDGE_PLACE);
+        work->list[count] = row + bit;
+        if (CLOSED && !(zeros >> bit & 1))
+            work->list[count] += EDGE_PLACE;
+        else if (inner >> bit & 1)
+            snapped_enter(&work->snapped, (bit ^ row_odd(s, y, z)) & 1, count);
+        else
+            work->list[count] += work->link_codes[snapped_to(s, c.x + bit, c.y + y, c.z + z, in.samples)];
 #endif
-        count++;
     }
     return count;
 }
@@ -190,6 +192,9 @@ inline_always void edge_list(const uint codes[2], uint bit, uint *number, uint f
 /* Lists and numbers the vertices that the brick owns; returns their count. */
 inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, brick_work *work) {
     uint count = 0;
+#ifdef REAL
+    work->snapped.count[0] = work->snapped.count[1] = 0;
+#endif
     for (; mask; mask &= mask - 1) {
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
