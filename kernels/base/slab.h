@@ -55,8 +55,8 @@ enum { CUBE_CASE_BYTES = 32 };
 enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FACE_CASES };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
- * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of edge, and one or two unused ones that
- * make their number a power of two. The table of cases names a vertex by its slot (case_slots.h). */
+ * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of vertex, and others that make their
+ * number a power of two. The table of cases names a vertex by its slot (case_slots.h). */
 #define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
 enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
 

@@ -22,18 +22,14 @@ inline_always bool links_fit16(const slab *s, uint w, uint y, uint z) {
     return last <= s->arrays.sample_offset + s->arrays.sample_count;
 }
 
-/* Prefetches samples of rows of a brick, bit n for row n, and of the rows beside them. */
-inline_always void links_prefetch(const slab *s, uint w, uint y, uint z, uint rows, global const BITS *samples) {
-    uint wide[BRICK_PLANES + 2] = {0}; /* by plane, bit n: row n - 1 */
-    for (uint plane = 0; plane < BRICK_PLANES; plane++) {
-        const uint here = rows >> (BRICK_ROWS * plane) & 0xff, beside = here | here << 1 | here << 2;
-        for (uint n = 0; n < 3; n++) wide[plane + n] |= beside;
-    }
-    for (uint plane = 0; plane < BRICK_PLANES + 2; plane++)
-        for (uint rest = wide[plane]; rest; rest &= rest - 1) {
-            global const BITS *row = samples + row_start(s, y + lowest_bit(rest) - 1, z + plane - 1) + 64ul * w;
-            for (uint sample = 0; sample < 64; sample += 64 / sizeof(BITS)) line_prefetch(row + sample);
-        }
+/* Prefetches the samples of a brick, and of the rows beside it. */
+inline_always void links_prefetch(const slab *s, uint w, uint y, uint z, global const BITS *samples) {
+    const ulong plane_size = (ulong)s->ny * s->nx, before = plane_size + s->nx;
+    global const BITS *plane = samples + (long)(row_start(s, y, z) + 64ul * w - before);
+    for (uint n = 0; n < BRICK_PLANES + 2; n++, plane += plane_size)
+        for (uint row = 0; row < BRICK_ROWS + 2; row++)
+            for (uint sample = 0; sample < 64; sample += 64 / sizeof(BITS))
+                line_prefetch(plane + row * (ulong)s->nx + sample);
 }
 
 /* Bits beyond the sixteen from the lowest one on. */

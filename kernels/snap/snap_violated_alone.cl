@@ -104,7 +104,7 @@ inline_always void violated_find(const slab *s, const brick_around *a, brick_pla
         const borders b = borders_of(s, r);
         plane_enter(s, r, rows_wanted(s, a, r, &b, cells), &b, samples, l);
     }
-    links_prefetch(s, p.w, p.y, p.z, l->rows, samples);
+    links_prefetch(s, p.w, p.y, p.z, samples);
     if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, results);
 }
 

@@ -221,9 +221,8 @@ inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
     uint16 slots[2] = {0, 0};
 #define SLOT(slot, x, y, z, type)                                                                                      \
     if ((type) < VERTEX_TYPES)                                                                                         \
-        slots[(slot) / 16] =                                                                                           \
-            words_with(slots[(slot) / 16], 1 << (slot) % 16,                                                           \
-                       WORDS_AT(number + NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) - (slot) % 16));
+        slots[(slot) / 16] = words_with(slots[(slot) / 16], 1 << (slot) % 16,                                          \
+                                        WORDS_AT(number + NUMBER_AT(x, y, z, type) - (slot) % 16));
     if (NUMBER_STEP == 8) {
         SLOTS_OF_EIGHT(SLOT)
     } else {
@@ -279,8 +278,8 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
     uint before = 0;
 #ifdef REAL
-    if (ZEROS) { /* and of those before */
-        links_prefetch(s, c.x / 64, c.y, c.z, mask, samples);
+    if (ZEROS) { /* of all rows, and of those before them */
+        links_prefetch(s, c.x / 64, c.y, c.z, samples);
         return;
     }
 #endif
