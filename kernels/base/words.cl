@@ -24,6 +24,11 @@ inline_always ulong word_valid(const slab *s, uint w) {
 inline_always ulong has_before(uint w) { return w ? ~0ul : ~1ul; }
 inline_always ulong has_after(const slab *s, uint w) { return w + 1 < s->words_x ? ~0ul : word_valid(s, w) >> 1; }
 
+/* Samples of a row that are on no border of the grid. */
+inline_always ulong samples_inner(const slab *s, uint y, uint z, uint w) {
+    return y > 0 && y + 1 < s->ny && z > 0 && z + 1 < s->nz ? has_before(w) & has_after(s, w) : 0;
+}
+
 inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->results.word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }

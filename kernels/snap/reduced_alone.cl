@@ -58,12 +58,13 @@ inline_always lanes axes_differ(const link_signs *l) {
 }
 
 inline_always lanes vertices_wrong(const link_signs *l) {
-    lanes wrong = 0, any = 0;
+    lanes wrong = 0;
 #pragma unroll
-    for (uint n = LINK_ODD; n < LINK_EVEN; n++) any |= l->zero[n];
-    if (!lanes_any(any)) return 0;
+    for (uint face = LINK_ODD; face < LINK_EVEN; face += 4) {
+        if (!lanes_any(l->zero[face] | l->zero[face + 1] | l->zero[face + 2] | l->zero[face + 3])) continue;
 #pragma unroll
-    for (uint n = LINK_ODD; n < LINK_EVEN; n++) wrong |= l->zero[n] & ~vertex_ring_regular(l, ring_of(n));
+        for (uint n = face; n < face + 4; n++) wrong |= l->zero[n] & ~vertex_ring_regular(l, ring_of(n));
+    }
     return wrong;
 }
 

@@ -51,22 +51,15 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
 
 inline_always uint brick_count_of(const slab *s) { return window_layers(s) * s->bricks_y * s->words_x; }
 
-/* Whether a brick is mixed, or one around it is on another side. Beyond the window's borders, bricks at the borders
- * stand for those around. */
+/* Whether a brick is mixed, or one around it is on another side. */
 inline_always bool brick_near(const slab *s, uint number, global const brick_state *bricks) {
-    const long layer_size = (long)s->bricks_y * s->words_x, row_size = s->words_x;
-    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y, layer = number / (uint)layer_size;
-    const long before = w ? -1 : 0, after = w + 1 < s->words_x ? 1 : 0;
-    const long rows[3] = {row ? -row_size : 0, 0, row + 1 < s->bricks_y ? row_size : 0};
-    const long layers[3] = {layer ? -layer_size : 0, 0, layer + 1 < window_layers(s) ? layer_size : 0};
+    const brick_steps steps = brick_steps_of(s, number);
     const uint sign = bricks[number].sign;
     uint differ = 0;
     if (sign == SIGN_MIXED) return true;
 #pragma unroll
-    for (uint n = 0; n < 9; n++) {
-        global const brick_state *at = bricks + number + rows[n % 3] + layers[n / 3];
-        differ |= (at[before].sign ^ sign) | (at[0].sign ^ sign) | (at[after].sign ^ sign);
-    }
+    for (uint n = 0; n < 27; n++)
+        differ |= bricks[number + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3]].sign ^ sign;
     return differ != 0;
 }
 

@@ -22,6 +22,21 @@ inline_always brick_place brick_place_of(const slab *s, uint number) {
     return p;
 }
 
+/* From the number of a brick of the window to those of the bricks beside it, modulo 2^32: by step plus 1. */
+typedef struct brick_steps {
+    uint word[3], row[3], layer[3];
+} brick_steps;
+
+/* A step across the window's border stays. */
+inline_always brick_steps brick_steps_of(const slab *s, uint number) {
+    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y;
+    const uint layer_size = s->bricks_y * s->words_x, layer = number / layer_size;
+    brick_steps steps = {{w ? -1u : 0, 0, w + 1 < s->words_x ? 1 : 0},
+                         {row ? -s->words_x : 0, 0, row + 1 < s->bricks_y ? s->words_x : 0},
+                         {layer ? -layer_size : 0, 0, layer + 1 < window_layers(s) ? layer_size : 0}};
+    return steps;
+}
+
 /* Rows of a brick. In a dense set: from (y, z) on, one after another in y. In a strided one, of even samples of one
  * colour: rows y, y + 2, y + 4, y + 6 of plane z, then those of plane z + 2. */
 typedef struct row_set {

@@ -22,20 +22,19 @@ inline_always row_set set_strided(uint y0, uint z0, uint w, uint set, uint odd_y
     return r;
 }
 
-/* The words of a brick and of the 26 around it, by step in z, y and x, plus 1. */
+/* The words of a brick and of the 26 around it, by step in z, y and x, plus 1. Beyond the window's borders, bricks at
+ * the borders stand for those around. */
 typedef struct brick_around {
     global const ulong *words[3][3][3];
 } brick_around;
 
 inline_always void around_make(const slab *s, global const ulong *words, global const brick_state *bricks, uint number,
                                brick_around *a) {
-    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y;
-    const uint layer = number / s->words_x / s->bricks_y, layers = window_layers(s);
+    const brick_steps steps = brick_steps_of(s, number);
+#pragma unroll
     for (uint n = 0; n < 27; n++) {
-        const uint x = w + n % 3 - 1, y = row + n / 3 % 3 - 1, z = layer + n / 9 - 1; /* wrap below 0 */
-        const bool exists = x < s->words_x && y < s->bricks_y && z < layers;
-        const uint other = exists ? (z * s->bricks_y + y) * s->words_x + x : 0;
-        a->words[n / 9][n / 3 % 3][n % 3] = brick_words(other, exists ? bricks[other].sign : (uint)SIGN_OUTSIDE, words);
+        const uint other = number + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3];
+        a->words[n / 9][n / 3 % 3][n % 3] = brick_words(other, bricks[other].sign, words);
     }
 }
 

@@ -53,8 +53,8 @@ inline_always void list_finish(const slab *s, violated_list *l, const long *offs
         ulong found = 0;
         for (ulong rest = l->crossed[row]; rest; rest = bits_after16(rest)) {
             const uint bit = lowest_bit(rest);
-            const samples16 here = samples16_of(s, first + bit, odd ^ (bit & 1));
-            found |= (ulong)violated16(s, &here, offsets) << bit;
+            const samples16 here = samples16_of(s, vload16(0, first + bit));
+            found |= (ulong)violated16(s, &here, first + bit, odd ^ (bit & 1), offsets) << bit;
         }
         l->violated[row] |= found & l->crossed[row];
     }
@@ -104,7 +104,7 @@ inline_always void violated_find(const slab *s, const brick_around *a, brick_pla
         const borders b = borders_of(s, r);
         plane_enter(s, r, rows_wanted(s, a, r, &b, cells), &b, samples, l);
     }
-    links_prefetch(s, p.w, p.y, p.z, l->rows, samples);
+    links_prefetch(s, p.w, p.y, p.z, samples);
     if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, results);
 }
 

@@ -1,5 +1,8 @@
 /*
- * snapped_alone.cl - kernel 2 in method snap, for a work-item alone: the edges of the snapped samples of a row
+ * snapped_alone.cl - kernel 2 in method snap, for a work-item alone: the edges of the snapped samples of a brick
+ *
+ * Odd and even samples, whose links differ, are listed apart. Sixteen of a list are then looked at together, wherever
+ * they are in the brick.
  */
 #ifndef SNAPPED_ALONE_CL
 #define SNAPPED_ALONE_CL
@@ -9,21 +12,49 @@
 
 #ifdef REAL
 
-/* In their links the other ends of the edges of a row's snapped samples, a bit each. */
-inline_always void row_snapped_to(const slab *s, uint x, uint y, uint z, ulong snapped, const long *offsets,
-                                  global const BITS *samples, uchar to[64 + 16]) {
-    const bool inner_row = y > 0 && y + 1 < s->ny && z > 0 && z + 1 < s->nz && links_fit16(s, x / 64, y, z);
-    const ulong inner = inner_row ? has_before(x / 64) & has_after(s, x / 64) : 0;
-    const uint odd = (s->parity + y + z) & 1;
-    for (ulong rest = snapped & inner; rest; rest = bits_after16(rest)) {
-        const uint bit = lowest_bit(rest);
-        const samples16 here = samples16_of(s, samples + row_start(s, y, z) + x + bit, odd ^ (bit & 1));
-        const uchar16 nearest = nearest16(s, &here, offsets);
-        *(bytes16 *)(to + bit) = nearest < (uchar16)LINK_EVEN ? nearest : (uchar16)1;
+/* Snapped samples on no border of the grid, of either parity: which vertices of the brick they are. */
+typedef struct snapped_list {
+    ushort vertex[2][BRICK_WORDS * 32];
+    uint count[2];
+} snapped_list;
+
+inline_always void snapped_enter(snapped_list *list, uint odd, uint vertex) {
+    list->vertex[odd][list->count[odd]++] = (ushort)vertex;
+}
+
+/* Of sixteen samples at these places in the sample buffer the other ends of their edges. */
+inline_always uchar16 snapped16_to(const slab *s, const ulong at[16], bool odd, global const BITS *samples) {
+    BITS own[16];
+    links16 links;
+    for (uint lane = 0; lane < 16; lane++) {
+        global const BITS *sample = samples + at[lane];
+        own[lane] = *sample;
+        uint n = 0;
+#define LINK_BITS(x, y, z)                                                                                             \
+    if (n < (odd ? LINK_ODD : LINK_EVEN)) links.bits[n++][lane] = sample[(x) + ((y) + (z) * (long)s->ny) * (long)s->nx];
+        LINK_SAMPLES(LINK_BITS)
+#undef LINK_BITS
     }
-    for (ulong rest = snapped & ~inner; rest; rest &= rest - 1) {
-        const uint bit = lowest_bit(rest);
-        to[bit] = (uchar)snapped_to(s, x + bit, y, z, samples);
+    const samples16 here = samples16_of(s, vload16(0, own));
+    const uchar16 nearest = nearest16(s, &here, &links, odd);
+    return nearest < (uchar16)LINK_EVEN ? nearest : (uchar16)1;
+}
+
+/* Adds to the places of the snapped samples the codes of their edges; places: the brick's vertices, as EDGE_CODE has
+ * them. row_start: samples before a row of the brick, by bits 7 to 13 of the code. */
+inline_always void snapped_turn(const slab *s, bool odd, const snapped_list *list, const uint *codes,
+                                const ulong *row_start, global const BITS *samples, uint *places) {
+    const ushort *vertex = list->vertex[odd];
+    for (uint first = 0, count = list->count[odd]; first < count; first += 16) {
+        const uint left = min(count - first, 16u);
+        ulong at[16];
+        uchar to[16];
+        for (uint n = 0; n < 16; n++) {
+            const uint place = places[vertex[first + min(n, left - 1)]];
+            at[n] = row_start[place >> 7 & 0x7f] + (place & 0x7f);
+        }
+        vstore16(snapped16_to(s, at, odd, samples), 0, to);
+        for (uint n = 0; n < left; n++) places[vertex[first + n]] += codes[to[n]];
     }
 }
 

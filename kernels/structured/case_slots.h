@@ -10,7 +10,8 @@
 #ifndef CASE_SLOTS_H
 #define CASE_SLOTS_H
 
-/* SLOT(slot, x, y, z, type): of the sample at this offset in the cube. Where a sample has eight numbers: */
+/* SLOT(slot, x, y, z, type): of the sample at this offset in the cube. Where a sample has eight numbers, the last one
+ * is again that of a vertex in the place of the next sample, so that those of two samples come together: */
 #define SLOTS_OF_EIGHT(SLOT)                                                                                           \
     SLOT(0, 0, 0, 0, 0)                                                                                                \
     SLOT(1, 0, 0, 0, 1)                                                                                                \
@@ -19,25 +20,25 @@
     SLOT(4, 0, 0, 0, 4)                                                                                                \
     SLOT(5, 0, 0, 0, 5)                                                                                                \
     SLOT(6, 0, 0, 0, 6)                                                                                                \
+    SLOT(7, 1, 0, 0, 6)                                                                                                \
     SLOT(8, 0, 1, 1, 0)                                                                                                \
     SLOT(9, 1, 0, 0, 1)                                                                                                \
     SLOT(10, 1, 0, 0, 2)                                                                                               \
     SLOT(11, 1, 1, 0, 2)                                                                                               \
     SLOT(12, 1, 0, 1, 1)                                                                                               \
     SLOT(13, 1, 0, 0, 5)                                                                                               \
-    SLOT(14, 1, 0, 0, 6)                                                                                               \
+    SLOT(14, 0, 1, 1, 6)                                                                                               \
+    SLOT(15, 1, 1, 1, 6)                                                                                               \
     SLOT(16, 0, 1, 0, 0)                                                                                               \
     SLOT(17, 0, 0, 1, 1)                                                                                               \
     SLOT(18, 0, 1, 0, 2)                                                                                               \
     SLOT(19, 0, 0, 1, 3)                                                                                               \
     SLOT(20, 0, 1, 0, 4)                                                                                               \
     SLOT(21, 0, 0, 1, 0)                                                                                               \
-    SLOT(26, 1, 1, 1, 6)                                                                                               \
-    SLOT(27, 0, 1, 1, 6)                                                                                               \
-    SLOT(28, 1, 0, 1, 6)                                                                                               \
-    SLOT(29, 0, 0, 1, 6)                                                                                               \
-    SLOT(30, 0, 1, 0, 6)                                                                                               \
-    SLOT(31, 1, 1, 0, 6)
+    SLOT(22, 0, 1, 0, 6)                                                                                               \
+    SLOT(23, 1, 1, 0, 6)                                                                                               \
+    SLOT(27, 0, 0, 1, 6)                                                                                               \
+    SLOT(28, 1, 0, 1, 6)
 
 /* Where it has four: */
 #define SLOTS_OF_FOUR(SLOT)                                                                                            \

@@ -92,6 +92,10 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
     for (uint z = 0; z < BRICK_PLANES + EDGES_BEFORE; z++)
         for (uint y = 0; y <= BRICK_ROWS + EDGES_BEFORE; y++)
             work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + (ulong)(int)brick.x;
+    if (ZEROS) {
+        snapped_turn(s, false, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
+        snapped_turn(s, true, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
+    }
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
         batch_gather(s, work->list + first, batch, in, work);
@@ -217,9 +221,8 @@ inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
     uint16 slots[2] = {0, 0};
 #define SLOT(slot, x, y, z, type)                                                                                      \
     if ((type) < VERTEX_TYPES)                                                                                         \
-        slots[(slot) / 16] =                                                                                           \
-            words_with(slots[(slot) / 16], 1 << (slot) % 16,                                                           \
-                       WORDS_AT(number + NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) - (slot) % 16));
+        slots[(slot) / 16] = words_with(slots[(slot) / 16], 1 << (slot) % 16,                                          \
+                                        WORDS_AT(number + NUMBER_AT(x, y, z, type) - (slot) % 16));
     if (NUMBER_STEP == 8) {
         SLOTS_OF_EIGHT(SLOT)
     } else {
@@ -275,8 +278,8 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
     uint before = 0;
 #ifdef REAL
-    if (ZEROS) { /* and of those before */
-        links_prefetch(s, c.x / 64, c.y, c.z, mask, samples);
+    if (ZEROS) { /* of all rows, and of those before them */
+        links_prefetch(s, c.x / 64, c.y, c.z, samples);
         return;
     }
 #endif

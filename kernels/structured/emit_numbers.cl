@@ -19,11 +19,16 @@
 #include "tetrahedra.cl"
 
 #define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)
+#define PLACE_TWICE (NUMBER_STEP == 8 && VERTEX_TYPES > PLACE_TYPE)
 #define LIST_EDGES  (BRICK_WORDS * 64 * (CLOSED ? 7 : VERTEX_TYPES)) /* or cubes, and their faces on the border */
 #define LIST_MORE   16                                               /* items that may be stored past its end */
 #define BATCH_EDGES 512
 #define BATCH_CUBES 128
 #define CASE_ITEMS  (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
+
+/* Where the table of numbers has that of a vertex of a cube, from the cube's first sample on. */
+#define NUMBER_AT(x, y, z, type)                                                                                       \
+    (NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) - (PLACE_TWICE && (x) && (type) == PLACE_TYPE ? NUMBER_STEP - 1 : 0))
 
 /* Sign words of the brick's rows [0] and of the next brick in y [1], in the brick's planes and the next plane. */
 typedef struct brick_signs {
@@ -47,7 +52,7 @@ typedef struct brick_work {
 #ifdef REAL
     ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
-    long link_offsets[LINK_EVEN];
+    snapped_list snapped;
     uint link_codes[LINK_EVEN];
     BITS a[BATCH_EDGES], b[BATCH_EDGES];
     float positions[3 * BATCH_EDGES];
@@ -55,7 +60,7 @@ typedef struct brick_work {
 } brick_work;
 
 inline_always void brick_work_begin(const slab *s, brick_work *work) {
-#define SLOT(slot, x, y, z, type) work->slot_index[slot] = NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type);
+#define SLOT(slot, x, y, z, type) work->slot_index[slot] = NUMBER_AT(x, y, z, type);
     if (NUMBER_STEP == 8) {
         SLOTS_OF_EIGHT(SLOT)
     } else {
@@ -64,7 +69,6 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 #undef SLOT
 #ifdef REAL
     for (uint n = 0; n < 64; n++) work->step[n] = edge_step(s, n << 14);
-    if (ZEROS) link_offsets(s, work->link_offsets);
     for (uint n = 0; n < LINK_EVEN && ZEROS; n++) work->link_codes[n] = link_code(n);
 #endif
 }
@@ -150,31 +154,41 @@ inline_always void crossed_store(const slab *s, corner c, const brick_signs *sig
 /* Whether the first cube of a row of the brick is odd. */
 inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
 
-/* Numbers the crossed edges of a row of another brick. Where there are none, column 64 gets a meaningless number. */
-inline_always void neighbour_row_number(uint *number, ulong crossed, uint first) {
+/* Stores the number of a vertex of a row; one in the place of a sample also beside the sample before. */
+inline_always void number_store(uint *number, uint bit, uint type, uint value) {
+    number[NUMBER_STEP * bit + type] = value;
+    if (PLACE_TWICE && type == PLACE_TYPE) number[bit ? NUMBER_STEP * bit - 1 : PLACE_TYPE] = value;
+}
+
+/* Numbers the vertices of a type in a row of another brick. Where there are none, column 64 gets a meaningless number.
+ */
+inline_always void neighbour_row_number(uint *number, uint type, ulong crossed, uint first) {
     do {
-        number[NUMBER_STEP * lowest_bit(crossed)] = first++;
+        number_store(number, lowest_bit(crossed), type, first++);
         crossed &= crossed - 1;
     } while (crossed);
 }
 
 /* Lists and numbers the samples of a row that are vertices in their own places; row: the place of the first one, in
- * EDGE_CODE. */
+ * EDGE_CODE. Snapped samples on no border of the grid get their edges later. */
 inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong places, uint row, uint first, uint count,
                                uint *number, grid_arrays in, brick_work *work) {
 #ifdef REAL
     const ulong zeros = !ZEROS ? 0 : CLOSED ? work->zero_corners[z][2 * y] & places : places;
-    uchar to[64 + 16];
-    row_snapped_to(s, c.x, c.y + y, c.z + z, zeros, work->link_offsets, in.samples, to);
+    const ulong inner = samples_inner(s, c.y + y, c.z + z, c.x / 64);
 #endif
-    for (; places; places &= places - 1) {
+    for (; places; places &= places - 1, count++) {
         const uint bit = lowest_bit(places);
-        number[NUMBER_STEP * bit + PLACE_TYPE] = first + count;
+        number_store(number, bit, PLACE_TYPE, first + count);
 #ifdef REAL
-        const bool is_zero = CLOSED ? zeros >> bit & 1 : ZEROS;
-        work->list[count] = row + bit + (is_zero ? work->link_codes[to[bit]] : EDGE_PLACE);
+        work->list[count] = row + bit;
+        if (CLOSED && !(zeros >> bit & 1))
+            work->list[count] += EDGE_PLACE;
+        else if (inner >> bit & 1)
+            snapped_enter(&work->snapped, (bit ^ row_odd(s, y, z)) & 1, count);
+        else
+            work->list[count] += work->link_codes[snapped_to(s, c.x + bit, c.y + y, c.z + z, in.samples)];
 #endif
-        count++;
     }
     return count;
 }
@@ -190,6 +204,9 @@ inline_always void edge_list(const uint codes[2], uint bit, uint *number, uint f
 /* Lists and numbers the vertices that the brick owns; returns their count. */
 inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, brick_work *work) {
     uint count = 0;
+#ifdef REAL
+    work->snapped.count[0] = work->snapped.count[1] = 0;
+#endif
     for (; mask; mask &= mask - 1) {
         uint brick_row = lowest_bit(mask), y = brick_row % BRICK_ROWS, z = brick_row / BRICK_ROWS;
         uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
@@ -228,11 +245,11 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     for (uint rows = lanes_nonzero(any); rows; rows &= rows - 1) {
         uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
         owner o = owner_of(s, c.y + y, z, w, k1);
-        neighbour_row_number(number, crossed[0][y], number_of(o, 0));
-        neighbour_row_number(number + 1, crossed[1][y], number_of(o, 1));
-        if (DIAGONALS) neighbour_row_number(number + 3, crossed[2][y], number_of(o, 3));
+        neighbour_row_number(number, 0, crossed[0][y], number_of(o, 0));
+        neighbour_row_number(number, 1, crossed[1][y], number_of(o, 1));
+        if (DIAGONALS) neighbour_row_number(number, 3, crossed[2][y], number_of(o, 3));
         if (VERTEX_TYPES > PLACE_TYPE)
-            neighbour_row_number(number + PLACE_TYPE, crossed[3][y], number_of(o, PLACE_TYPE));
+            neighbour_row_number(number, PLACE_TYPE, crossed[3][y], number_of(o, PLACE_TYPE));
     }
 }
 
@@ -264,10 +281,10 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         if (!(x | z | xz | places)) continue;
         owner o = owner_of(s, y, c.z + n, w, k1);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
-        neighbour_row_number(number, x, number_of(o, 0));
-        neighbour_row_number(number + 2, z, number_of(o, 2));
-        if (DIAGONALS) neighbour_row_number(number + 4, xz, number_of(o, 4));
-        if (VERTEX_TYPES > PLACE_TYPE) neighbour_row_number(number + PLACE_TYPE, places, number_of(o, PLACE_TYPE));
+        neighbour_row_number(number, 0, x, number_of(o, 0));
+        neighbour_row_number(number, 2, z, number_of(o, 2));
+        if (DIAGONALS) neighbour_row_number(number, 4, xz, number_of(o, 4));
+        if (VERTEX_TYPES > PLACE_TYPE) neighbour_row_number(number, PLACE_TYPE, places, number_of(o, PLACE_TYPE));
     }
 }
 
@@ -280,8 +297,8 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
                                 brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint index = NUMBER_STEP * NUMBER_INDEX(64, row - c.y, z - c.z) + type;
-        work->number[index] = number_of(owner_of(s, row, z, w, k1), type);
+        uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, row - c.y, z - c.z);
+        number_store(number, 64, type, number_of(owner_of(s, row, z, w, k1), type));
     }
 }
 
