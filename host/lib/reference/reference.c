@@ -296,10 +296,10 @@ static void row_surface(reference *r, int64_t x0, int64_t x1, int64_t y, int64_t
         const uint64_t before = r->triangle_count;
         const cube_signs signs = signs_of(r, cube);
         if (signs.inside == 0 || signs.inside == 255) continue;
-        if (r->method == TC_METHOD_HYBRID)
-            case_emit(r, cube, signs);
-        else
+        if (method_has_diagonals(r->method))
             tetrahedra_emit(r, cube, signs);
+        else
+            case_emit(r, cube, signs);
         r->active_cell_count += r->triangle_count > before;
     }
 }
@@ -394,7 +394,7 @@ tc_status reference_begin(reference *r, const tc_grid *grid, const tc_extract_op
     r->closed = options->closed;
     r->halo_layer = grid_has_seam(grid) ? own_layer(r, 1) : -1;
     r->id_types = r->closed ? VERTEX_TYPES_MOST : methods[r->method].vertex_types;
-    if (r->method == TC_METHOD_HYBRID) methods[r->method].derive(r->cases[0], grid->mirrored);
+    if (!method_has_diagonals(r->method)) methods[r->method].derive(r->cases[0], grid->mirrored);
     if (r->closed) methods[r->method].derive_caps(r->caps[0][0], grid->mirrored);
     r->signs = malloc((size_t)grid_sample_count(grid));
     if (!r->signs) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the signs of the samples");

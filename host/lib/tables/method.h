@@ -22,4 +22,8 @@ extern const method_row methods[METHOD_COUNT]; /* by tc_method */
 /* Whether samples can be vertices, and so have a third sign, 0. */
 static inline bool method_has_zeros(tc_method method) { return methods[method].vertex_types > VERTEX_SAMPLE; }
 
+/* Whether diagonals of faces have vertices. Without, a cube's triangles come from the method's table alone; else the
+ * reference makes them tetrahedron by tetrahedron. */
+static inline bool method_has_diagonals(tc_method method) { return methods[method].vertex_types > EDGE_XY; }
+
 #endif
