@@ -42,7 +42,8 @@ enum { WHOLE_CORNERS = 12 };
 
 typedef struct active_cell {
     slab_u32 points[WHOLE_CORNERS];
-    slab_u32 pattern; /* bit n: corner n is inside; from bit 16 on the cell's code. The host puts the case here. */
+    slab_u32 pattern; /* bit n: corner n is inside; from bit 16 on the cell's code. Then the host puts the case's number
+                         in its place. */
     slab_u32
         triangle;    /* its number in the list of cells; then the index of its first triangle, from its tile's first */
     slab_u32 vertex; /* as above */
@@ -85,7 +86,7 @@ typedef struct cap_face {
 enum {
     HEAD_TICKETS, /* one for each kernel */
     HEAD_ACTIVE_CLUSTERS = HEAD_TICKETS + 8,
-    HEAD_CROSSED, /* edges of active tetrahedra, counted once for each */
+    HEAD_CROSSED, /* crossed edges, counted in every tetrahedron that has them */
     HEAD_INVALID, /* not 0: a tetrahedron has a point number that is not below point_count */
     HEAD_FULL,    /* not 0: the table of edges is too small */
     HEAD_CUT,     /* cells with a diagonal that another cell has as its edge */
@@ -98,12 +99,10 @@ enum {
 };
 
 enum { KERNEL_CLASSIFY, KERNEL_LIST, KERNEL_JOIN, KERNEL_NUMBER, KERNEL_EMIT, COMPLEX_KERNELS };
-enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS }; /* of cells: after joining, before it */
-enum {
-    KERNEL_CAPS_COUNT = WHOLE_KERNELS,
-    KERNEL_CAPS_EMIT,
-    ALL_COMPLEX_KERNELS
-}; /* of closed surfaces: the last two */
+/* Of cells: KERNEL_CUT runs after joining, KERNEL_CLEAR before it. */
+enum { KERNEL_CUT = COMPLEX_KERNELS, KERNEL_CLEAR, WHOLE_KERNELS };
+/* Of closed surfaces: the last two. */
+enum { KERNEL_CAPS_COUNT = WHOLE_KERNELS, KERNEL_CAPS_EMIT, ALL_COMPLEX_KERNELS };
 /* Of interval volumes: all of theirs. */
 enum {
     KERNEL_VOLUME_COUNT,
@@ -114,7 +113,8 @@ enum {
     KERNEL_VOLUME_EMIT,
     VOLUME_KERNELS
 };
-enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT }; /* the others have their own numbers */
+/* Tickets have the numbers of kernels up to KERNEL_CUT; KERNEL_CLEAR takes none. */
+enum { TICKET_CAPS_COUNT = KERNEL_CUT + 1, TICKET_CAPS_EMIT };
 
 #define EDGE_NONE 0xffffffffu
 

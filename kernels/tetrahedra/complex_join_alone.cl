@@ -18,7 +18,7 @@ typedef struct edge_work {
     uint2 points[RECENT_EDGES + 1];
     uint slots[RECENT_EDGES + 1];
     uint queue[EDGE_QUEUE];
-    uint hashed, asked, entered; /* new edges so far */
+    uint hashed, prefetched, entered; /* new edges so far */
 } edge_work;
 
 /* This bit marks an edge that has been met before; the other bits are the slot where. */
@@ -51,9 +51,9 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
     }
 }
 
-/* Of edges met before, entries name the slot whose entry they share: puts that in. */
-inline_always void entries_settle(const complex_job *c, uint a, global const active_cell *active,
-                                  global const uchar *cases, global uint *entries) {
+/* An edge met before has the slot of that meeting in place of an entry: replaces it by that slot's entry. */
+inline_always void entries_share(const complex_job *c, uint a, global const active_cell *active,
+                                 global const uchar *cases, global uint *entries) {
     for (uint rest = own_edges(a, active, cases); rest; rest &= rest - 1) {
         const uint slot = slot_of(c, a, lowest_bit(rest)), entry = entries[slot];
         entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
@@ -73,9 +73,9 @@ inline_always void edges_hash(const complex_job *c, uint a, global const active_
         edge_queue(c, 4 * a + n, edge[n], hash[n], n < edges, table, entries, work);
 }
 
-/* Of edges met before, entries name the slot whose entry they share: puts that in. */
-inline_always void entries_settle(const complex_job *c, uint a, global const active_tetrahedron *active,
-                                  global const uchar *cases, global uint *entries) {
+/* An edge met before has the slot of that meeting in place of an entry: replaces it by that slot's entry. */
+inline_always void entries_share(const complex_job *c, uint a, global const active_tetrahedron *active,
+                                 global const uchar *cases, global uint *entries) {
     for (uint slot = 4 * a; slot < 4 * a + 4; slot++) {
         uint entry = entries[slot];
         entries[slot] = entries[entry & EDGE_MET ? entry & ~EDGE_MET : slot];
@@ -89,8 +89,8 @@ inline_always void entries_settle(const complex_job *c, uint a, global const act
 inline_always void edges_enter(const complex_job *c, uint wait, global const active_item *active,
                                global const uchar *cases, volatile global uint *table, global uint *entries,
                                edge_work *work, uint *full) {
-    for (; work->asked + wait / 2 < work->hashed; work->asked++) {
-        uint there = table[entries[work->queue[work->asked % EDGE_QUEUE]]];
+    for (; work->prefetched + wait / 2 < work->hashed; work->prefetched++) {
+        uint there = table[entries[work->queue[work->prefetched % EDGE_QUEUE]]];
         line_prefetch(active + (there == EDGE_NONE ? 0 : slot_item(c, there)));
     }
     for (; work->entered + wait < work->hashed; work->entered++) {
@@ -105,7 +105,7 @@ kernel void complex_join(complex_job c, global const active_item *active, global
     uint number = 0, full = 0;
     edge_work work;
     for (uint n = 0; n < RECENT_EDGES; n++) work.points[n] = 0;
-    work.hashed = work.asked = work.entered = 0;
+    work.hashed = work.prefetched = work.entered = 0;
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
         uint first = number * c.tile_actives, count = 0;
@@ -115,7 +115,7 @@ kernel void complex_join(complex_job c, global const active_item *active, global
             edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &full);
         }
         edges_enter(&c, 0, active, cases, table, entries, &work, &full);
-        for (uint n = 0; n < count; n++) entries_settle(&c, first + n, active, cases, entries);
+        for (uint n = 0; n < count; n++) entries_share(&c, first + n, active, cases, entries);
         if (full) break; /* the host starts again with a larger table */
     }
     if (full) atomic_or(&state[HEAD_FULL], 1u);
