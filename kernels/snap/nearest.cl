@@ -22,8 +22,8 @@ inline_always REAL difference_of(REAL a, REAL b) {
 /* One over the length of an edge across a face. */
 #define ACROSS ((REAL)0.70710678f)
 
-/* Whether the crossing on an edge whose samples differ by twice the difference lies at most s->snapping.threshold of it
- * from the sample. One just at the threshold is the inside sample's. */
+/* Whether the crossing on an edge is near the sample: no farther than the threshold, as a part of the edge; one just at
+ * the threshold is the inside sample's. difference: half of that between the edge's samples. */
 inline_always bool near_enough(const slab *s, BITS sample, REAL difference) {
     const REAL half_of = (REAL)0.5f, reach = (REAL)s->snapping.threshold * difference;
     const REAL distance = difference_of(half_of * ISOVALUE(&s->test), half_of * SAMPLE_VALUE(sample));

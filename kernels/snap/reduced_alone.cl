@@ -2,8 +2,9 @@
  * reduced_alone.cl - regular points within the grid, for a work-item alone: links are reduced to their samples along
  * the axes
  *
- * A sample of a link in whose ring + and - change twice may take the other sign: that leaves as many parts of the link
- * + and -, for the reason that a regular sample may be snapped. So what remains to be looked at are six samples.
+ * Where the ring of a link's sample changes between + and - exactly twice, the sample may take the other sign: the link
+ * keeps its number of + parts and of - parts, for the reason that a regular sample may be snapped. So the samples
+ * across faces take the signs of their neighbours along the axes, and only those six are left to look at.
  *
  * Of an even link, those along the axes are odd, + or - and no vertices yet. Each of the twelve others, n, lies between
  * two of them, p and q, in a ring:
@@ -36,7 +37,7 @@ inline_always link_ring ring_of(uint n) {
     return r;
 }
 
-/* Where sample n of a link has the sign that + stands for in `side`. */
+/* Where sample n of a link is +, for bits set in `side`, or -, for the others. */
 inline_always lanes as_side(const link_signs *l, uint n, lanes side) { return choose(side, l->plus[n], l->minus[n]); }
 
 /* Whether the ring of a vertex changes between + and - twice, with vertices between them. Where p and q differ it
@@ -49,7 +50,7 @@ inline_always lanes vertex_ring_regular(const link_signs *l, link_ring r) {
     return choose(p ^ q, (x1 | x2) & (x3 | x4), (x1 & x2 & twice34) | (x3 & x4 & twice12));
 }
 
-/* Axes along which the two samples of a link differ, + and -: where there are any. */
+/* Samples in whose link some axis has + at one end and - at the other. */
 inline_always lanes axes_differ(const link_signs *l) {
     lanes differ = 0;
 #pragma unroll

@@ -26,16 +26,17 @@ inline_always lanes cubes_around(const slab *s, global const ulong *cells, row_s
 #endif
 
 /* Adds the samples of a plane's rows that have a crossing with a sample a step away in y and z: at the same x, where
- * `straight`, to *along; at lower or higher x, where `aside`, to *across. Only those that may move there: `moves` in y
- * and z, `moves_x` in x. */
+ * `straight`, to *same_x; at lower or higher x, where `aside`, to *other_x. Only those that may move there: `moves` in
+ * y and z, `moves_x` in x. */
 inline_always void crossed_beside(const slab *s, const brick_around *a, row_set r, int step_y, int step_z, lanes sign,
-                                  lanes moves, lanes moves_x, bool straight, bool aside, lanes *along, lanes *across) {
+                                  lanes moves, lanes moves_x, bool straight, bool aside, lanes *same_x,
+                                  lanes *other_x) {
     const lanes beside = words_beside(s, a, r, false, step_y, step_z, 0, false);
-    if (straight) *along |= (beside ^ sign) & moves;
+    if (straight) *same_x |= (beside ^ sign) & moves;
     if (!aside) return;
     const lanes low = words_beside(s, a, r, false, step_y, step_z, -1, false);
     const lanes high = words_beside(s, a, r, false, step_y, step_z, 1, false);
-    *across |= ((shifted_up(beside, low) ^ sign) | (shifted_down(beside, high) ^ sign)) & moves & moves_x;
+    *other_x |= ((shifted_up(beside, low) ^ sign) | (shifted_down(beside, high) ^ sign)) & moves & moves_x;
 }
 
 inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r, const borders *b) {
@@ -57,8 +58,8 @@ inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r
     return (along | (across & samples_even(s, r))) & samples_valid(s, r);
 }
 
-/* Of these the samples of which all cubes are present; none where a set is outside the grid, or in a plane at the end
- * of the window whose neighbours are not there: a slab's own samples are further in. */
+/* Samples with a crossing whose cubes are all present. None of rows outside the grid, nor of a window's first or last
+ * plane where the grid goes on: a slab's own samples are further in. */
 inline_always lanes rows_wanted(const slab *s, const brick_around *a, row_set r, const borders *b,
                                 global const ulong *cells) {
     const bool cut_below = r.z == s->results.word_z && r.z > 0, cut_above = r.z + 1 == s->z1 && s->z1 < s->nz;

@@ -84,7 +84,7 @@ inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r
     return here;
 }
 
-/* Where a set's words are in those of its brick; of a strided set, of its two planes. */
+/* Loads a set's words from its brick's; of a strided set from two planes. */
 inline_always lanes set_load(global const ulong *brick, row_set r, bool strided) {
     if (!strided) return vload8(r.z % BRICK_PLANES, brick);
     const lanes a = vload8(r.z % BRICK_PLANES, brick), b = vload8(r.z % BRICK_PLANES + 2, brick);

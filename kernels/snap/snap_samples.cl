@@ -22,11 +22,12 @@ inline_always borders borders_of(const slab *s, row_set r) {
     return b;
 }
 
-/* Even samples of the rows, as far as these are in the grid and in the window. */
+/* Even samples of the rows, also beyond the grid. */
 inline_always lanes samples_even(const slab *s, row_set r) {
     return (lanes)0x5555555555555555ul << ((r.at_y + r.at_z + s->parity) & 1ul);
 }
 
+/* Samples of the rows that are in the grid and in the window. */
 inline_always lanes samples_valid(const slab *s, row_set r) {
     return lanes_select(r.at_y < (lanes)s->ny) & lanes_select(r.at_z < (lanes)s->z1) & word_valid(s, r.w);
 }

@@ -6,14 +6,14 @@
 
 #include "../base/common.cl"
 
-/* A word for each row, and a list of the bricks that have any. */
+/* A word of violated samples for each row, and a list of the bricks with any. */
 typedef struct violated_results {
     global ulong *violated;
     global brick_state *bricks;
     global uint *violated_bricks, *violated_brick_count;
 } violated_results;
 
-/* Lists a brick, the first time that it is called for it. */
+/* Adds a brick to the list, on its first call for this brick. */
 inline_always void violated_brick_enter(uint number, violated_results results) {
     if (atomic_inc(&results.bricks[number].rows) == 0)
         results.violated_bricks[atomic_inc(results.violated_brick_count)] = number;

@@ -14,7 +14,7 @@
 typedef struct violated_list {
     brick_place p;
     uint number;
-    uint rows; /* bit n: row n has samples that are not looked at yet: */
+    uint rows; /* bit n: row n has samples in `crossed`, which are not tested yet */
     ulong crossed[BRICK_WORDS];
     ulong violated[BRICK_WORDS];
 } violated_list;

@@ -18,8 +18,8 @@ inline_always uint link_code(uint n) {
     return back + EDGE_CODE(0, 0, 0, forth * step_x, forth * step_y, forth * step_z);
 }
 
-/* In its link the other end of a snapped sample's edge. There is always one, unless the caller changes samples
- * meanwhile. */
+/* The index in its link of the other end of a snapped sample's edge. Where the caller has changed samples meanwhile and
+ * there is none, a neighbour in x. */
 inline_always uint snapped_to(const slab *s, uint x, uint y, uint z, global const BITS *samples) {
     const uint nearest = nearest_of_sample(s, x, y, z, samples);
     return nearest < LINK_EVEN ? nearest : x + 1 < s->nx ? 1 : 0;
