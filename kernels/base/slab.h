@@ -73,9 +73,9 @@ enum { LOCAL_BYTES_PER_BRICK = 3072 };
 /* Kernels of method snap that take what they do by ticket; the passes over even samples have one each. */
 enum {
     TICKET_SIGN,
-    TICKET_OPEN,
+    TICKET_WORDS,
     TICKET_VIOLATED,
-    TICKET_CLOSE,
+    TICKET_JOIN,
     TICKET_ODD,
     TICKET_EVEN,
     SNAP_TICKETS = TICKET_EVEN + 4

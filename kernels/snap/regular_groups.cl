@@ -79,7 +79,7 @@ inline_always bool point_regular(link_masks l, uint border, bool odd) {
 }
 
 /* Of the samples in a row those that are regular points. */
-inline_always lanes set_snap(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted, bool odd) {
+inline_always lanes set_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted, bool odd) {
     const uint border_y = r.y == 0 || r.y + 1 == s->ny, border_z = r.z == 0 || r.z + 1 == s->nz;
     lanes regular = 0;
 #pragma unroll 1

@@ -7,11 +7,11 @@
  * 2. snap_near: lists the bricks that are mixed or beside a brick on another side;
  * 3. snap_violated: which of their samples are violated, near enough to a crossing of theirs; lists the bricks that
  * have any. Mixed bricks get words of zeros, empty so far;
- * 4. snap_open: bricks on that list that are uniform get sign words of their own, and words of zeros;
+ * 4. snap_words: bricks on that list that are uniform get sign words of their own, and words of zeros;
  * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: violated samples that are regular points
  *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
  *    that another group stores to meanwhile has the same bits for its readers before and after;
- * 6. snap_close: the odd zeros, which wait elsewhere while others read the words, join the even ones.
+ * 6. snap_join: the odd zeros, which wait elsewhere while others read the words, join the even ones.
  */
 #ifndef SNAP_CL
 #define SNAP_CL
@@ -121,12 +121,12 @@ kernel void snap_violated(slab s, global const BITS *samples, global const ulong
 #endif
 
 /* Uniform bricks that have violated samples get words of their own, and words of zeros. */
-kernel void snap_open(slab s, global ulong *words, global brick_state *bricks, global const uint *violated_bricks,
-                      global uint *state) {
+kernel void snap_words(slab s, global ulong *words, global brick_state *bricks, global const uint *violated_bricks,
+                       global uint *state) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += UNIFORM_BRICKS * BRICK_WORDS;
-    RUNS_OF(count, snap_ticket(&s, state, TICKET_OPEN)) BRICKS_OF_RUN(count) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_WORDS)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK, number = violated_bricks[min(n, end - 1)], sign = bricks[number].sign;
         const brick_place p = brick_place_of(&s, number);
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end && sign != SIGN_MIXED; row += BRICK_ITEMS) {
@@ -168,7 +168,7 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
             lanes wanted = set_load(violated + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
             around_make(&s, words, bricks, violated_bricks[n], &a);
-            wanted = set_snap(&s, &a, r, true, wanted, false);
+            wanted = set_regular(&s, &a, r, true, wanted, false);
             if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
         }
     }
@@ -194,19 +194,19 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
             if (lanes_any(wanted)) {
                 if (!have_around) around_make(&s, words, bricks, violated_bricks[n], &a);
                 have_around = true;
-                wanted = set_snap(&s, &a, r, false, wanted, true);
+                wanted = set_regular(&s, &a, r, false, wanted, true);
             }
             set_store(wanted, violated + index, r);
         }
     }
 }
 
-kernel void snap_close(slab s, global ulong *words, global const uint *violated_bricks, global uint *state,
-                       global const ulong *last) {
+kernel void snap_join(slab s, global ulong *words, global const uint *violated_bricks, global uint *state,
+                      global const ulong *last) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += BRICK_WORDS * (UNIFORM_BRICKS + (ulong)s.snapping.zero_bricks);
-    RUNS_OF(count, snap_ticket(&s, state, TICKET_CLOSE)) BRICKS_OF_RUN(count) {
+    RUNS_OF(count, snap_ticket(&s, state, TICKET_JOIN)) BRICKS_OF_RUN(count) {
         const uint n = step + OWN_BRICK;
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
             const ulong index = BRICK_WORDS * (ulong)violated_bricks[n] + row;

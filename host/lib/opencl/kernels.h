@@ -13,7 +13,7 @@ typedef struct sized_kernel {
 } sized_kernel;
 
 /* In the order in which they run. */
-enum { SNAP_SIGN, SNAP_NEAR, SNAP_OPEN, SNAP_VIOLATED, SNAP_PASS_EVEN, SNAP_PASS_ODD, SNAP_CLOSE, SNAP_KERNELS };
+enum { SNAP_SIGN, SNAP_NEAR, SNAP_VIOLATED, SNAP_WORDS, SNAP_PASS_EVEN, SNAP_PASS_ODD, SNAP_JOIN, SNAP_KERNELS };
 
 typedef struct kernels {
     sized_kernel classify, cells, emit; /* cells: where samples may be missing */

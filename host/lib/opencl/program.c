@@ -54,7 +54,7 @@ static const program_sources programs[PROGRAM_COUNT] = {
     [PROGRAM_EMIT] = {{"emit"},
                       BOTH_VARIANTS(emit),
                       ON_MISSING | ON_METHOD | ON_CLOSED | ON_VALUES | ON_DIVISION | ON_CHANNELS | ON_GRID},
-    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_open", "snap_violated", "snap_even", "snap_odd", "snap_close"},
+    [PROGRAM_SNAP] = {{"snap_sign", "snap_near", "snap_violated", "snap_words", "snap_even", "snap_odd", "snap_join"},
                       BOTH_VARIANTS(snap),
                       ON_MISSING | ON_METHOD | ON_VALUES},
     [PROGRAM_COMPLEX] = {{"complex_classify", "complex_list", "complex_join", "complex_number", "complex_emit"},

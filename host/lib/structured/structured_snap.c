@@ -53,23 +53,23 @@ tc_status window_snap(run *r, slab_ref ref, const slab *s) {
                                         ARGUMENT(work->state.memory),
                                         ARGUMENT(b->offsets.memory),
                                         ARGUMENT(b->triangle_offsets.memory)};
-    const kernel_argument open[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->bricks.memory),
-                                    ARGUMENT(b->triangle_offsets.memory), ARGUMENT(work->state.memory)};
+    const kernel_argument own[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->bricks.memory),
+                                   ARGUMENT(b->triangle_offsets.memory), ARGUMENT(work->state.memory)};
     const kernel_argument odd[] = {ARGUMENT(window),
                                    ARGUMENT(b->words.memory),
                                    ARGUMENT(b->bricks.memory),
                                    ARGUMENT(b->triangle_offsets.memory),
                                    ARGUMENT(work->state.memory),
                                    ARGUMENT(b->offsets.memory)};
-    const kernel_argument close[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->triangle_offsets.memory),
-                                     ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
+    const kernel_argument join[] = {ARGUMENT(window), ARGUMENT(b->words.memory), ARGUMENT(b->triangle_offsets.memory),
+                                    ARGUMENT(work->state.memory), ARGUMENT(b->offsets.memory)};
     const sized_kernel *kernel = r->kernels.snap;
     tc_status status = kernel_launch(r->context, kernel[SNAP_SIGN], "kernel snap_sign", sign, 6);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_NEAR], "kernel snap_near", near, 4);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_VIOLATED], "kernel snap_violated", violated, 9);
-    if (!status) status = kernel_launch(r->context, kernel[SNAP_OPEN], "kernel snap_open", open, 5);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_WORDS], "kernel snap_words", own, 5);
     if (!status) status = even_pass(r, ref, &window);
     if (!status) status = kernel_launch(r->context, kernel[SNAP_PASS_ODD], "kernel snap_odd", odd, 6);
-    if (!status) status = kernel_launch(r->context, kernel[SNAP_CLOSE], "kernel snap_close", close, 5);
+    if (!status) status = kernel_launch(r->context, kernel[SNAP_JOIN], "kernel snap_join", join, 5);
     return status;
 }
