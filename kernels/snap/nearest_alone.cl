@@ -1,6 +1,6 @@
 /*
- * nearest_alone.cl - method snap, for a work-item alone: the nearest crossings of sixteen samples in a row at once, by
- * the rules of nearest.cl
+ * nearest_alone.cl - method snap, for a work-item alone: the nearest crossings of sixteen samples at once, by the rules
+ * of nearest.cl
  *
  * What is found of samples that have no crossing, or are on the grid's border, means nothing.
  */
