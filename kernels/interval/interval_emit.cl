@@ -116,7 +116,7 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
 inline_always void bound_store(const slab *s, const interval_job *job, const bound *b, const sample_rows rows[4],
                                uint block, corner first, uint y, uint z, global const ulong *cells, REAL isovalue,
                                grid_arrays in, global float *positions) {
-    const owner o = bound_owner(s, b, job->first[block], y, z, first.x / 64);
+    const row_numbers o = bound_numbers(s, b, job->first[block], y, z, first.x / 64);
     const crossings edges = row_crossings(s, rows, 0, cells, y, z, first.x / 64);
     crossings_store(s, first, y, z, &edges, isovalue, in, positions + 3ul * (number_of(o, 0) - job->window[block]));
 }

@@ -36,9 +36,9 @@ inline_always uint sample_first(const slab *s, const interval_job *job, interval
 }
 
 /* Where the numbers of the vertices of a bound begin that a row owns. */
-inline_always owner bound_owner(const slab *s, const bound *b, uint first, uint y, uint z, uint w) {
+inline_always row_numbers bound_numbers(const slab *s, const bound *b, uint first, uint y, uint z, uint w) {
     const uint number = brick_index(s, y, z, w);
-    owner o = {first + b->bricks[number].vertices, b->offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
+    row_numbers o = {first + b->bricks[number].vertices, b->offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
     return o;
 }
 
@@ -105,7 +105,7 @@ inline_always uint place_first(const places_row *r, uint place, uint w) {
     if (block == INTERVAL_SAMPLES) return sample_first(r->s, r->job, r->sums, y, z, w);
     const bound *b = block == INTERVAL_LOW_BOUND ? r->low : r->high;
     const uint first = r->job->first[block == INTERVAL_LOW_BOUND ? INTERVAL_LOW_BOUND : INTERVAL_HIGH_BOUND];
-    return number_of(bound_owner(r->s, b, first, y, z, w), place & 7);
+    return number_of(bound_numbers(r->s, b, first, y, z, w), place & 7);
 }
 
 /* An entry of the table of cases: parity of a cube, tetrahedron, case. */

@@ -107,15 +107,16 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Lists the active cubes of the rows in mask, behind `count` items; returns the number of all. An item is a cube's
- * index in the table of numbers from bit CASE_BITS on, below that its case. With mask registers, patterns of all rows
- * are made first: loading a part of a vector that was just stored would stall. */
+/* Both variants of cubes_list: lists the active cubes of the rows in mask, behind `count` items; returns the number of
+ * all. An item is a cube's index in the table of numbers from bit CASE_BITS on, below that its case. With mask
+ * registers, patterns of all rows are made first: loading a part of a vector that was just stored would stall. */
 #ifdef MASK_REGISTERS
-inline_always bytes64 row_patterns(const ulong *row, const ulong *deep) {
+/* Patterns of 64 cubes, from words of their rows in this plane and in the next. */
+inline_always bytes64 row_patterns(const ulong *row, const ulong *next_z) {
     bytes64 patterns = 0;
     loop_unrolled for (uint n = 0; n < 4; n++) {
         patterns |= bits_spread(row[n]) & (bytes64)(char)(1 << n);
-        patterns |= bits_spread(deep[n]) & (bytes64)(char)(16 << n);
+        patterns |= bits_spread(next_z[n]) & (bytes64)(char)(16 << n);
     }
     return patterns;
 }
@@ -210,8 +211,8 @@ inline_always uint border_list(const slab *s, corner c, uint mask, row_results k
 
 #endif
 
-/* Stores the vertex numbers of a cube's triangles, by the slots in its case. Surplus numbers follow them. `number`
- * points to the entry of the cube's first sample. */
+/* Both variants of case_store: stores the vertex numbers of a cube's triangles, by the slots in its case. Surplus
+ * numbers follow them. `number` points to the entry of the cube's first sample. */
 #ifdef WORD_SHUFFLES
 #define WORDS_AT(words) (*(const words16 *)(words))
 
@@ -250,7 +251,7 @@ inline_always void case_store(const uint *number, global const uchar *entry, uin
 }
 #endif
 
-/* The entry of a listed item in the table of cases. */
+/* The entry in the table of cases; item: of the list, its lower CASE_BITS. */
 inline_always global const uchar *entry_of(global const uchar *cases, uint item) {
     if (!ZEROS) return cases + CUBE_CASE_BYTES * item;
     if (CLOSED && item >> BORDER_BIT) return cases + CUBE_CASE_BYTES * (item & ((1u << BORDER_BIT) - 1));
@@ -261,8 +262,7 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
     for (uint first = 0; first < count; first += BATCH_CUBES) {
         uint *at = work->triangles, end = min(count, first + BATCH_CUBES);
         for (uint n = first; n < end; n++) {
-            const uint pattern = work->list[n] & ((1u << CASE_BITS) - 1);
-            global const uchar *entry = entry_of(cases, pattern);
+            global const uchar *entry = entry_of(cases, work->list[n] & ((1u << CASE_BITS) - 1));
             case_store(work->number + NUMBER_STEP * (work->list[n] >> CASE_BITS), entry, at, work);
             at += 3u * *entry;
         }
@@ -296,19 +296,19 @@ inline_always void samples_prefetch(const slab *s, corner c, uint mask, global c
 
 /* Prefetches kernel 1's results for a brick. */
 inline_always void brick_prefetch(const slab *s, uint number, corner c, row_results k1) {
-    uint up = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
-         deep = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
+    uint next_y = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
+         next_z = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
     for (uint line = 0; line < BRICK_WORDS; line += 8) {
         line_prefetch(k1.words + (ulong)BRICK_WORDS * number + line);
-        line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up) + line);
-        line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up) + line);
+        line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_y) + line);
+        line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_y) + line);
         if (ZEROS) line_prefetch(zeros_of(s, k1.words + (ulong)BRICK_WORDS * number + line));
     }
     line_prefetch(k1.bricks + number);
-    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + deep));
-    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + deep));
-    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + up + deep));
-    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + up + deep));
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_z));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_z));
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_y + next_z));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_y + next_z));
 }
 
 /* Prefetches for the bricks after the first in the list: results of kernel 1 two bricks ahead, samples one ahead. */

@@ -244,7 +244,7 @@ inline_always void plane_number(const slab *s, corner c, const brick_signs *sign
     const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[PLACE_TYPE];
     for (uint rows = lanes_nonzero(any); rows; rows &= rows - 1) {
         uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
-        owner o = owner_of(s, c.y + y, z, w, k1);
+        row_numbers o = row_numbers_of(s, c.y + y, z, w, k1);
         neighbour_row_number(number, 0, crossed[0][y], number_of(o, 0));
         neighbour_row_number(number, 1, crossed[1][y], number_of(o, 1));
         if (DIAGONALS) neighbour_row_number(number, 3, crossed[2][y], number_of(o, 3));
@@ -279,7 +279,7 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         if (at_border) places |= a0 & border_samples(s, k1.cells, y, c.z + n, w).s0;
 #endif
         if (!(x | z | xz | places)) continue;
-        owner o = owner_of(s, y, c.z + n, w, k1);
+        row_numbers o = row_numbers_of(s, y, c.z + n, w, k1);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
         neighbour_row_number(number, 0, x, number_of(o, 0));
         neighbour_row_number(number, 2, z, number_of(o, 2));
@@ -298,7 +298,7 @@ inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, row - c.y, z - c.z);
-        number_store(number, 64, type, number_of(owner_of(s, row, z, w, k1), type));
+        number_store(number, 64, type, number_of(row_numbers_of(s, row, z, w, k1), type));
     }
 }
 

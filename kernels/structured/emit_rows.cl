@@ -22,12 +22,12 @@
 /* The table of a brick; rows in y, then z. */
 typedef struct row_table {
     ulong crossed[VERTEX_TYPES][TABLE_ROWS];
-    ulong packed[TABLE_ROWS]; /* owner */
+    ulong packed[TABLE_ROWS]; /* row_numbers */
     uint first[TABLE_ROWS];
 } row_table;
 
-inline_always owner table_owner(const local row_table *table, uint n) {
-    owner o = {table->first[n], table->packed[n]};
+inline_always row_numbers table_numbers(const local row_table *table, uint n) {
+    row_numbers o = {table->first[n], table->packed[n]};
     return o;
 }
 
@@ -80,7 +80,7 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
     if (y >= s->ny || z >= s->nz) return;
     cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
     crossings edges = vertices_owned(s, &r, y, z, w, true, k1.cells);
-    const owner o = owner_of(s, y, z, w, k1);
+    const row_numbers o = row_numbers_of(s, y, z, w, k1);
 #pragma unroll
     for (uint type = 0; type < VERTEX_TYPES; type++) table->crossed[type][n] = edges.type[type];
     table->first[n] = o.first, table->packed[n] = o.packed;
@@ -115,7 +115,7 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
     const corner first = edges_corner(brick);
     const uint row = (y - first.y) << 7 | (z - first.z) << 11 | EDGES_BEFORE;
     const ulong zeros = ZEROS && CLOSED ? row_of(s, y, z, brick.x / 64, k1).zero_at : 0;
-    ulong out = (uint)(number_of(table_owner(table, n), 0) - s->mesh.vertex_window);
+    ulong out = (uint)(number_of(table_numbers(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < VERTEX_TYPES; type++) {
 #pragma unroll 1
@@ -150,9 +150,9 @@ inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uin
 inline_always uint vertex_number(const slab *s, uint y, uint z, uint w, uint n, uint bit, uint item, row_results k1,
                                  const local row_table *table) {
     const uint type = item & 7, x = bit + (item >> 3 & 1), next_y = item >> 4 & 1, next_z = item >> 5;
-    if (x == 64) return number_of(owner_of(s, y + next_y, z + next_z, w + 1, k1), type);
+    if (x == 64) return number_of(row_numbers_of(s, y + next_y, z + next_z, w + 1, k1), type);
     n += next_y + TABLE_ROWS_Y * next_z;
-    return number_of(table_owner(table, n), type) + (uint)popcount(table->crossed[type][n] & ((1ul << x) - 1));
+    return number_of(table_numbers(table, n), type) + (uint)popcount(table->crossed[type][n] & ((1ul << x) - 1));
 }
 
 inline_always uint zeros_at(const cube_rows *r, uint bit) {

@@ -36,23 +36,24 @@ inline_always corner edges_corner(corner brick) {
     return c;
 }
 
-inline_always uint brick_vertices(const slab *s, uint z, uint number, row_results k1) {
+/* The number of the first vertex of a brick, in this slab or the next. */
+inline_always uint brick_first_vertex(const slab *s, uint z, uint number, row_results k1) {
     return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[number].vertices;
 }
 
 /* Where the numbers of the vertices that a row of 64 samples owns begin. */
-typedef struct owner {
+typedef struct row_numbers {
     uint first;
     ulong packed;
-} owner;
+} row_numbers;
 
-inline_always owner owner_of(const slab *s, uint y, uint z, uint w, row_results k1) {
+inline_always row_numbers row_numbers_of(const slab *s, uint y, uint z, uint w, row_results k1) {
     uint number = brick_index(s, y, z, w);
-    owner o = {brick_vertices(s, z, number, k1), k1.offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
+    row_numbers o = {brick_first_vertex(s, z, number, k1), k1.offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
     return o;
 }
 
-inline_always uint number_of(owner o, uint type) { return o.first + offset_of_type(o.packed, type); }
+inline_always uint number_of(row_numbers o, uint type) { return o.first + offset_of_type(o.packed, type); }
 
 /* Where an edge of a type lies, from the sample that owns it. Diagonals depend on the parity of the cube. */
 inline_always uint edge_code(uint type, bool odd) {
