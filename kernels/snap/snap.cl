@@ -63,10 +63,19 @@ inline_always bool brick_near(const slab *s, uint number, global const brick_sta
     return differ != 0;
 }
 
+/* Bricks that are entered in the list at once: work-items alone do not wait for each other at every brick. */
+#define NEAR_AT_ONCE (WORK_ITEMS == 1 ? 64u : 1u)
+
 kernel void snap_near(slab s, global const brick_state *bricks, global uint *near, global uint *state) {
-    const uint count = brick_count_of(&s);
-    for (uint n = (uint)get_global_id(0); n < count; n += (uint)get_global_size(0))
-        if (brick_near(&s, n, bricks)) near[atomic_inc(&state[s.results.head_offset + STATE_NEAR_BRICKS])] = n;
+    const uint count = brick_count_of(&s), step = NEAR_AT_ONCE * (uint)get_global_size(0);
+    for (uint first = NEAR_AT_ONCE * (uint)get_global_id(0); first < count; first += step) {
+        uint found[NEAR_AT_ONCE], found_count = 0;
+        for (uint n = first; n < min(first + NEAR_AT_ONCE, count); n++)
+            if (brick_near(&s, n, bricks)) found[found_count++] = n;
+        if (!found_count) continue;
+        const uint place = atomic_add(&state[s.results.head_offset + STATE_NEAR_BRICKS], found_count);
+        for (uint n = 0; n < found_count; n++) near[place + n] = found[n];
+    }
 }
 
 /* Work-items per brick: one for each of its rows, or one for all. */
