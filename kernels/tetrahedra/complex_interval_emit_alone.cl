@@ -12,7 +12,7 @@
 /* A work-item prefetches what clusters need so many before it comes to them. */
 enum { CLUSTERS_AHEAD = 8 };
 
-/* ----------------------------------------------------------------------------- tetrahedra that lie within whole */
+/* ---------------------------------------------------------------------------- tetrahedra that lie wholly within */
 
 /* Brings numbers into order; which were not. */
 inline_always int8 pairs_order(uint8 *a, uint8 *b) {
@@ -46,7 +46,7 @@ inline_always uint16 numbers_at(uint16 p, const volume_emit *e) {
                (uint16)e->v->point_last);
 }
 
-/* A cluster whose tetrahedra all lie within whole. */
+/* A cluster whose tetrahedra all lie wholly within. */
 inline_always uint *whole_store(global const uint *points, const volume_emit *e, uint *out) {
     for (uint m = 0; m < 4; m += 2) {
         uint16 first = numbers_at(vload16(m, points), e), second = numbers_at(vload16(m + 1, points), e);

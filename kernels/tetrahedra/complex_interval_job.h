@@ -77,7 +77,7 @@ enum {
     VOLUME_ENTRIES = VOLUME_LANES + 16 * 16,
     VOLUME_ENTRY_BYTES = 28,
     VOLUME_NO_EDGE = 7,
-    VOLUME_WITHIN = 0xf0, /* the pattern of a tetrahedron that lies within whole */
+    VOLUME_WITHIN = 0xf0, /* the pattern of a tetrahedron that lies wholly within */
     VOLUME_TABLE_BYTES = VOLUME_ENTRIES + VOLUME_ORDERS * VOLUME_CASES * VOLUME_ENTRY_BYTES + 8 /* read, not used */
 };
 

@@ -57,7 +57,7 @@ inline_always void edge_hashed(uint n, const volume_job *v, global const uint2 *
     line_prefetch(table + entries[n]);
 }
 
-inline_always void edge_asked(uint n, global const uint2 *edges, volatile global uint *table,
+inline_always void edge_prefetched(uint n, global const uint2 *edges, volatile global uint *table,
                               global const uint *entries) {
     const uint there = table[entries[n]];
     line_prefetch(edges + (there == EDGE_NONE ? n : there));
@@ -65,10 +65,10 @@ inline_always void edge_asked(uint n, global const uint2 *edges, volatile global
 
 inline_always void tile_join(edge_span span, const volume_job *v, global const uint2 *edges,
                              volatile global uint *table, global uint *entries, uint *full) {
-    uint hashed = span.first, asked = span.first;
+    uint hashed = span.first, prefetched = span.first;
     for (uint n = span.first; n < span.end; n++) {
         for (; hashed < min(n + JOIN_AHEAD, span.end); hashed++) edge_hashed(hashed, v, edges, table, entries);
-        for (; asked < min(n + JOIN_AHEAD / 2, span.end); asked++) edge_asked(asked, edges, table, entries);
+        for (; prefetched < min(n + JOIN_AHEAD / 2, span.end); prefetched++) edge_prefetched(prefetched, edges, table, entries);
         entries[n] = list_enter(n, entries[n], v, edges, table, full);
     }
 }
