@@ -239,7 +239,7 @@ class Endings(RankCase):
         for status, arguments, says in (
                 (4, [self.path("none.nrrd"), "--iso", "1"], "none.nrrd: cannot be opened"),
                 (2, [self.volume, "--iso", "1", "-o", self.path("x.obj")], "cannot be written piece by piece"),
-                (2, [self.volume, "--iso", "1", "--cut", "4"], "names 1 planes, where .* 2 ranks begin; there are 3"),
+                (2, [self.volume, "--iso", "1", "--cut", "4"], "names 1 plane, where .* 2 ranks begin; there are 3"),
                 (2, [self.volume, "--iso", "1", "--part", "0/2", "-o", self.path("x.ply")], "--part"),
                 (2, [self.volume, "--iso", "1", "--check"], "made by several ranks: --check"),
                 (1, [self.volume, "--iso", "1", "-o", self.path("none/x.ply")], "none/x.ply: cannot be written"),
