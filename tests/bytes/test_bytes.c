@@ -166,6 +166,7 @@ static bool variant_wanted(const bytes_case *c, const variant *v, tier t, bool g
     if (v->division && (c->kind == CASE_COMPLEX || c->type != TC_F32 || t != WHOLE)) return false;
     if (t >= SMALL && !v->small) return false;
     if (t == GROUPS && !groups) return false;
+    if (t == SAMPLE && c->kind == CASE_COMPLEX && v->work_items > 32) return false;
     return v->work_items == 1 || (c->groups * 32 & v->work_items);
 }
 
