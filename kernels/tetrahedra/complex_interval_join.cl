@@ -58,7 +58,7 @@ inline_always void edge_hashed(uint n, const volume_job *v, global const uint2 *
 }
 
 inline_always void edge_prefetched(uint n, global const uint2 *edges, volatile global uint *table,
-                              global const uint *entries) {
+                                   global const uint *entries) {
     const uint there = table[entries[n]];
     line_prefetch(edges + (there == EDGE_NONE ? n : there));
 }
@@ -68,7 +68,8 @@ inline_always void tile_join(edge_span span, const volume_job *v, global const u
     uint hashed = span.first, prefetched = span.first;
     for (uint n = span.first; n < span.end; n++) {
         for (; hashed < min(n + JOIN_AHEAD, span.end); hashed++) edge_hashed(hashed, v, edges, table, entries);
-        for (; prefetched < min(n + JOIN_AHEAD / 2, span.end); prefetched++) edge_prefetched(prefetched, edges, table, entries);
+        for (; prefetched < min(n + JOIN_AHEAD / 2, span.end); prefetched++)
+            edge_prefetched(prefetched, edges, table, entries);
         entries[n] = list_enter(n, entries[n], v, edges, table, full);
     }
 }
