@@ -29,7 +29,7 @@ CRASHES = {"open abort": "before kernels were built", "open exit": "before kerne
            "launch abort": "where kernels first ran", "read abort": "where kernels first ran",
            "end abort": "at its end"}
 # When a hang is met, and after how many seconds: to build kernels before takes some.
-HANGS = {"open hang": ("before kernels were built", 3), "launch hang": ("where kernels first ran", 12)}
+HANGS = {"open hang": ("before kernels were built", 3), "launch hang": ("where kernels first ran", 20)}
 REFUSALS = {"build refuse": "does not build the kernels", "launch refuse": "CL_INVALID_PROGRAM_EXECUTABLE"}
 
 
