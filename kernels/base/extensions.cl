@@ -139,19 +139,20 @@ inline_always uint signs_packed(ulong8 x) {
 }
 
 #ifndef MASK_REGISTERS
-/* Element n: of four vectors, or three, the word that n[n] names. */
-inline_always uint8 words_chosen(uint16 low, uint16 high, uint8 n, bool all_four) {
-    const int8 by_8 = as_int8(n << 28), by_16 = as_int8(n << 27);
-    const uint8 a = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.lo), as_int8(n)), uint8);
-    const uint8 b = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.hi), as_int8(n)), uint8);
-    const uint8 c = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.lo), as_int8(n)), uint8);
-    const uint8 d = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.hi), as_int8(n)), uint8);
+/* Element n: of the words of these four vectors, or of three, the one that lane[n] names. */
+inline_always uint8 words_chosen(uint16 low, uint16 high, uint8 lane, bool all_four) {
+    const int8 by_8 = as_int8(lane << 28), by_16 = as_int8(lane << 27);
+    const uint8 a = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.lo), as_int8(lane)), uint8);
+    const uint8 b = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.hi), as_int8(lane)), uint8);
+    const uint8 c = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.lo), as_int8(lane)), uint8);
+    const uint8 d = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(high.hi), as_int8(lane)), uint8);
     const uint8 of_low = by_8 < 0 ? b : a, of_high = !all_four ? c : by_8 < 0 ? d : c;
     return by_16 < 0 ? of_high : of_low;
 }
 #endif
 
-/* Element n: of the 32 words of low and high, the one that lane[n] names. all: else none of the last eight. */
+/* Element n: of the 32 words of low and high, the one that lane[n] names. all: false where no lane names one of the
+ * last eight. */
 inline_always words16 words_shuffled(uint16 low, uint16 high, bytes16 lane, bool all) {
 #ifdef MASK_REGISTERS
     return as_uint16(__builtin_ia32_vpermi2vard512(as_int16(low), convert_int16((uchar16)lane), as_int16(high)));

@@ -86,9 +86,9 @@ enum {
     STATE_TICKET,      /* next tile of kernel 1 */
     STATE_EMIT_TICKET, /* next run of active bricks of kernel 2 */
     STATE_ACTIVE_BRICKS,
-    STATE_ACTIVE_CELLS,
-    STATE_NONFINITE, /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
-    STATE_VERTICES,  /* totals of the slab */
+    STATE_ACTIVE_CELLS, /* cubes that the surface passes through: cells, in kernels, are cubes */
+    STATE_NONFINITE,    /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
+    STATE_VERTICES,     /* totals of the slab */
     STATE_TRIANGLES,
     STATE_NEAR_BRICKS,     /* method snap: bricks near the surface */
     STATE_VIOLATED_BRICKS, /* and those of them with violated samples */

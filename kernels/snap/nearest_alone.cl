@@ -15,8 +15,7 @@
 
 /* ---------------------------------------------------------------------------------------------------------- samples */
 
-/* Whether the links of the samples of a word are in the sample buffer with sixteen samples from theirs on. The word is
- * at no border in y and z. */
+/* Whether sixteen samples can be loaded from each sample of the links of a word, which is at no border in y and z. */
 inline_always bool links_fit16(const slab *s, uint w, uint y, uint z) {
     const ulong last = row_start(s, y + 1, z + 1) + 64ul * (w + 1) + 16;
     return last <= s->arrays.sample_offset + s->arrays.sample_count;
@@ -38,8 +37,9 @@ inline_always ulong bits_after16(ulong bits) {
     return bit < 48 ? bits & ~0ul << (bit + 16) : 0;
 }
 
-/* Values turned so that the greater, the farther on the other side of the isovalue, seen from one sample: pulls of two
- * samples differ as their values do. Those of integers are integers, of which more fit a register. */
+/* Samples as pulls: values whose sign is turned where the sample that looks at them is inside, so that of several
+ * neighbours the one with the greatest pull is farthest beyond the isovalue. Pulls of integers are integers, of which
+ * more fit a register. */
 #if FLOATING
 typedef REAL16 pulls16;
 #define pulls_of(bits, turn)  PASTE(as_, REAL16)((bits) ^ (turn))

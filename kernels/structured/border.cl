@@ -12,7 +12,8 @@
 
 #if CLOSED
 
-/* Bit n of word w: sample or cube n of the row is number `at`, which may wrap below 0. */
+/* Word w of a row in which only sample or cube `at` has its bit; 0 where it lies in another word, or has wrapped below
+ * 0. */
 inline_always ulong bit_at(uint at, uint w) { return at / 64 == w ? 1ul << at % 64 : 0; }
 
 #if MISSING

@@ -6,8 +6,8 @@
  * brick has: those that the brick owns and, numbered from kernel 1's results, those that its neighbours own. The table
  * is never cleared: only crossed edges are looked up.
  *
- * A row has about one crossed edge of each type. A row with fewer than EDGES_USUAL also stores items in the list, which
- * the next row overwrites: that is cheaper than a branch that is hard to predict.
+ * A row has about one crossed edge of each type. For every row and type EDGES_USUAL items are stored in the list
+ * without a branch, which would be hard to predict; where a row has fewer, the next items overwrite the surplus.
  */
 #ifndef EMIT_NUMBERS_CL
 #define EMIT_NUMBERS_CL
