@@ -41,7 +41,7 @@ inline_always void crossed_beside(const slab *s, const brick_around *a, row_set 
 
 inline_always lanes rows_crossed(const slab *s, const brick_around *a, row_set r, const borders *b) {
     const lanes sign = words_beside(s, a, r, false, 0, 0, 0, false), all = ~(lanes)0;
-    const lanes x = ~b->across[0], y = ~b->across[1], z = ~b->across[2];
+    const lanes x = ~b->by_axis[0], y = ~b->by_axis[1], z = ~b->by_axis[2];
     const lanes low = lanes_select(r.at_y > (lanes)0), high = lanes_select(r.at_y + 1ul < (lanes)s->ny);
     const lanes below = lanes_select(r.at_z > (lanes)s->results.word_z);
     const lanes above = lanes_select(r.at_z + 1ul < (lanes)s->z1);

@@ -86,7 +86,7 @@ inline_always void link_load(const slab *s, const brick_around *a, row_set r, bo
 /* Of the samples in a set those that are regular points. */
 inline_always lanes set_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted, bool odd) {
     const borders b = borders_of(s, r);
-    const lanes border = b.across[0] | b.across[1] | b.across[2];
+    const lanes border = b.by_axis[0] | b.by_axis[1] | b.by_axis[2];
     link_parts parts = parts_of(s, r, odd, wanted);
     link_signs l;
     lanes open;
@@ -95,7 +95,7 @@ inline_always lanes set_regular(const slab *s, const brick_around *a, row_set r,
     if (!lanes_any(rest)) return regular;
     parts.borders = true;
     link_load(s, a, r, strided, &parts, &l);
-    return regular | points_regular(&l, b.across, rest, odd);
+    return regular | points_regular(&l, b.by_axis, rest, odd);
 }
 
 #endif

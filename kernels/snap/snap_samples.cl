@@ -12,7 +12,7 @@ inline_always lanes shifted_down(lanes word, lanes after) { return word >> 1 | a
 
 /* On which borders of the grid samples are, by axis. */
 typedef struct borders {
-    lanes across[3];
+    lanes by_axis[3]; /* at the first or the last sample along it */
 } borders;
 
 inline_always borders borders_of(const slab *s, row_set r) {

@@ -33,7 +33,8 @@ inline_always void plane_enter(const slab *s, row_set r, lanes crossed_any, cons
                                global const BITS *samples, violated_list *l) {
     const uint plane = r.z % BRICK_PLANES;
     const bool fit = links_fit16(s, r.w, r.y + BRICK_ROWS - 1, r.z);
-    const lanes inner = fit ? ~(b->across[0] | b->across[1] | b->across[2]) : (lanes)0, others = crossed_any & ~inner;
+    const lanes inner = fit ? ~(b->by_axis[0] | b->by_axis[1] | b->by_axis[2]) : (lanes)0,
+                others = crossed_any & ~inner;
     ulong *violated = l->violated + BRICK_ROWS * plane;
     vstore8(crossed_any & inner, plane, l->crossed), vstore8(others, 0, violated);
     for (uint rows = lanes_nonzero(others); rows; rows &= rows - 1) {

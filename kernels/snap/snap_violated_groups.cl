@@ -19,7 +19,7 @@ inline_always void violated_find(const slab *s, const brick_around *a, brick_pla
                                  violated_room *room) {
     const row_set r = set_of_plane(p.y, p.z, p.w, (uint)get_local_id(0) % BRICK_WORDS);
     const borders b = borders_of(s, r);
-    const ulong wanted = rows_wanted(s, a, r, &b, cells), border = b.across[0] | b.across[1] | b.across[2];
+    const ulong wanted = rows_wanted(s, a, r, &b, cells), border = b.by_axis[0] | b.by_axis[1] | b.by_axis[2];
     const ulong start = row_start(s, r.y, r.z) + 64ul * r.w, even = samples_even(s, r);
     ulong violated_of_row = border_violated(s, r.y, r.z, r.w, wanted & border, samples);
     for (ulong rest = wanted & ~border; rest; rest &= rest - 1) {
