@@ -36,15 +36,14 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
                       global brick_state *bricks, global uint *state) {
     local sign_room room;
     local uint shared[1];
-    uint nonfinite = 0;
     global uint *ticket = snap_ticket(&s, state, TICKET_SIGN);
     words += UNIFORM_BRICKS * BRICK_WORDS;
     for (uint n = run_take(ticket, 1, shared); n < s.tiling.tile_count; n = run_take(ticket, 1, shared)) {
         const tile t = tile_locate(&s, n);
         for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
-            layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &room);
+            layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges,
+                       &state[s.results.head_offset + STATE_NONFINITE], &room);
     }
-    if (nonfinite) atomic_or(&state[s.results.head_offset + STATE_NONFINITE], 1u);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- bricks */

@@ -116,7 +116,7 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
     global uint *head = state + s.results.head_offset, *tiles = state + s.results.tiles_offset;
     tile_words signs = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
     active += s.results.active_offset;
-    uint number = 0, cell_count = 0, nonfinite = 0;
+    uint number = 0, cell_count = 0;
     own_tiles own = {NO_TILE, NO_TILE};
     while (number < s.tiling.tile_count) {
         group_barrier();
@@ -128,7 +128,7 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             tile t = tile_locate(&s, number);
             emit_counts sums = {0, 0, 0};
             for (uint z = ZEROS ? t.z1 : t.z0; z < t.z1; z += BRICK_PLANES)
-                layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &nonfinite, &for_sign);
+                layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &head[STATE_NONFINITE], &for_sign);
             if (!ZEROS) halo_make(&s, t, samples, ranges, signs.scratch);
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
@@ -147,7 +147,6 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
         tile_complete(&s, n, samples, cells, signs, active, head, tiles, shared);
-    if (nonfinite) atomic_or(&head[STATE_NONFINITE], 1u);
     if (get_local_id(0) == 0 && cell_count) atomic_add(&head[STATE_ACTIVE_CELLS], cell_count);
 }
 

@@ -92,7 +92,7 @@ typedef struct visit_block {
 /* Makes words, ranges and signs of a block on the first visit. Prefetches what is read PREFETCH_BYTES later, also in
  * the next plane or the next block, as hardware prefetch stops at page ends. */
 inline_always void block_visit(const slab *s, visit_block p, global const BITS *samples, global ulong *words,
-                               global brick_state *bricks, global brick_range *ranges, uint *nonfinite) {
+                               global brick_state *bricks, global brick_range *ranges, global uint *nonfinite) {
     const uint rows = p.rows * BRICK_ROWS, rows_ahead = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
     ulong word[BLOCK_BRICKS][BRICK_WORDS];
     line_keys low[BLOCK_BRICKS], high[BLOCK_BRICKS];
@@ -121,7 +121,7 @@ inline_always void block_visit(const slab *s, visit_block p, global const BITS *
         ranges[s->results.range_offset + number] = range;
         brick_sign_store(number, sign, bricks);
 #if FLOATING && !MISSING
-        *nonfinite |= !range_finite(range);
+        if (!range_finite(range)) atomic_or(nonfinite, 1u);
 #endif
         if (sign != SIGN_MIXED) continue;
         ulong valid = word_valid(s, w);
@@ -194,7 +194,7 @@ typedef struct sign_room {
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
-                              global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
+                              global brick_state *bricks, global brick_range *ranges, global uint *nonfinite,
                               local sign_room *room) {
     if (s->results.ranges_known) {
         layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);

@@ -36,7 +36,7 @@ typedef struct sign_room {
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. No variable lives across a barrier, as some
  * compilers make wrong code for that. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
-                              global brick_state *bricks, global brick_range *ranges, uint *nonfinite,
+                              global brick_state *bricks, global brick_range *ranges, global uint *nonfinite,
                               local sign_room *room) {
     local brick_range *found = room->found;
     const uint first = brick_index(s, y0, z, 0);
@@ -69,7 +69,7 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
                 if (!s->results.ranges_known)
                     ranges[s->results.range_offset + number] = range; /* a known one: other groups read it */
 #if FLOATING && !MISSING
-                *nonfinite |= !range_finite(range);
+                if (!range_finite(range)) atomic_or(nonfinite, 1u);
 #endif
             }
         }
