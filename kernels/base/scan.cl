@@ -19,7 +19,6 @@
 #define SCAN_EMPTY  0u
 #define SCAN_SUM    1u
 #define SCAN_PREFIX 2u
-#define SCAN_VALUE  0x3fffffffu /* 30 bits: the host bounds a slab so that no sum passes them */
 
 inline_always uint scan_word(uint state, uint value) { return state << 30 | value; }
 

@@ -101,6 +101,9 @@ enum {
  * (complex_count.cl), vertices at points and tetrahedra (complex_interval_count.cl). */
 enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
 
+/* A sum has the lower bits of its word: the host bounds a slab so that none passes them. */
+#define SCAN_VALUE 0x3fffffffu
+
 /* The side of the isovalue that a sample is on, by its bits. */
 typedef struct isovalue_test {
     slab_u64 inside_low; /* inside: (bits - inside_low) <= inside_span, unsigned, in the width of the type */

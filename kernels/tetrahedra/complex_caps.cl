@@ -143,7 +143,8 @@ kernel void caps_count(complex_job c, global const BITS *samples, global const u
 /* What the kernel that emits works on. */
 typedef struct cap_emit {
     cap_arrays in;
-    global const uint *numbers, *firsts, *state;
+    global const uint *numbers, *firsts;
+    global uint *state;
     global const uint *tiles, *cap_tiles; /* of the surface's vertices, of points and faces */
     global uint *triangles;
 } cap_emit;
@@ -153,11 +154,11 @@ inline_always uint point_vertex(const complex_job *c, uint point, cap_emit e) {
     return e.state[HEAD_VERTICES] + tile_before(e.cap_tiles, point / c->tile_caps, TILE_VERTICES) + e.numbers[point];
 }
 
-/* The vertex on a crossed edge; *wrong where there is none. */
-inline_always uint crossing_vertex(const complex_job *c, uint a, uint b, cap_emit e, uint *wrong) {
+/* The vertex on a crossed edge; where there is none, samples have changed, which the head tells. */
+inline_always uint crossing_vertex(const complex_job *c, uint a, uint b, cap_emit e) {
     const uint entry = cap_edge(c, a, b, e.in);
     if (entry != EDGE_NONE) return edge_number(c, e.in.table[entry], e.in.active, e.tiles);
-    *wrong = 1;
+    atomic_or(&e.state[HEAD_INVALID], 1u);
     return 0;
 }
 
@@ -167,42 +168,40 @@ inline_always void cap_put(uint a, uint b, uint c, global uint **out) {
 }
 
 /* The inside part of a triangle. */
-inline_always void triangle_emit(const complex_job *c, uint3 p, uint inside, cap_emit e, global uint **out,
-                                 uint *wrong) {
+inline_always void triangle_emit(const complex_job *c, uint3 p, uint inside, cap_emit e, global uint **out) {
     const uint count = (uint)popcount(inside);
     const uint turn = 0x9a10u >> 2 * inside & 3; /* where a is, two bits for each pattern: 0 0 1 0 2 2 1 2 */
     if (!count) return;
     if (turn == 1) p = p.yzx;
     if (turn == 2) p = p.zxy;
     const uint a = point_vertex(c, p.x, e);
-    const uint b = count == 1 ? crossing_vertex(c, p.x, p.y, e, wrong) : point_vertex(c, p.y, e);
-    const uint last = count == 3 ? point_vertex(c, p.z, e) : crossing_vertex(c, p.z, p.x, e, wrong);
-    const uint between = count == 2 ? crossing_vertex(c, p.y, p.z, e, wrong) : last;
+    const uint b = count == 1 ? crossing_vertex(c, p.x, p.y, e) : point_vertex(c, p.y, e);
+    const uint last = count == 3 ? point_vertex(c, p.z, e) : crossing_vertex(c, p.z, p.x, e);
+    const uint between = count == 2 ? crossing_vertex(c, p.y, p.z, e) : last;
     cap_put(a, b, between, out);
     if (count == 2) cap_put(a, between, last, out);
 }
 
 /* That of a quadrilateral whose diagonal is crossed and has no vertex. */
-inline_always void quadrilateral_emit(const complex_job *c, uint4 p, uint inside, cap_emit e, global uint **out,
-                                      uint *wrong) {
+inline_always void quadrilateral_emit(const complex_job *c, uint4 p, uint inside, cap_emit e, global uint **out) {
     if (!(inside & 1)) p = p.zwxy, inside = (inside >> 2 | inside << 2) & 15;
     const bool has_b = inside & 2, has_d = inside & 8;
     const uint a = point_vertex(c, p.x, e);
-    uint before = has_b ? point_vertex(c, p.y, e) : crossing_vertex(c, p.x, p.y, e, wrong);
+    uint before = has_b ? point_vertex(c, p.y, e) : crossing_vertex(c, p.x, p.y, e);
     if (has_b) {
-        const uint bc = crossing_vertex(c, p.y, p.z, e, wrong);
+        const uint bc = crossing_vertex(c, p.y, p.z, e);
         cap_put(a, before, bc, out);
         before = bc;
     }
     if (has_d) {
-        const uint cd = crossing_vertex(c, p.z, p.w, e, wrong);
+        const uint cd = crossing_vertex(c, p.z, p.w, e);
         cap_put(a, before, cd, out);
         before = cd;
     }
-    cap_put(a, before, has_d ? point_vertex(c, p.w, e) : crossing_vertex(c, p.w, p.x, e, wrong), out);
+    cap_put(a, before, has_d ? point_vertex(c, p.w, e) : crossing_vertex(c, p.w, p.x, e), out);
 }
 
-inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e, uint *wrong) {
+inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e) {
     const cap_face f = e.in.faces[n];
     global uint *out = e.triangles + 3ul * (e.state[HEAD_TRIANGLES] +
                                             tile_before(e.cap_tiles, n / c->tile_caps, TILE_TRIANGLES) + e.firsts[n]);
@@ -213,9 +212,9 @@ inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e, uint 
     const bool splits = cap_splits(c, &f, inside, e.in);
     const uint3 first = (uint3)(f.points[0], f.points[1], f.points[2]);
     const uint3 second = (uint3)(f.points[0], f.points[2], f.points[3]);
-    if (!triangle && !splits) quadrilateral_emit(c, (uint4)(first, f.points[3]), inside, e, &out, wrong);
-    if (splits) triangle_emit(c, first, inside & 7, e, &out, wrong);
-    if (splits && !triangle) triangle_emit(c, second, second_half(inside), e, &out, wrong);
+    if (!triangle && !splits) quadrilateral_emit(c, (uint4)(first, f.points[3]), inside, e, &out);
+    if (splits) triangle_emit(c, first, inside & 7, e, &out);
+    if (splits && !triangle) triangle_emit(c, second, second_half(inside), e, &out);
 }
 
 /* Emits the border's vertices and triangles behind the surface's. */
@@ -225,7 +224,7 @@ kernel void caps_emit(complex_job c, global const float *points, global const ui
                       global const uint *numbers, global const uint *firsts, global float *positions,
                       global uint *triangles) {
     local uint shared[4];
-    uint number = 0, wrong = 0;
+    uint number = 0;
     const cap_emit e = {{cap_points + c.cap_point_offset, faces + c.cap_face_offset, active, cases, table},
                         numbers,
                         firsts,
@@ -241,10 +240,9 @@ kernel void caps_emit(complex_job c, global const float *points, global const ui
             if (start + (uint)get_local_id(0) >= c.tile_caps) continue;
             if (n < c.cap_points && numbers[n] != EDGE_NONE)
                 vstore3(vload3(e.in.points[n], points), point_vertex(&c, n, e), positions);
-            if (n < c.cap_faces) cap_face_emit(&c, n, e, &wrong);
+            if (n < c.cap_faces) cap_face_emit(&c, n, e);
         }
     }
-    if (wrong) atomic_or(&state[HEAD_INVALID], 1u);
 }
 
 #endif

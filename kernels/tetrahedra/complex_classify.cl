@@ -55,7 +55,6 @@ kernel void complex_classify(complex_job c, global const BITS *samples, global c
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tools.scan.tiles[TILE_WORDS * n + TILE_NEXT])
         cluster_tile_settle(tools, n, a);
     if (found.crossed) atomic_add(&state[HEAD_CROSSED], found.crossed);
-    if (found.invalid) atomic_or(&state[HEAD_INVALID], 1u);
 }
 
 /* Fills an array of `count` words; each group fills its part. */

@@ -23,7 +23,7 @@ typedef struct cluster_arrays {
 
 /* Of the clusters that a work-item has counted: sums, and the active clusters that are not in the list yet. */
 typedef struct cluster_sums {
-    uint crossed, invalid, active_count, active[LIST_BATCH];
+    uint crossed, active_count, active[LIST_BATCH];
 } cluster_sums;
 
 inline_always void clusters_append(cluster_arrays a, cluster_sums *sums) {
@@ -49,7 +49,7 @@ inline_always bool cluster_mixed(tile_tools tools, uint n, cluster_arrays a, boo
     uint invalid = 0;
     brick_range range = cluster_range(tools.c, n, a.in, &invalid);
     a.ranges[n] = range;
-    sums->invalid |= invalid;
+    if (invalid) atomic_or(&a.head[HEAD_INVALID], 1u);
     return !invalid && range_sign(&tools.c->test, range) == SIGN_MIXED;
 }
 

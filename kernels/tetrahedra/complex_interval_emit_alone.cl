@@ -1,6 +1,6 @@
 /*
- * complex_interval_emit_alone.cl - tetrahedra where a work-item has a tile to itself: eight that lie within
- * whole at a time; of others all numbers are read first, as which ones a case takes is hard to predict
+ * complex_interval_emit_alone.cl - tetrahedra where a work-item has a tile to itself: eight that lie wholly within at a
+ * time; of others all numbers are read first, as which ones a case takes is hard to predict
  */
 #ifndef COMPLEX_INTERVAL_EMIT_ALONE_CL
 #define COMPLEX_INTERVAL_EMIT_ALONE_CL
@@ -47,7 +47,7 @@ inline_always uint16 numbers_at(uint16 p, const volume_emit *e) {
 }
 
 /* A cluster whose tetrahedra all lie wholly within. */
-inline_always uint *whole_store(global const uint *points, const volume_emit *e, uint *out) {
+inline_always uint *within_store(global const uint *points, const volume_emit *e, uint *out) {
     for (uint m = 0; m < 4; m += 2) {
         uint16 first = numbers_at(vload16(m, points), e), second = numbers_at(vload16(m + 1, points), e);
         eight_order(&first, &second);
@@ -127,7 +127,7 @@ inline_always uint *few_store(ulong reached, global const uint *points, const vo
 inline_always uint *cluster_emit(uint n, uint first_slot, const volume_emit *e, uint *out) {
     const volume_cluster c = e->clusters[n];
     global const uint *points = e->tetrahedra + (ulong)CLUSTER_POINTS * n;
-    if (c.low == ~0ul && !c.high) return whole_store(points, e, out);
+    if (c.low == ~0ul && !c.high) return within_store(points, e, out);
     if (nibbles_mixed(c.low) | nibbles_mixed(c.high))
         return cuts_store(&c, points, e->entries + first_slot, e->slots + first_slot + 4 * c.cuts, e, out);
     return few_store(cluster_reached(&c), points, e, out);
@@ -147,7 +147,7 @@ inline_always void emit_prefetch(uint n, const volume_emit *e) {
 }
 
 /* Entries of a tile's edges have named the edges that own their vertices; they then name vertices. */
-inline_always void entries_settle(edge_span span, const volume_emit *e) {
+inline_always void entries_resolve(edge_span span, const volume_emit *e) {
     for (uint n = span.first; n < span.end; n++) {
         if (n + FETCH_AHEAD < span.end) line_prefetch(e->edges + (e->entries[n + FETCH_AHEAD] & ~EDGE_RESOLVED));
         e->entries[n] = e->edges[e->entries[n] & ~EDGE_RESOLVED].x;
@@ -191,7 +191,7 @@ inline_always void tile_emit(uint number, const volume_emit *e) {
     const edge_span span = tile_edges(number, e->state, e->v);
     out_stage stage;
     uint *out = stage_open(&stage, tile_out(number, e)), *words = (uint *)stage.lines;
-    entries_settle(span, e);
+    entries_resolve(span, e);
     for (uint n = number * items; n < end; n++) {
         emit_prefetch(n, e);
         out = cluster_emit(n, span.first, e, out);

@@ -26,9 +26,9 @@ inline_always bool edge_exists(uint2 edge) { return WORK_ITEMS == 1 || edge.x !=
 /* ---------------------------------------------------------------------------------------------------------- joining */
 
 /* Enters edge n; `entry` is where the search begins. Returns the edge's entry. Where none was free within probe_limit,
- * *full is set, and the result means nothing. */
+ * *full is set, and the result means nothing: the host starts again with a larger table. */
 inline_always uint list_enter(uint n, uint entry, const volume_job *v, global const uint2 *edges,
-                              volatile global uint *table, uint *full) {
+                              volatile global uint *table, global uint *full) {
     const uint2 edge = edges[n];
     for (uint probe = 0; probe <= v->probe_limit; probe++) {
         uint there = table[entry];
@@ -41,7 +41,7 @@ inline_always uint list_enter(uint n, uint entry, const volume_job *v, global co
         }
         entry = (entry + 1) & v->table_mask;
     }
-    *full = 1;
+    atomic_or(full, 1u);
     return 0;
 }
 
@@ -64,7 +64,7 @@ inline_always void edge_prefetched(uint n, global const uint2 *edges, volatile g
 }
 
 inline_always void tile_join(edge_span span, const volume_job *v, global const uint2 *edges,
-                             volatile global uint *table, global uint *entries, uint *full) {
+                             volatile global uint *table, global uint *entries, global uint *full) {
     uint hashed = span.first, prefetched = span.first;
     for (uint n = span.first; n < span.end; n++) {
         for (; hashed < min(n + JOIN_AHEAD, span.end); hashed++) edge_hashed(hashed, v, edges, table, entries);
@@ -77,7 +77,7 @@ inline_always void tile_join(edge_span span, const volume_job *v, global const u
 #else
 
 inline_always void tile_join(edge_span span, const volume_job *v, global const uint2 *edges,
-                             volatile global uint *table, global uint *entries, uint *full) {
+                             volatile global uint *table, global uint *entries, global uint *full) {
     for (uint n = span.first + (uint)get_local_id(0); n < span.end; n += WORK_ITEMS)
         if (edge_exists(edges[n]))
             entries[n] = list_enter(n, edge_hash(edges[n]) & v->table_mask, v, edges, table, full);
@@ -88,12 +88,12 @@ inline_always void tile_join(edge_span span, const volume_job *v, global const u
 kernel void complex_interval_join(volume_job v, global const uint2 *edges, global uint *table, global uint *entries,
                                   global uint *state) {
     local uint shared[4];
-    uint number = 0, full = 0;
+    uint number = 0;
     while (number < v.tile_count) {
         number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_JOIN], shared);
-        if (number < v.tile_count) tile_join(tile_edges(number, state, &v), &v, edges, table, entries, &full);
+        if (number < v.tile_count)
+            tile_join(tile_edges(number, state, &v), &v, edges, table, entries, &state[VOLUME_FULL]);
     }
-    if (full) atomic_or(&state[VOLUME_FULL], 1u); /* the host starts again with a larger table */
 }
 
 /* --------------------------------------------------------------------------------------------------------- numbering

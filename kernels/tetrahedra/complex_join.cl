@@ -13,9 +13,9 @@
 #include "complex_edges.cl"
 
 /* Enters an edge; `entry` is where the search begins. Returns the edge's entry. Where none was free within probe_limit,
- * *full is set, and the result means nothing. */
+ * *full is set, and the result means nothing: the host starts again with a larger table. */
 inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, global const active_item *active,
-                              global const uchar *cases, volatile global uint *table, uint *full) {
+                              global const uchar *cases, volatile global uint *table, global uint *full) {
     uint2 edge = edge_points(c, active, slot, cases);
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
         uint there = table[entry];
@@ -28,7 +28,7 @@ inline_always uint edge_enter(const complex_job *c, uint slot, uint entry, globa
         }
         entry = (entry + 1) & c->table_mask;
     }
-    *full = 1;
+    atomic_or(full, 1u);
     return 0;
 }
 

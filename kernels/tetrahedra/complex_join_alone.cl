@@ -88,7 +88,7 @@ inline_always void entries_share(const complex_job *c, uint a, global const acti
  * after all of it. */
 inline_always void edges_enter(const complex_job *c, uint wait, global const active_item *active,
                                global const uchar *cases, volatile global uint *table, global uint *entries,
-                               edge_work *work, uint *full) {
+                               edge_work *work, global uint *full) {
     for (; work->prefetched + wait / 2 < work->hashed; work->prefetched++) {
         uint there = table[entries[work->queue[work->prefetched % EDGE_QUEUE]]];
         line_prefetch(active + (there == EDGE_NONE ? 0 : slot_item(c, there)));
@@ -102,7 +102,7 @@ inline_always void edges_enter(const complex_job *c, uint wait, global const act
 kernel void complex_join(complex_job c, global const active_item *active, global const uchar *cases, global uint *state,
                          global uint *table, global uint *entries) {
     local uint shared[4];
-    uint number = 0, full = 0;
+    uint number = 0;
     edge_work work;
     for (uint n = 0; n < RECENT_EDGES; n++) work.points[n] = 0;
     work.hashed = work.prefetched = work.entered = 0;
@@ -112,13 +112,12 @@ kernel void complex_join(complex_job c, global const active_item *active, global
         if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
         for (uint n = 0; n < count; n++) {
             edges_hash(&c, first + n, active, cases, table, entries, &work);
-            edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &full);
+            edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &state[HEAD_FULL]);
         }
-        edges_enter(&c, 0, active, cases, table, entries, &work, &full);
+        edges_enter(&c, 0, active, cases, table, entries, &work, &state[HEAD_FULL]);
         for (uint n = 0; n < count; n++) entries_share(&c, first + n, active, cases, entries);
-        if (full) break; /* the host starts again with a larger table */
+        if (state[HEAD_FULL]) break;
     }
-    if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
 
 #endif

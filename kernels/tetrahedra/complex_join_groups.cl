@@ -9,7 +9,7 @@
 kernel void complex_join(complex_job c, global const active_item *active, global const uchar *cases, global uint *state,
                          global uint *table, global uint *entries) {
     local uint shared[4];
-    uint number = 0, full = 0;
+    uint number = 0;
     while (number < c.active_tiles) {
         number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
         uint first = number * c.tile_actives, count = 0;
@@ -18,11 +18,10 @@ kernel void complex_join(complex_job c, global const active_item *active, global
             for (uint rest = own_edges(first + n, active, cases); rest; rest &= rest - 1) {
                 uint slot = slot_of(&c, first + n, lowest_bit(rest));
                 uint entry = edge_hash(edge_points(&c, active, slot, cases)) & c.table_mask;
-                entries[slot] = edge_enter(&c, slot, entry, active, cases, table, &full);
+                entries[slot] = edge_enter(&c, slot, entry, active, cases, table, &state[HEAD_FULL]);
             }
         }
     }
-    if (full) atomic_or(&state[HEAD_FULL], 1u);
 }
 
 #endif

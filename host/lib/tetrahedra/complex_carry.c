@@ -12,7 +12,7 @@
 
 #include <stdatomic.h>
 
-enum { SHARE_EDGES = 1 << 14, STEPS = 8, SCAN_VALUE = 0x3fffffff /* of a word of the scan (scan.cl) */ };
+enum { SHARE_EDGES = 1 << 14, STEPS = 8 };
 
 typedef struct carry_job {
     const tc_grid *grid;
