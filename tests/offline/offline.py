@@ -3,6 +3,7 @@
 
     offline.py quick nvidia|amd|spirv    a sample of programs, for one kind of device
     offline.py long                      all programs, for all; renews the table
+    offline.py renew                     the sample, for all; renews the table with what the kernels need now
     offline.py show [nvidia|amd]         what the sample's kernels need, judging nothing
 
 Of all: --texts PROGRAM (kernel_texts), --tools FOLDER (made by the script tools), --table FILE. The table has what
@@ -120,7 +121,7 @@ class Judge:
                 if compare and known and self.comparable(target):
                     self.failures += [f"{where}: {kernel}: {rise}" for rise in rises(need, known)]
                 if compare and not known:
-                    self.failures.append(f"{where}: {kernel}: not in the table: run tests/long -R offline")
+                    self.failures.append(f"{where}: {kernel}: not in the table: run offline.py renew")
                 self.needs.setdefault(program.name, {}).setdefault(kernel, {})[target.arch] = need
 
 
@@ -217,7 +218,7 @@ def needs_show(judge):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("tier", choices=["quick", "long", "show"])
+    parser.add_argument("tier", choices=["quick", "long", "renew", "show"])
     parser.add_argument("vendor", nargs="?", choices=["nvidia", "amd", "spirv"])
     for name in ("texts", "tools", "table"):
         parser.add_argument(f"--{name}", required=True)
@@ -225,7 +226,8 @@ def main():
     vendors = [options.vendor] if options.vendor else ["nvidia", "amd", "spirv"]
     start, whole = time.monotonic(), options.tier == "long"
     targets, lacking = targets_make(vendors, options.tools)
-    if lacking and (whole or not targets):
+    renews = options.tier == "renew"
+    if lacking and (whole or renews or not targets):
         print("\n".join(["skipped:"] + lacking))
         return 77
     table = table_read(options.table)
@@ -234,7 +236,8 @@ def main():
         judge = Judge(targets, table, work)
         for device in sorted({target.device for target in targets}):
             programs = programs_write(options.texts, device, 0, work)
-            judge.all([program for program in programs if whole or program.name in SAMPLE], not whole)
+            judge.all([program for program in programs if whole or program.name in SAMPLE],
+                      options.tier == "quick")
             for size in OTHER_SIZES if whole else []:
                 judge.all([program for program in programs_write(options.texts, device, size, work)
                            if program.name in SAMPLE], False)
@@ -246,9 +249,10 @@ def main():
         print("\n".join(judge.failures))
         print(f"{len(judge.failures)} failed")
         return 1
-    folder = os.environ.get("TETRACUBES_RESULTS")
-    if whole and folder:
-        table_write(os.path.join(folder, "offline.json"), judge, planted, time.monotonic() - start)
+    folder = os.environ.get("TETRACUBES_RESULTS") if whole else None
+    path = options.table if renews else os.path.join(folder, "offline.json") if folder else None
+    if path:
+        table_write(path, judge, planted, time.monotonic() - start)
     if lacking:
         print("\n".join(["skipped in part:"] + lacking))
         return 77
