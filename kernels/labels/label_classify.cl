@@ -60,7 +60,7 @@ inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, gl
     for (uint n = 0; n < 5; n++) {
         const label_cells c = label_cells_in(label_tetrahedra(even, e, n), cubes);
         active |= label_cells_any(c);
-        sums.y += label_cell_triangles(c);
+        sums.y += label_cell_triangles(c, cubes);
     }
     if (!(sums.x | sums.y)) return sums;
 #pragma unroll

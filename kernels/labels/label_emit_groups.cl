@@ -13,7 +13,7 @@
 inline_always uint label_triangles_before(local const label_row *r, uint x) {
     const ulong before = (1ul << x) - 1;
     uint sum = 0;
-    for (uint t = 0; t < 5; t++) sum += label_cell_triangles(label_cells_in(r->cells[t], before));
+    for (uint t = 0; t < 5; t++) sum += label_cell_triangles(r->cells[t], before);
     return sum;
 }
 

@@ -79,9 +79,10 @@ inline_always label_cells label_tetrahedra(ulong even, const ulong e[LABEL_EDGES
                           a1, b1, label_select(even, c1, c));
 }
 
-inline_always uint label_cell_triangles(label_cells c) {
-    return (uint)popcount(c.three) + 2 * (uint)popcount(c.four) + 5 * (uint)popcount(c.five) +
-           12 * (uint)popcount(c.six);
+/* Triangles of these cubes. rusticl 25.0 sums wrongly where label_cells_in has selected the cubes of a copy. */
+inline_always uint label_cell_triangles(label_cells c, ulong cubes) {
+    return (uint)popcount(c.three & cubes) + 2 * (uint)popcount(c.four & cubes) + 5 * (uint)popcount(c.five & cubes) +
+           12 * (uint)popcount(c.six & cubes);
 }
 
 /* Bits of cubes that lie in the grid, in a row. */

@@ -220,7 +220,7 @@ class Endings(RankCase):
 
     def test_interrupted(self):
         for strike in self.strikes("interrupt"):
-            self.fails(strike, "ended by a signal|killed|Killed|exited|aborted")
+            self.fails(strike, "ended by a signal|killed|Killed|exited|aborted|MPI_ABORT was invoked")
 
     def test_full_disk(self):
         for strike in ["1 MPI_File_write_at 1 full"] + (["0 MPI_File_write_at 2 full", "2 MPI_File_write_at 2 full"]
