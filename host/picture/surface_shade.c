@@ -7,7 +7,7 @@
 #include "parallel.h"
 #include "surface_scene.h"
 
-/* Of sRGB, 0 to 255. */
+/* Of sRGB, 0 to 255, as all colours here. */
 static const double outer_colour[3] = {158, 192, 230}, inner_colour[3] = {232, 194, 140};
 
 static const double light[3] = {-2 / 7.0, 3 / 7.0, 6 / 7.0}; /* unit length */
@@ -72,10 +72,30 @@ static void normal_at(const scene *s, const scene_part *part, uint64_t triangle,
     for (int axis = 0; axis < 3; axis++) out[axis] = face[axis];
 }
 
+/* A colour of each label: hues apart by the golden ratio of the circle, so that near labels have far ones. */
+static void label_colour(uint32_t label, double out[3]) {
+    const double turn = 6 * ((double)(label * 2654435769u) / 4294967296.0);
+    for (int n = 0; n < 3; n++) {
+        const double away = fabs(fmod(turn - 2 * n + 9, 6) - 3); /* from the hue of this component, 0 to 3 */
+        const double strength = away < 1 ? 1 : away < 2 ? 2 - away : 0;
+        out[n] = 110 + 130 * strength;
+    }
+}
+
+/* What is seen of a triangle between labels is the body behind it; from within a body at the border, its own wall. */
+static void colour_of(const scene *s, uint64_t triangle, int is_outer, double out[3]) {
+    const uint32_t *sides = s->mesh->boundary_labels ? s->mesh->boundary_labels + 2 * triangle : NULL;
+    if (sides) {
+        label_colour(is_outer || !sides[1] ? sides[0] : sides[1], out);
+        return;
+    }
+    for (int n = 0; n < 3; n++) out[n] = (is_outer ? outer_colour : inner_colour)[n];
+}
+
 /* Adds the colour of a sample that shows a triangle. */
 static void add_lit(const scene *s, uint64_t triangle, int64_t x, int64_t y, double sum[3]) {
     const scene_part *part = scene_part_of_triangle(s, triangle);
-    double face[3], normal[3];
+    double face[3], normal[3], own[3];
     face_normal(s, part, triangle, face);
     normal_at(s, part, triangle, face, x, y, normal);
     const int is_outer = face[2] >= 0;
@@ -83,9 +103,9 @@ static void add_lit(const scene *s, uint64_t triangle, int64_t x, int64_t y, dou
     const double wrapped = (towards + WRAP) / (1 + WRAP), lit = wrapped > 0 ? wrapped < 1 ? wrapped : 1 : 0;
     double shine = towards > 0 ? towards * towards : 0;
     for (int n = 0; n < 4; n++) shine *= shine;
+    colour_of(s, triangle, is_outer, own);
     for (int n = 0; n < 3; n++) {
-        const double colour =
-            (is_outer ? outer_colour : inner_colour)[n] * (AMBIENT + (1 - AMBIENT) * lit) + HIGHLIGHT * shine;
+        const double colour = own[n] * (AMBIENT + (1 - AMBIENT) * lit) + HIGHLIGHT * shine;
         sum[n] += colour < 255 ? colour : 255;
     }
 }

@@ -10,6 +10,7 @@
 #include "counted.h"
 #include "exit_status.h"
 #include "extract/engine.h"
+#include "extract/surface_preview.h"
 #include "failure.h"
 #include "input/input.h"
 #include "labels/label_cells.h"
@@ -220,6 +221,11 @@ static void tell_absent(const label_job *j) {
             notice("label %" PRIu32 " has no surface: no sample has it, or all have", j->o->labels[n]);
 }
 
+static int write_preview(label_job *j) {
+    j->report.preview = label_preview_name(j->o);
+    return j->report.preview ? preview_write(j->o, j->report.preview, &j->mesh, NULL, 0, &j->files) : STATUS_FAILED;
+}
+
 static int publish(label_job *j) {
     const double begin = now_ms();
     int status = 0;
@@ -229,6 +235,7 @@ static int publish(label_job *j) {
         status = j->report.path ? label_file_write(j->o, &j->data, j->report.path, &j->mesh, &j->files) : STATUS_FAILED;
     }
     if (!status) label_files_tell(j->o, &j->mesh);
+    if (!status && j->o->preview) status = write_preview(j);
     if (!status) status = output_group_publish(&j->files);
     j->report.times.write_ms += now_ms() - begin;
     return status;
@@ -239,6 +246,7 @@ static void release(label_job *j) {
     for (size_t n = 0; n < j->report.row_count; n++) free(j->report.rows[n].path);
     free(j->report.rows);
     free(j->report.path);
+    free(j->report.preview);
     label_mesh_release(&j->one);
     mesh_labels_release(&j->labels);
     engine_close(&j->main);

@@ -95,6 +95,30 @@ class Preview(PictureCase):
             self.assertIn(corners[corner], found, view)
             self.assertNotIn(corners[far], found, view)
 
+    def test_labels(self):
+        """Two boxes side by side, of labels 1 and 2: either half has a colour of its own, also from behind; one name."""
+        size = (12, 6, 6)
+        values = [(1 if x < 6 else 2) if 1 <= x < 11 and 1 <= y < 5 and 1 <= z < 5 else 0
+                  for z in range(6) for y in range(6) for x in range(12)]
+        words = ["labels", *self.raw("two.raw", "u8", size, values), *REFERENCE, "--preview-size", "100,50"]
+        hues = []
+        for view in ("front", "back"):
+            self.expect(0, *words, "--smooth", "0", "--preview", self.path("l%%.png"), f"--view={view}")
+            rows = self.picture(self.path("l%.png"))[2]
+            middles = [rows[25][x] for x in (20, 80)]
+            hues.append([[channel - min(pixel) for channel in pixel] for pixel in middles])
+            same = sum(rows[y][x] == middles[x > 50] for y in range(20, 30) for x in (*range(12, 44), *range(56, 88)))
+            self.assertGreater(same, 500, view)
+        self.assertEqual(hues[0], hues[1][::-1])
+        self.assertNotEqual(hues[0][0].index(max(hues[0][0])), hues[0][1].index(max(hues[0][1])))
+        said = self.expect(0, *words, "--preview", self.path("l.png"), "-o", self.path("l-%.stl"), "--separate", "--json")
+        self.assertEqual(json.loads(said.stdout)["preview"], self.path("l.png"))
+        self.assertEqual(self.files(), ["l%.png", "l-1.stl", "l-2.stl", "l.png", "two.raw"])
+        self.refuses(2, *words, "--preview", self.path("l-%.png"), says="one file has all")
+        self.refuses(2, *words, "--preview", self.path("l.jpg"), says=r"let the name end in \.png")
+        self.refuses(2, *words, "--preview", "-", "-o", "-", "--format", "ply", says="both name")
+        self.refuses(1, *words, "--preview", self.path("no/l.png"), says="create the folder")
+
     def test_several(self):
         """A picture for each isovalue, and for each block, named as meshes are; with or without -o."""
         volume = self.generate("sphere", "s.nrrd")

@@ -148,7 +148,8 @@ class Mesh:
 
     def picture(self, view: str | tuple[float, float] | None = None,
                 size: tuple[int, int] = (1024, 768)) -> np.ndarray:
-        """The mesh as an image, uint8 (height, width, 3), sRGB: sides towards the lower values blue, others ochre.
+        """The mesh as an image, uint8 (height, width, 3), sRGB: sides towards the lower values blue, others ochre;
+        of a label map each label in a colour of its own.
 
         view: "iso", "front", "back", "left", "right", "top", "bottom", or azimuth and elevation in degrees. From the
         front, which is along +y, x runs to the right and z up.

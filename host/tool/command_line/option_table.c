@@ -100,14 +100,17 @@ const option option_table[] = {
      "picture of the surface to write, as PNG; also without -o; % and --blocks\n"
      "separate name it as they do FILE of -o. Blue is the outer side, which the\n"
      "lower values are on; ochre the inner one"},
+    {"--preview", NULL, "FILE", COMMAND_LABELS, VALUE_TEXT, IN(preview), NULL,
+     "picture of all surfaces to write, as PNG, each label in a colour of its own;\n"
+     "also without -o"},
     {"--preview", NULL, "FILE", COMMAND_INFO, VALUE_TEXT, IN(preview), NULL,
      "picture to write, as PNG: three slices through the middle of a structured\n"
      "grid, with the isolines of --iso"},
-    {"--view", NULL, "VIEW", COMMAND_EXTRACT, VALUE_VIEW, IN(view), view_choices,
+    {"--view", NULL, "VIEW", COMMAND_EXTRACT | COMMAND_LABELS, VALUE_VIEW, IN(view), view_choices,
      "of --preview: iso, front, back, left, right, top or bottom, or azimuth and\n"
      "elevation in degrees (default: 30,25): seen from the front, along +y, x runs\n"
      "to the right and z up; the azimuth turns the viewer to the right"},
-    {"--preview-size", NULL, "W,H", COMMAND_EXTRACT | COMMAND_INFO, VALUE_PIXELS, IN(preview_size), NULL,
+    {"--preview-size", NULL, "W,H", COMMAND_EXTRACT | COMMAND_INFO | COMMAND_LABELS, VALUE_PIXELS, IN(preview_size), NULL,
      "of --preview: pixels, 16 to 8192 each (default: 1024,768)"},
     {"--field", NULL, "NAME", READS, VALUE_TEXT, IN(field), NULL,
      "field to take, of data with several, see 'tetracubes info' (default:\n"

@@ -16,14 +16,20 @@ int surface_preview_check(const options *o, const dataset *d) {
     return status ? status : surface_names_check(o, d, "--preview", o->preview);
 }
 
-int surface_preview_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
-                          output_group *group) {
+int preview_write(const options *o, const char *path, const tc_mesh_data *mesh, const mesh_part *parts, int part_count,
+                  output_group *group) {
     picture p = {0};
-    char *path = surface_file_name(o, o->preview, iso, block);
-    int status = path ? picture_make(&p, (int)o->preview_size[0], (int)o->preview_size[1]) : STATUS_FAILED;
-    if (!status) status = surface_picture(&mesh->mesh, mesh->parts, mesh->part_count, o->view, &p);
+    int status = picture_make(&p, (int)o->preview_size[0], (int)o->preview_size[1]);
+    if (!status) status = surface_picture(mesh, parts, part_count, o->view, &p);
     if (!status) status = picture_write(&p, path, group);
     picture_release(&p);
+    return status;
+}
+
+int surface_preview_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
+                          output_group *group) {
+    char *path = surface_file_name(o, o->preview, iso, block);
+    const int status = path ? preview_write(o, path, &mesh->mesh, mesh->parts, mesh->part_count, group) : STATUS_FAILED;
     free(path);
     return status;
 }

@@ -14,6 +14,10 @@
  * where a file cannot be written. d is NULL before the input is read. */
 int surface_preview_check(const options *o, const dataset *d);
 
+/* Draws a mesh, in parts as in mesh_write_options, into a file that waits in the group. */
+int preview_write(const options *o, const char *path, const tc_mesh_data *mesh, const mesh_part *parts, int part_count,
+                  output_group *group);
+
 /* Draws the mesh of the isovalue and, with --blocks separate, the block. The file waits in the group. */
 int surface_preview_write(const options *o, const typed_isovalue *iso, int block, const result_mesh *mesh,
                           output_group *group);

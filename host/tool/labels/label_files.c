@@ -7,39 +7,49 @@
 #include "input/input.h"
 #include "mesh_write.h"
 #include "output.h"
+#include "picture.h"
 #include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static mesh_write_options write_options(const options *o) {
     return (mesh_write_options){.format = o->format,
                                 .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
 }
 
-/* Of one file of all labels, in whose name no label has a place. */
-static int check_one_file(const options *o, const dataset *d) {
-    if (name_pattern_has_place(o->output))
+/* Of one file of all labels, in whose name no label has a place; option: which names it. */
+static int check_one_file(const options *o, const dataset *d, const char *option, const char *name) {
+    if (name_pattern_has_place(name))
         return fail(STATUS_USAGE,
-                    "-o %s: %% stands for a label, and one file has all: --separate writes a file for each label; a "
-                    "percent sign in the name is typed %%%%",
-                    o->output);
-    char *path = name_pattern_fill(o->output, "", "");
-    int status = path ? input_overwrite_check(o, d, "-o", path) : STATUS_FAILED;
+                    "%s %s: %% stands for a label, and one file has all: %sa percent sign in the name is typed %%%%",
+                    option, name, name == o->output ? "--separate writes a file for each label; " : "");
+    char *path = name_pattern_fill(name, "", "");
+    int status = path ? input_overwrite_check(o, d, option, path) : STATUS_FAILED;
     if (!status) status = output_check(path);
     free(path);
     return status;
 }
 
+static int check_preview(const options *o, const dataset *d) {
+    if (!o->preview) return 0;
+    int status = picture_check("--preview", o->preview);
+    if (!status && o->output && !o->separate_labels && strcmp(o->output, o->preview) == 0)
+        status = fail(STATUS_USAGE, "-o and --preview both name %s: name two files", o->output);
+    return status ? status : check_one_file(o, d, "--preview", o->preview);
+}
+
 int label_files_check(const options *o, const dataset *d) {
     const mesh_write_options how = write_options(o);
-    if (!o->output) return 0;
-    int status = mesh_write_check(o->output, &how);
+    int status = check_preview(o, d);
+    if (status || !o->output) return status;
+    status = mesh_write_check(o->output, &how);
     if (!status && o->separate_labels && !output_is_file(o->output))
         status = fail(STATUS_USAGE, "--separate writes several files: -o %s is one stream; name files", o->output);
     if (status || o->separate_labels) return status; /* whose names are known when their labels are */
-    return check_one_file(o, d);
+    return check_one_file(o, d, "-o", o->output);
 }
 
 char *label_file_name(const options *o, uint32_t label) {
@@ -58,6 +68,8 @@ int label_file_write(const options *o, const dataset *d, const char *path, const
     int status = input_overwrite_check(o, d, "-o", path);
     return status ? status : mesh_write(path, mesh, &how);
 }
+
+char *label_preview_name(const options *o) { return name_pattern_fill(o->preview, "", ""); }
 
 void label_files_tell(const options *o, const tc_mesh_data *mesh) {
     const mesh_write_options how = write_options(o);

@@ -45,6 +45,7 @@ static int print_json(const label_report *r) {
     for (size_t n = 0; n < r->row_count; n++) json_array_append_new(rows, row_json(r, &r->rows[n]));
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "output", named ? string_json(named) : json_null());
+    if (r->preview) json_object_set_new(object, "preview", string_json(r->preview));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->device[0] ? "opencl" : "reference"));
     json_object_set_new(object, "dims", integers_json(r->grid->dims));
@@ -104,6 +105,7 @@ static void print_text(const label_report *r) {
     for (size_t n = 0; n < r->row_count; n++) print_row(r, &r->rows[n]);
     if (r->has_verdict) printf("  verify      %s\n", r->verified ? "same bytes as the reference" : "FAILED");
     if (r->path) printf("  written     %s\n", output_is_dash(r->path) ? "standard output" : r->path);
+    if (r->preview) printf("  preview     %s\n", output_is_dash(r->preview) ? "standard output" : r->preview);
     run_times_text(&r->times);
 }
 

@@ -30,7 +30,8 @@ typedef struct label_report {
     uint32_t slab_count;
     label_row *rows;
     size_t row_count;
-    char *path; /* of the file of all labels, once it is written, or NULL; from malloc */
+    char *path;    /* of the file of all labels, once it is written, or NULL; from malloc */
+    char *preview; /* of the picture, as above */
     int has_verdict, verified;
     run_times times;
 } label_report;
