@@ -87,6 +87,10 @@ class Stacks(GridCase):
         self.refuses(2, "extract", self.path("slices"), "--iso", "99.5", *REFERENCE, "-o",
                      self.path("slices/99.tif"), "--format", "ply", says="read as part of it")
         self.refuses(2, "info", self.path("slices/%d.raw"), "--dims", "4,4,4", "--type", "u8", says="by a line as 'data file: ")
+        self.write("slices/7.raw", b"no TIFF")
+        self.refuses(4, "info", self.path("slices/%d.raw"), says="7.raw: is no TIFF, by its first bytes; slices of raw")
+        self.refuses(2, "info", *[self.path(f"slices/{n}.tif") for n in (98, 99, 100)],
+                     says=r"100\.tif' is a third. Slices of TIFF are one input: their folder, or")
         os.remove(self.path("slices/100.tif"))
         self.refuses(4, "info", self.path("slices/%d.tif"), says="slices 99 and 101")
 

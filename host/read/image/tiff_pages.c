@@ -94,8 +94,21 @@ static int fail_damaged(const reader *r, const char *what) {
                 r->message);
 }
 
+static int is_tiff(const mapping *file) {
+    static const char *const marks[] = {"II*", "MM\0*", "II+", "MM\0+"}; /* BigTIFF's have a + */
+    for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
+        if (file->size >= 4 && memcmp(file->bytes, marks[n], 4) == 0) return 1;
+    return 0;
+}
+
 static int open_tiff(reader *r, const char *path, const mapping *file) {
     *r = (reader){.path = path, .file = file};
+    if (!is_tiff(file))
+        return fail(
+            STATUS_INPUT,
+            "%s: is no TIFF, by its first bytes; slices of raw samples are listed by a NRRD header, as in 'data file: "
+            "slice.%%d 1 93 1'",
+            path);
     TIFFOpenOptions *options = file->size ? TIFFOpenOptionsAlloc() : NULL;
     if (file->size && !options) return fail(STATUS_FAILED, "%s: no memory to read it", path);
     if (options) {

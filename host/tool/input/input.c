@@ -20,8 +20,11 @@ static int check_operands(const options *o) {
     if (o->operand_count == 0)
         return fail(STATUS_USAGE, "%s needs an input file; see 'tetracubes %s --help'", o->command, o->command);
     if (o->operand_count > 2)
-        return fail(STATUS_USAGE, "%s: one input at a time, or the two files of Plot3D; '%s' is a third", o->command,
-                    o->operands[2]);
+        return fail(
+            STATUS_USAGE,
+            "%s: one input at a time, or the two files of Plot3D; '%s' is a third. Slices of TIFF are one input: "
+            "their folder, or 'slices/%%04d.tif' for numbered names",
+            o->command, o->operands[2]);
     if (o->operand_count == 2 && options_given(o, "--dims"))
         return fail(STATUS_USAGE, "%s: raw input is one file; '%s' is a second one", o->command, o->operands[1]);
     return 0;
