@@ -100,6 +100,7 @@ class Blocks(GridCase):
                 for key in "area", "volume":
                     surface[key] = surface[key] and round(surface[key], 9)
             self.assertNotEqual(separate.pop("hash"), joined.pop("hash"))  # of numbers that begin anew
+            self.assertEqual(separate.pop("outputs"), [self.path(f"a_b{n}.ply") for n in range(3)])
             self.assertEqual(separate, {key: joined[key] for key in joined if key != "output"})
             self.assertEqual(report["notices"], self.report(*extract)["notices"])
 

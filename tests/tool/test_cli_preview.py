@@ -144,6 +144,8 @@ class Preview(PictureCase):
         self.assertTrue(any(x < 20 for x in found) and any(x > 80 for x in found) and 50 not in found)
         said = self.expect(0, *words, "--preview", self.path("each.png"), "--blocks", "separate").stdout
         self.assertRegex(said, r"preview +\S+each_b0\.png to \S+each_b1\.png")
+        [made] = self.report(*words, "--preview", self.path("each.png"), "--blocks", "separate")["surfaces"]
+        self.assertEqual(made["previews"], [self.path(f"each_b{n}.png") for n in range(2)])
         self.assertEqual(self.picture(self.path("each_b0.png"))[0], 100)
         self.expect(0, *words, "--preview", self.path("o.png"), "--blocks", "separate", "-o", self.path("o.ply"))
         self.assertEqual([name for name in self.files() if name.startswith("o")],

@@ -6,12 +6,14 @@
 #include "output.h"
 #include "planes_cut.h"
 #include "shortest.h"
+#include "surface_files.h"
 #include "terminal/json_report.h"
 #include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* ------------------------------------------------------------------------------------------------------------ JSON */
 
@@ -71,7 +73,28 @@ static void add_simplified(json_t *object, const surface_report *s, const option
                                   real_json(r->distance_from)));
 }
 
-static json_t *surface_json(const surface_report *s, const options *o) {
+/* Of --blocks separate: the pattern's files of the isovalue, by block. */
+static json_t *files_json(const extract_report *r, const char *pattern, const surface_report *s) {
+    json_t *files = json_array();
+    for (int block = 0; block < r->input.block_count; block++) {
+        char *path = surface_file_name(r->o, pattern, s->iso, block);
+        json_array_append_new(files, path ? string_json(path) : json_null());
+        free(path);
+    }
+    return files;
+}
+
+static void add_files(json_t *object, const extract_report *r, const surface_report *s) {
+    const int is_separate = r->o->separate_blocks;
+    if (s->path)
+        json_object_set_new(object, is_separate ? "outputs" : "output",
+                            is_separate ? files_json(r, r->o->output, s) : string_json(s->path));
+    if (s->preview)
+        json_object_set_new(object, is_separate ? "previews" : "preview",
+                            is_separate ? files_json(r, r->o->preview, s) : string_json(s->preview));
+}
+
+static json_t *surface_json(const extract_report *r, const surface_report *s) {
     json_t *object = json_object(), *timings = json_object();
     json_object_set_new(object, "iso", real_json(s->iso->value));
     json_object_set_new(object, "vertices", count_json(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count));
@@ -80,7 +103,7 @@ static json_t *surface_json(const surface_report *s, const options *o) {
     json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
     if (s->has_mesh) add_mesh(object, s);
     if (s->has_dropped) json_object_set_new(object, "dropped_triangles", count_json(s->dropped_count));
-    if (s->has_simplified) add_simplified(object, s, o);
+    if (s->has_simplified) add_simplified(object, s, r->o);
     json_object_set_new(timings, "classify", ms_json(s->classify_ms));
     if (s->has_mesh) {
         json_object_set_new(timings, "emit", ms_json(s->emit_ms));
@@ -88,8 +111,7 @@ static json_t *surface_json(const surface_report *s, const options *o) {
     }
     if (s->has_simplified) json_object_set_new(timings, "simplify", ms_json(s->simplified.ms));
     json_object_set_new(object, "timings_ms", timings);
-    if (s->path && !o->separate_blocks) json_object_set_new(object, "output", string_json(s->path));
-    if (s->preview && !o->separate_blocks) json_object_set_new(object, "preview", string_json(s->preview));
+    add_files(object, r, s);
     if (s->has_topology) add_topology(object, s);
     if (s->has_topology) add_shapes(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
@@ -119,7 +141,7 @@ static json_t *cut_json(const extract_report *r) {
 
 int extract_report_json(const extract_report *r) {
     json_t *surfaces = json_array(), *object = json_object();
-    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n], r->o));
+    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(r, &r->surfaces[n]));
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
