@@ -3,7 +3,9 @@
  *
  * viewer.html as it is, and behind it what it shows, as scripts of types that no browser runs:
  *
- *     mesh                            JSON: counts, whether there are normals, what is known of the coordinates
+ *     mesh                            JSON: counts, whether there are normals, what is known of the coordinates; of a
+ *                                     label map `pairs`: for triangles that follow each other their two labels, and
+ *                                     how many they are. So the page draws each pair in the colours of its labels
  *     positions, normals, triangles   base64 of their records, each 12 bytes and so 16 characters: 3 float32 or uint32
  *
  * A text in a browser may have 2^29 characters, hence the limit.
@@ -12,6 +14,7 @@
 #include "shown_records.h"
 
 #include <errno.h>
+#include <stdlib.h>
 
 enum { RECORD_BYTES = 12, RECORD_CHARACTERS = 16, TEXT_MOST = 1 << 28 };
 
@@ -55,7 +58,56 @@ static void write_array(output *o, const char *id, record_array records) {
     text_release(&head);
 }
 
-static void write_about(output *o, const shown_mesh *s) {
+/* ----------------------------------------------------------------------------------------------------------- pairs */
+
+/* Triangles in the order of their pairs of labels; triangle: from malloc, NULL where they have none. */
+typedef struct pair_order {
+    const shown_mesh *shown;
+    uint32_t *triangles;
+} pair_order;
+
+static uint64_t pair_of(const shown_mesh *s, uint32_t triangle) {
+    const uint32_t *labels = s->labels + (size_t)2 * triangle;
+    return (uint64_t)labels[0] << 32 | labels[1];
+}
+
+static int compare_pairs(const void *first, const void *second, void *shown) {
+    const uint32_t a = *(const uint32_t *)first, b = *(const uint32_t *)second;
+    const uint64_t pair_a = pair_of(shown, a), pair_b = pair_of(shown, b);
+    return pair_a != pair_b ? (pair_a > pair_b) - (pair_a < pair_b) : (a > b) - (a < b);
+}
+
+static pair_order order_pairs(output *o, const shown_mesh *s) {
+    const size_t count = (size_t)s->mesh->triangle_count;
+    pair_order order = {s, s->labels && count ? malloc(count * sizeof *order.triangles) : NULL};
+    if (s->labels && count && !order.triangles) o->error = ENOMEM;
+    for (size_t n = 0; n < count && order.triangles; n++) order.triangles[n] = (uint32_t)n;
+    if (order.triangles) qsort_r(order.triangles, count, sizeof *order.triangles, compare_pairs, (void *)(uintptr_t)s);
+    return order;
+}
+
+static unsigned char *encode_ordered(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
+    const pair_order *order = source;
+    for (uint64_t n = first; n < end; n++)
+        to = encode_triangles(order->shown, order->triangles[n], order->triangles[n] + 1ull, to);
+    return to;
+}
+
+static void list_pairs(file_text *t, const pair_order *order) {
+    const uint64_t count = order->triangles ? order->shown->mesh->triangle_count : 0;
+    text_add(t, ", \"pairs\": [");
+    for (uint64_t n = 0, end; n < count; n = end) {
+        const uint64_t pair = pair_of(order->shown, order->triangles[n]);
+        for (end = n + 1; end < count && pair_of(order->shown, order->triangles[end]) == pair;) end++;
+        text_add(t, "%s[%llu, %llu, %llu]", n ? ", " : "", (unsigned long long)(pair >> 32),
+                 (unsigned long long)(pair & UINT32_MAX), (unsigned long long)(end - n));
+    }
+    text_add(t, "]");
+}
+
+/* ------------------------------------------------------------------------------------------------------------ page */
+
+static void write_about(output *o, const shown_mesh *s, const pair_order *order) {
     file_text t = {0};
     text_add(&t,
              "<script type=\"application/json\" id=\"mesh\">{\"vertices\": %llu, \"triangles\": %llu, \"normals\": %s, "
@@ -64,19 +116,25 @@ static void write_about(output *o, const shown_mesh *s) {
              shows_role(s, ROLE_NORMALS) ? "true" : "false");
     for (int n = 0; shown_notes(s, n).name; n++)
         text_add(&t, "%s\"%s=%s\"", n ? ", " : "", shown_notes(s, n).name, shown_notes(s, n).value);
-    text_add(&t, "]}</script>\n");
+    text_add(&t, "]");
+    if (s->labels) list_pairs(&t, order);
+    text_add(&t, "}</script>\n");
     if (t.has_failed) o->error = ENOMEM;
     output_bytes(o, t.bytes, t.length);
     text_release(&t);
 }
 
 void html_write(output *o, const shown_mesh *s) {
+    const pair_order order = order_pairs(o, s);
+    record_array triangles = records_of_triangles(s);
     output_bytes(o, viewer_text, strlen(viewer_text));
-    write_about(o, s);
+    write_about(o, s, &order);
     write_array(o, "positions", records_of_positions(s, 0));
     for (int n = 0; n < s->array_count; n++) {
         const shown_array shown = {s, s->arrays[n]};
         if (s->arrays[n].role == ROLE_NORMALS) write_array(o, "normals", records_of_values(&shown));
     }
-    write_array(o, "triangles", records_of_triangles(s));
+    if (order.triangles) triangles.encode = encode_ordered, triangles.source = &order;
+    write_array(o, "triangles", triangles);
+    free(order.triangles);
 }

@@ -170,7 +170,9 @@ def read_html(path):
 
 
 def read_labels(path):
-    """The two labels of each triangle, of PLY, VTP or NPZ."""
+    """The two labels of each triangle, of PLY, VTP, NPZ or HTML."""
+    if path.endswith(".html"):
+        return [(inner, outer) for inner, outer, count in html_scripts(path)["mesh"]["pairs"] for _ in range(count)]
     if path.endswith(".ply"):
         return ply_read(path).labels
     if path.endswith(".npz"):

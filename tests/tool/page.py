@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""page.py TOOL - pages that `extract -o FILE.html` writes, in Chromium
+"""page.py TOOL - pages that `extract -o FILE.html` and `labels` write, in Chromium
 
 Chromium shows them without a window and is asked through a pipe (Chrome DevTools Protocol) for pictures, for what its
 console says, and for what it would load. A sphere is a disc of its outer colour, an open surface shows both; turned,
@@ -11,6 +11,7 @@ import fcntl
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -38,7 +39,7 @@ class Browser:
             os.dup2(high[0], 3)
             os.dup2(high[1], 4)
         self.process = subprocess.Popen([CHROMIUM, f"--user-data-dir={folder}", *flags, *FLAGS], preexec_fn=begin,
-                                        pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                        start_new_session=True, pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for end in (commands, answers, *high):
             os.close(end)
         self.number, self.unread, self.session, self.said, self.asked = 0, b"", None, [], []
@@ -121,7 +122,7 @@ class Browser:
         self.mouse("mouseReleased", x + dx, y + dy, button="left", buttons=0, clickCount=1, **more)
 
     def close(self):
-        self.process.terminate()
+        os.killpg(self.process.pid, signal.SIGKILL)  # also what else writes to the profile
         self.process.wait()
         os.close(self.to)
         os.close(self.of)
@@ -200,6 +201,44 @@ class Page(GridCase):
                 self.assertGreater(count(other, is_shown), 1.3 * count(first, is_shown))
             browser.call("Input.dispatchKeyEvent", type="keyDown", key="0")
             self.assertEqual(browser.picture(), first, f"after {name}: not as before")
+        self.expect_quiet(path)
+
+    def test_labels(self):
+        """Two boxes side by side: each has a colour of its own, and goes where its box of the list is not checked; of
+        what is left the wall between them has its colour."""
+        browser = self.begin()
+        values = [(1 if x < 6 else 2) if 1 <= x < 11 and 1 <= y < 5 and 1 <= z < 5 else 0
+                  for z in range(6) for y in range(6) for x in range(12)]
+        raw, path = self.raw("two.raw", "u8", (12, 6, 6), values), self.path("two.html")
+        self.expect(0, "labels", *raw, "--smooth", "0", "--engine", "reference", "--quiet", "-o", path)
+        browser.show(path)
+        self.assertEqual(browser.run("document.querySelector('ul').innerText.trim().split(/\\s+/)"), ["1", "2"])
+        browser.run("document.querySelector('ul').style.visibility = 'hidden'")
+
+        def hues():
+            """How many pixels have each channel as their strongest."""
+            found = [0, 0, 0]
+            for pixel in (pixel for row in browser.picture() for pixel in row if is_shown(*pixel)):
+                found[pixel.index(max(pixel))] += 1
+            return found
+
+        def click(n):
+            browser.run(f"document.querySelectorAll('ul input')[{n}].click()")
+            browser.settle()
+        both = hues()
+        click(0)
+        second = hues()
+        click(1)
+        self.assertEqual(sum(hues()), 0)
+        click(0)
+        first = hues()
+        of_first, of_second = first.index(max(first)), second.index(max(second))
+        self.assertNotEqual(of_first, of_second)
+        for alone, channel in ((first, of_first), (second, of_second)):
+            self.assertGreater(alone[channel], 0.97 * sum(alone))
+            self.assertGreater(both[channel], 5000)
+        click(1)
+        self.assertEqual(hues(), both)
         self.expect_quiet(path)
 
     def test_empty(self):

@@ -180,6 +180,16 @@ class Files(LabelCase):
                 self.assertTrue(inner and (not outer or inner < outer), (inner, outer))
             self.expect_volumes(points, triangles, labels)
 
+    def test_page(self):
+        """The triangles of the page are those of PLY, pair by pair of labels; no pair comes twice."""
+        pages, others = ([], [])
+        for ending, found in (("html", pages), ("ply", others)):
+            path = self.path(f"all.{ending}")
+            self.labels(self.raw_blocks(), "-o", path)
+            found += zip(read_labels(path), READERS[ending](path)[1])
+        self.assertEqual(pages, sorted(others, key=lambda triangle: triangle[0]))
+        self.assertGreater(len({labels for labels, _ in pages}), 4)
+
     def test_separate(self):
         report = self.labels(self.raw_blocks(), "--smooth", "0", "--separate", "-o", self.path("part-%.stl"))
         self.assertEqual([os.path.basename(row["output"]) for row in report["labels"]],

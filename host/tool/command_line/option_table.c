@@ -69,8 +69,9 @@ const option option_table[] = {
      "samples count as background, which is 0"},
     {"--output", "-o", "FILE", COMMAND_LABELS, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .npz or .vtkhdf, with the two labels of every\n"
-     "triangle; .stl, .obj, .off, .glb or .html (left out: only the report); -\n"
-     "is standard output (give --format)"},
+     "triangle; .html, a page that shows each label in a colour of its own; .stl,\n"
+     ".obj, .off or .glb (left out: only the report); - is standard output (give\n"
+     "--format)"},
     {"--format", NULL, "F", COMMAND_LABELS, VALUE_FORMAT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--separate", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(separate_labels), NULL,
