@@ -234,12 +234,13 @@ static int make_mesh(surface_job *w, block_range blocks, int is_last) {
     return status;
 }
 
-static int describe_files(surface_job *w) {
+static int name_files(surface_job *w) {
     const options *o = w->j->o;
     const int blocks = w->j->blocks.count;
-    if (o->output && !(w->s->path = surface_files_describe(o, o->output, w->s->iso, blocks))) return STATUS_FAILED;
-    if (o->preview && !(w->s->preview = surface_files_describe(o, o->preview, w->s->iso, blocks))) return STATUS_FAILED;
-    return 0;
+    int status = 0;
+    if (o->output) status = surface_files_name(o, o->output, w->s->iso, blocks, &w->s->outputs);
+    if (!status && o->preview) status = surface_files_name(o, o->preview, w->s->iso, blocks, &w->s->previews);
+    return status;
 }
 
 /* Puts the surface's files under their names, all together. */
@@ -248,7 +249,7 @@ static int publish(surface_job *w) {
     double begin = now_ms();
     if (!w->is_good) j->failed_count++;
     if (!w->is_good) return 0;
-    int status = describe_files(w);
+    int status = name_files(w);
     if (!status) status = output_group_publish(&w->files);
     j->report.times.write_ms += now_ms() - begin;
     return status;
@@ -346,8 +347,8 @@ int extract_run_together(const options *o, team *t) {
                       o->output || o->preview ? "not written" : "not to be used");
 cleanup:
     for (size_t n = 0; n < j.report.surface_count; n++) {
-        free(j.report.surfaces[n].path);
-        free(j.report.surfaces[n].preview);
+        file_names_release(&j.report.surfaces[n].outputs);
+        file_names_release(&j.report.surfaces[n].previews);
     }
     free(j.report.surfaces);
     if (t) free(t->begins);

@@ -6,14 +6,12 @@
 #include "output.h"
 #include "planes_cut.h"
 #include "shortest.h"
-#include "surface_files.h"
 #include "terminal/json_report.h"
 #include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* ------------------------------------------------------------------------------------------------------------ JSON */
 
@@ -73,28 +71,22 @@ static void add_simplified(json_t *object, const surface_report *s, const option
                                   real_json(r->distance_from)));
 }
 
-/* Of --blocks separate: the pattern's files of the isovalue, by block. */
-static json_t *files_json(const extract_report *r, const char *pattern, const surface_report *s) {
-    json_t *files = json_array();
-    for (int block = 0; block < r->input.block_count; block++) {
-        char *path = surface_file_name(r->o, pattern, s->iso, block);
-        json_array_append_new(files, path ? string_json(path) : json_null());
-        free(path);
-    }
-    return files;
+static json_t *names_json(const file_names *f) {
+    json_t *names = json_array();
+    for (int n = 0; n < f->count; n++) json_array_append_new(names, string_json(f->names[n]));
+    return names;
 }
 
-static void add_files(json_t *object, const extract_report *r, const surface_report *s) {
-    const int is_separate = r->o->separate_blocks;
-    if (s->path)
-        json_object_set_new(object, is_separate ? "outputs" : "output",
-                            is_separate ? files_json(r, r->o->output, s) : string_json(s->path));
-    if (s->preview)
-        json_object_set_new(object, is_separate ? "previews" : "preview",
-                            is_separate ? files_json(r, r->o->preview, s) : string_json(s->preview));
+static void add_files(json_t *object, const surface_report *s, int is_separate) {
+    const file_names *meshes = &s->outputs, *pictures = &s->previews;
+    if (is_separate && meshes->count) json_object_set_new(object, "outputs", names_json(meshes));
+    if (is_separate && pictures->count) json_object_set_new(object, "previews", names_json(pictures));
+    if (is_separate) return;
+    if (meshes->count) json_object_set_new(object, "output", string_json(meshes->names[0]));
+    if (pictures->count) json_object_set_new(object, "preview", string_json(pictures->names[0]));
 }
 
-static json_t *surface_json(const extract_report *r, const surface_report *s) {
+static json_t *surface_json(const surface_report *s, const options *o) {
     json_t *object = json_object(), *timings = json_object();
     json_object_set_new(object, "iso", real_json(s->iso->value));
     json_object_set_new(object, "vertices", count_json(s->soup_vertex_count ? s->soup_vertex_count : s->vertex_count));
@@ -103,7 +95,7 @@ static json_t *surface_json(const extract_report *r, const surface_report *s) {
     json_object_set_new(object, "active_cells", count_json(s->active_cell_count));
     if (s->has_mesh) add_mesh(object, s);
     if (s->has_dropped) json_object_set_new(object, "dropped_triangles", count_json(s->dropped_count));
-    if (s->has_simplified) add_simplified(object, s, r->o);
+    if (s->has_simplified) add_simplified(object, s, o);
     json_object_set_new(timings, "classify", ms_json(s->classify_ms));
     if (s->has_mesh) {
         json_object_set_new(timings, "emit", ms_json(s->emit_ms));
@@ -111,7 +103,7 @@ static json_t *surface_json(const extract_report *r, const surface_report *s) {
     }
     if (s->has_simplified) json_object_set_new(timings, "simplify", ms_json(s->simplified.ms));
     json_object_set_new(object, "timings_ms", timings);
-    add_files(object, r, s);
+    add_files(object, s, o->separate_blocks);
     if (s->has_topology) add_topology(object, s);
     if (s->has_topology) add_shapes(object, s);
     if (s->has_verdict) json_object_set_new(object, "verified", json_boolean(s->verified));
@@ -141,7 +133,7 @@ static json_t *cut_json(const extract_report *r) {
 
 int extract_report_json(const extract_report *r) {
     json_t *surfaces = json_array(), *object = json_object();
-    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(r, &r->surfaces[n]));
+    for (size_t n = 0; n < r->surface_count; n++) json_array_append_new(surfaces, surface_json(&r->surfaces[n], r->o));
     json_object_set_new(object, "input", string_json(r->o->operands[0]));
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
@@ -203,6 +195,13 @@ static void simplified_text(const surface_report *s) {
         r->distance_to, r->distance_from);
 }
 
+static void files_text(const char *what, const file_names *f) {
+    if (!f->count) return;
+    printf("%s%s", what, output_is_dash(f->names[0]) ? "standard output" : f->names[0]);
+    if (f->count > 1) printf(" to %s", f->names[f->count - 1]);
+    printf("\n");
+}
+
 static void surface_text(const surface_report *s, int has_tetrahedra) {
     const char *cell = has_tetrahedra ? "tetrahedron" : "cell", *cells = has_tetrahedra ? "tetrahedra" : "cells";
     const mesh_summary *m = &s->summary;
@@ -239,8 +238,8 @@ static void surface_text(const surface_report *s, int has_tetrahedra) {
     if (s->has_topology) topology_text(s);
     if (s->has_topology) shapes_text(&s->shapes);
     if (s->has_verdict) printf("  verify      %s\n", s->verified ? "same bytes as the reference" : "FAILED");
-    if (s->path) printf("  written     %s\n", output_is_dash(s->path) ? "standard output" : s->path);
-    if (s->preview) printf("  preview     %s\n", output_is_dash(s->preview) ? "standard output" : s->preview);
+    files_text("  written     ", &s->outputs);
+    files_text("  preview     ", &s->previews);
 }
 
 static void piece_text(const extract_report *r) {

@@ -9,6 +9,7 @@
 #include "mesh_check.h"
 #include "command_line/options.h"
 #include "dataset/dataset.h"
+#include "file_names.h"
 #include "input/input_summary.h"
 #include "terminal/run_times.h"
 #include "tetracubes.h"
@@ -57,8 +58,7 @@ typedef struct surface_report {
     int is_relative;                             /* the file holds coordinates relative to the mesh's origin */
     int has_verdict;
     int verified;
-    char *path;    /* of the file, or files, written, or NULL; from malloc */
-    char *preview; /* the same of pictures */
+    file_names outputs, previews; /* that are written: meshes, pictures */
 } surface_report;
 
 typedef struct extract_report {

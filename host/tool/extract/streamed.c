@@ -140,7 +140,7 @@ static int count_together(stream_job *j) {
     team_surfaces_count(t, j->surfaces->report, j->shared, j->count);
     j->is_counted = 1;
     for (size_t n = 0; n < j->count && j->in->o->output && !status; n++) {
-        char *path = surface_files_describe(j->in->o, j->in->o->output, j->surfaces[n].report->iso, 1);
+        char *path = surface_file_name(j->in->o, j->in->o->output, j->surfaces[n].report->iso, 0);
         status = team_surface_open(t, path, &j->shared[n]);
         free(path);
     }
@@ -349,7 +349,7 @@ static int publish(stream_job *j, int status) {
         const int closed = surface_files_close_pieces(to->file, status);
         if (!status) status = closed;
         if (!status && j->in->o->output)
-            to->report->path = surface_files_describe(j->in->o, j->in->o->output, to->report->iso, 1);
+            status = surface_files_name(j->in->o, j->in->o->output, to->report->iso, 1, &to->report->outputs);
         to->report->write_ms += now_ms() - begin_ms;
     }
     if (j->is_counted) return publish_together(j, status);

@@ -182,18 +182,10 @@ int surface_files_close_pieces(piece_file *p, int status) {
 }
 
 /* "out_b0.ply to out_b2.ply" */
-char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count) {
-    if (!o->separate_blocks) return file_name(pattern, iso, ALL_BLOCKS);
-    char *first = file_name(pattern, iso, 0), *last = file_name(pattern, iso, block_count - 1), *text = NULL;
-    if (block_count < 2) {
-        free(last);
-        return first;
-    }
-    if (first && last && asprintf(&text, "%s to %s", first, last) < 0) {
-        text = NULL;
-        fail(STATUS_FAILED, "out of memory for the names of the output");
-    }
-    free(first);
-    free(last);
-    return text;
+int surface_files_name(const options *o, const char *pattern, const typed_isovalue *iso, int block_count,
+                       file_names *names) {
+    int status = file_names_make(names, o->separate_blocks ? block_count : 1);
+    for (int n = 0; n < names->count && !status; n++)
+        if (!(names->names[n] = surface_file_name(o, pattern, iso, n))) status = STATUS_FAILED;
+    return status;
 }

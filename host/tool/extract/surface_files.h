@@ -63,7 +63,9 @@ int surface_files_add_piece(piece_file *file, uint64_t first_vertex, uint64_t fi
 /* Closes the file; after a failure, status, it is removed. Accepts NULL. Returns 0 or a status. */
 int surface_files_close_pieces(piece_file *file, int status);
 
-/* Names the pattern's files of the isovalue for people; from malloc, NULL with its failure's text without memory. */
-char *surface_files_describe(const options *o, const char *pattern, const typed_isovalue *iso, int block_count);
+/* Names the pattern's files of the isovalue: of --blocks separate one for each block. Returns 0 or STATUS_FAILED.
+ * *names is to be released in any case. */
+int surface_files_name(const options *o, const char *pattern, const typed_isovalue *iso, int block_count,
+                       file_names *names);
 
 #endif
