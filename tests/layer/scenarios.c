@@ -10,7 +10,7 @@
 #include <math.h>
 #include <unistd.h>
 
-enum { NX = 50, NY = 20, NZ = 50, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
+enum { NX = 34, NY = 14, NZ = 44, SAMPLES = NX * NY * NZ, PATH_BYTES = 4096 };
 
 typedef enum flow { FLOW_DEVICES, FLOW_EXTRACT, FLOW_EMIT, FLOW_COMPLEX, FLOW_CARRY, FLOW_LABELS } flow;
 typedef enum coordinates { UNIFORM, RECTILINEAR, CURVILINEAR } coordinates;
@@ -91,7 +91,7 @@ static const double isovalues[2] = {127.5, 90};
 
 static char problem[1500];
 static uint8_t bytes[SAMPLES], labels[SAMPLES];
-static float values[SAMPLES], points[3 * SAMPLES], axes[3][NX]; /* NX is the most */
+static float values[SAMPLES], points[3 * SAMPLES], axes[3][NZ]; /* NZ is the most */
 static uint64_t budgets[SCENARIOS];                             /* of memory, for those in slabs */
 static tc_tetrahedra complex, of_cells;
 static tc_cells cells; /* of method hybrid */
@@ -123,7 +123,7 @@ static void input_make(void) {
         points[3 * n + 2] = (float)(z + 0.1 * sin(0.5 * x));
     }
     for (int axis = 0; axis < 3; axis++)
-        for (int n = 0; n < NX; n++) axes[axis][n] = (float)(n + 0.01 * n * n);
+        for (int n = 0; n < NZ; n++) axes[axis][n] = (float)(n + 0.01 * n * n);
 }
 
 /* The cubes as hexahedra, every third as wedges, whose sides are cut differently: some faces of hexahedra are cut. */

@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { SOME = 12, SOME_QUICK = 6 }; /* requests of a scenario */
+enum { SOME = 12, SOME_QUICK = 4 }; /* requests of a scenario */
 
 static const memory_fault_functions *memory;
 static const layer_functions *layer; /* NULL where there is none */

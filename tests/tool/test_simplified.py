@@ -3,7 +3,7 @@
 
 What --simplify leaves of a surface has its border, edge by edge, its components, each with its Euler characteristic and
 its orientation, one fan at every vertex, no triangle twice, no new fold, and only vertices that were there. With `all`
-random surfaces are 10,000, else 1,000; 300 in the quick tier, which tries some goals for each surface.
+random surfaces are 10,000, else 1,000; 120 in the quick tier, which tries some goals for each surface.
 """
 import collections
 import itertools
@@ -21,7 +21,7 @@ from tool_case import GridCase
 FOLDED = math.cos(math.radians(150))
 FAULTS = next((os.path.abspath(word[7:]) for word in sys.argv[2:] if word.startswith("faults=")), None)
 IS_QUICK = "TEST_PLAIN_KERNELS" in os.environ
-SURFACES = 10000 if "all" in sys.argv[2:] else 300 if IS_QUICK else 1000
+SURFACES = 10000 if "all" in sys.argv[2:] else 120 if IS_QUICK else 1000
 
 
 def edges_of(triangle):
