@@ -72,6 +72,8 @@ class Vectors(SelftestCase):
         text = self.expect(3, "selftest", "--vectors", self.vectors(spoiled)).stdout.splitlines()
         self.assertEqual(text[-1], "FAIL")
         self.assertRegex(text[1], "vectors +1 trial +FAILED")
+        text = self.expect(0, "selftest", "--vectors", self.vectors(good)).stdout.splitlines()
+        self.assertEqual(text[-1], "PASS")
 
     def test_no_vectors(self):
         good = self.right("noise 2 2 2 u8")[0]
